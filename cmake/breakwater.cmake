@@ -1,0 +1,203 @@
+# The verbs the top-level file is written in. Programs state in a head line what they need:
+#   BUILD modules=probe,ns_channel libs=gsl          what is linked besides their own module
+#   TEST  ranks=1,2 timeout=120 args="--check"       how ctest runs them (default: ranks=1)
+include(GNUInstallDirs)
+find_package(MPI REQUIRED COMPONENTS C)
+find_package(PkgConfig REQUIRED)
+
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+add_library(bw_flags INTERFACE)
+target_compile_options(bw_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -fno-math-errno -fno-trapping-math -fopenmp-simd -fno-common
+  $<$<BOOL:${BW_WERROR}>:-Werror> $<$<BOOL:${BW_NATIVE}>:-march=native>
+  $<$<CONFIG:Release>:-O3> $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>
+  $<$<BOOL:${BW_SANITIZE}>:-fno-omit-frame-pointer>)
+target_compile_definitions(bw_flags INTERFACE _POSIX_C_SOURCE=200809L
+  $<$<STREQUAL:${BW_PRECISION},single>:BW_SINGLE>)
+target_link_options(bw_flags INTERFACE $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>)
+target_link_libraries(bw_flags INTERFACE MPI::MPI_C m)
+
+# External libraries by short name; looked for only where one is named.
+function(_bw_external name)
+  if(TARGET bw_ext_${name})
+    return()
+  endif()
+  add_library(bw_ext_${name} INTERFACE)
+  if(name STREQUAL "fftw")
+    pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+    pkg_check_modules(FFTWF REQUIRED IMPORTED_TARGET fftw3f)
+    target_link_libraries(bw_ext_fftw INTERFACE
+      $<IF:$<STREQUAL:${BW_PRECISION},single>,PkgConfig::FFTWF,PkgConfig::FFTW>)
+  elseif(name STREQUAL "hdf5")
+    pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
+    target_link_libraries(bw_ext_hdf5 INTERFACE PkgConfig::HDF5)
+  else()
+    string(TOUPPER ${name} upper)
+    pkg_check_modules(${upper} REQUIRED IMPORTED_TARGET ${name})
+    target_link_libraries(bw_ext_${name} INTERFACE PkgConfig::${upper})
+  endif()
+endfunction()
+
+# bw_module(name [DEPENDS module...] [PRIVATE_LIBS lib...]): modules/<name>/**.c become libbw_<name>.a
+function(bw_module name)
+  cmake_parse_arguments(A "" "" "DEPENDS;PRIVATE_LIBS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS modules/${name}/*.c)
+  list(TRANSFORM A_DEPENDS PREPEND bw_)
+  set(kind PUBLIC)
+  if(sources)
+    add_library(bw_${name} STATIC ${sources})
+    target_link_libraries(bw_${name} PRIVATE bw_flags)
+    foreach(lib ${A_PRIVATE_LIBS})
+      _bw_external(${lib})
+      target_link_libraries(bw_${name} PRIVATE bw_ext_${lib})
+    endforeach()
+  else()
+    add_library(bw_${name} INTERFACE)
+    set(kind INTERFACE)
+  endif()
+  target_include_directories(bw_${name} ${kind} ${PROJECT_SOURCE_DIR}/modules/${name})
+  target_link_libraries(bw_${name} ${kind} ${A_DEPENDS} MPI::MPI_C)
+  add_library(bw::${name} ALIAS bw_${name})
+endfunction()
+
+# The words of a head line: _bw_head(file BUILD modules out)
+function(_bw_head file word key out)
+  file(STRINGS ${file} lines REGEX "^[ /*]*${word} .*${key}=" LIMIT_COUNT 1)
+  set(value "")
+  if(lines MATCHES "[ ]${key}=\"([^\"]*)\"")
+    set(value "${CMAKE_MATCH_1}")
+  elseif(lines MATCHES "[ ]${key}=([^ *]+)")
+    string(REPLACE "," ";" value "${CMAKE_MATCH_1}")
+  endif()
+  set(${out} "${value}" PARENT_SCOPE)
+endfunction()
+
+# A program of one or more sources, linked as the head of the first one says.
+function(_bw_program target own head)
+  add_executable(${target} ${head} ${ARGN})
+  _bw_head(${head} BUILD modules modules)
+  _bw_head(${head} BUILD libs libs)
+  list(TRANSFORM modules PREPEND bw_)
+  foreach(lib ${libs})
+    _bw_external(${lib})
+  endforeach()
+  list(TRANSFORM libs PREPEND bw_ext_)
+  if(own)
+    list(PREPEND modules bw_${own})
+  endif()
+  target_link_libraries(${target} PRIVATE ${modules} ${libs} bw_core bw_flags)
+endfunction()
+
+set(BW_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
+    OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_hwloc_base_binding_policy=none
+    BW_SOURCE_DIR=${PROJECT_SOURCE_DIR} BW_BUILD_DIR=${CMAKE_BINARY_DIR})
+
+# One ctest per number of ranks named in the head.
+function(_bw_run label name target head)
+  _bw_head(${head} TEST ranks ranks)
+  _bw_head(${head} TEST timeout timeout)
+  _bw_head(${head} TEST args args)
+  separate_arguments(args UNIX_COMMAND "${args}")
+  if(NOT ranks)
+    set(ranks 1)
+  endif()
+  if(NOT timeout)
+    set(timeout 120)
+  endif()
+  foreach(np ${ranks})
+    add_test(NAME ${label}.${name}.np${np}
+             COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} $<TARGET_FILE:${target}> ${args}
+             WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
+    set_tests_properties(${label}.${name}.np${np} PROPERTIES LABELS ${label} PROCESSORS ${np}
+                         TIMEOUT ${timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}")
+  endforeach()
+endfunction()
+
+# cases/NAME/NAME.c and its companions: build/bin/NAME
+function(bw_cases)
+  file(GLOB heads CONFIGURE_DEPENDS cases/*/*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    get_filename_component(folder ${head} DIRECTORY)
+    get_filename_component(folder_name ${folder} NAME)
+    if(name STREQUAL folder_name)
+      file(GLOB others CONFIGURE_DEPENDS ${folder}/*.c)
+      list(REMOVE_ITEM others ${head})
+      _bw_program(${name} "" ${head} ${others})
+    endif()
+  endforeach()
+endfunction()
+
+# tests/unit/MODULE/test_X.c with Check
+function(bw_unit_tests)
+  _bw_external(check)
+  file(GLOB heads CONFIGURE_DEPENDS tests/unit/*/test_*.c tests/mpi/test_*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    get_filename_component(folder ${head} DIRECTORY)
+    get_filename_component(module ${folder} NAME)
+    set(label unit)
+    set(own ${module})
+    if(module STREQUAL "mpi")
+      set(label mpi)
+      set(own "")
+    endif()
+    _bw_program(${name} "${own}" ${head})
+    target_include_directories(${name} PRIVATE tests/support)
+    target_link_libraries(${name} PRIVATE bw_ext_check)
+    _bw_run(${label} ${module}.${name} ${name} ${head})
+  endforeach()
+endfunction()
+
+# validation/MODULE/CLAIM.c: the quick form is a test, `run validate --full` gives --full
+function(bw_validations)
+  add_library(bw_validation STATIC validation/support/bw_validation.c)
+  target_include_directories(bw_validation PUBLIC validation/support)
+  target_link_libraries(bw_validation PUBLIC bw_core PRIVATE bw_flags)
+  file(GLOB heads CONFIGURE_DEPENDS validation/*/*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    get_filename_component(folder ${head} DIRECTORY)
+    get_filename_component(module ${folder} NAME)
+    if(NOT module STREQUAL "support")
+      set(target val_${module}_${name})
+      _bw_program(${target} ${module} ${head})
+      target_link_libraries(${target} PRIVATE bw_validation)
+      _bw_run(validation ${module}.${name} ${target} ${head})
+    endif()
+  endforeach()
+endfunction()
+
+# docs/examples/*.c: what a user's program looks like; run as tests
+function(bw_examples)
+  file(GLOB heads CONFIGURE_DEPENDS docs/examples/*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    _bw_program(example_${name} "" ${head})
+    _bw_run(example ${name} example_${name} ${head})
+  endforeach()
+endfunction()
+
+# tests/{restart,robustness,lint}/*.sh: one test per script; arguments: source and build folder.
+function(bw_scripted_tests)
+  file(GLOB scripts CONFIGURE_DEPENDS tests/restart/*.sh tests/robustness/*.sh tests/lint/*.sh)
+  foreach(script ${scripts})
+    get_filename_component(name ${script} NAME_WE)
+    get_filename_component(folder ${script} DIRECTORY)
+    get_filename_component(label ${folder} NAME)
+    add_test(NAME ${label}.${name}
+             COMMAND sh ${script} ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+    set_tests_properties(${label}.${name} PROPERTIES LABELS ${label} PROCESSORS 2 TIMEOUT 600
+                         ENVIRONMENT "${BW_MPI_ENVIRONMENT}")
+  endforeach()
+endfunction()

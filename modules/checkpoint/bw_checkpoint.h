@@ -1,0 +1,58 @@
+/* bw_checkpoint.h -- state on disk: parallel HDF5, verified on reading, any number of ranks.
+ *
+ * A file holds named numbers, texts, fields of a grid (global arrays without halo, in double or
+ * float as built) and tables of items that carry a global id 0..total-1 (rows stored in id
+ * order). Every data set has a checksum that does not depend on the partition (a sum over
+ * elements of a hash of index and bits), checked on reading; the file has a format version, the
+ * name of the precision and a mark that it is complete. Written as PATH.part, renamed to PATH on
+ * a successful close: an interrupted write never replaces a good file.
+ * Errors: BW_EIO naming path, data set and what was found; agreed by all ranks.
+ * All functions are collective. */
+#pragma once
+#include "bw_grid.h"
+
+typedef struct bw_checkpoint bw_checkpoint;
+
+bw_status bw_checkpoint_create(const bw_comm *comm, const char *path,
+                               bw_checkpoint **out) BW_MUST_CHECK;
+bw_status bw_checkpoint_open(const bw_comm *comm, const char *path,
+                             bw_checkpoint **out) BW_MUST_CHECK;
+
+/* Finish. For a file being written this marks it complete and renames it; check the result.
+ * *ck becomes NULL. */
+bw_status bw_checkpoint_close(bw_checkpoint **ck) BW_MUST_CHECK;
+/* Give up after an error: nothing is renamed; NULL is fine. */
+void bw_checkpoint_abandon(bw_checkpoint **ck);
+
+bw_status bw_checkpoint_put_numbers(bw_checkpoint *ck, const char *name, int n,
+                                    const double x[]) BW_MUST_CHECK;
+bw_status bw_checkpoint_get_numbers(bw_checkpoint *ck, const char *name, int n,
+                                    double x[]) BW_MUST_CHECK;
+bw_status bw_checkpoint_put_text(bw_checkpoint *ck, const char *name,
+                                 const char *text) BW_MUST_CHECK;
+/* *text is allocated, owned by the caller (bw_release). */
+bw_status bw_checkpoint_get_text(bw_checkpoint *ck, const char *name, char **text) BW_MUST_CHECK;
+
+/* Is there an entry of that name? The same answer on all ranks. */
+bool bw_checkpoint_has(bw_checkpoint *ck, const char *name);
+
+/* Interior of a field. `first_face` = true also stores the layer of index 0 in direction
+ * `direction` (the lower boundary face of a staggered component): size n+1 there. The grid on
+ * reading must have the same n. */
+bw_status bw_checkpoint_put_field(bw_checkpoint *ck, const char *name, const bw_grid *grid,
+                                  int direction, bool first_face,
+                                  const bw_real *field) BW_MUST_CHECK;
+bw_status bw_checkpoint_get_field(bw_checkpoint *ck, const char *name, const bw_grid *grid,
+                                  int direction, bool first_face, bw_real *field) BW_MUST_CHECK;
+
+typedef enum { BW_CK_DOUBLE, BW_CK_UINT8, BW_CK_INT32 } bw_checkpoint_type;
+
+/* Row i of this rank (`components` values) is item id[i] of `total`. Every id appears on exactly
+ * one rank when writing; on reading each rank asks for the ids it wants (any rank, any number
+ * of times). */
+bw_status bw_checkpoint_put_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
+                                  const int64_t id[], int components, bw_checkpoint_type type,
+                                  const void *rows) BW_MUST_CHECK;
+bw_status bw_checkpoint_get_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
+                                  const int64_t id[], int components, bw_checkpoint_type type,
+                                  void *rows) BW_MUST_CHECK;

@@ -1,0 +1,57 @@
+/* bw_comm.h -- the group of ranks that works on one problem, and what they say together.
+ *
+ * Wraps one MPI communicator, so that only core and grid call MPI. An MPI failure ends the run
+ * (MPI's own handler); everything else that may fail returns a bw_status.
+ * "Collective" means: every rank of the communicator calls it, in the same order. */
+#pragma once
+#include "bw_status.h"
+#include <mpi.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct bw_comm bw_comm;
+
+/* Start MPI and make *world of all ranks. Collective. */
+bw_status bw_init(int *argc, char ***argv, bw_comm **world) BW_MUST_CHECK;
+
+/* The end of main: ranks agree on the worst status, the failing rank of lowest number prints
+ * its message on stderr, *world is freed, MPI ends. Returns the exit code. Collective. */
+int bw_finish(bw_comm **world, bw_status mine);
+
+/* A group of this rank alone (for serial programs and tests inside a parallel run). Local. */
+bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
+void bw_comm_destroy(bw_comm **comm); /* NULL is fine; the world is freed by bw_finish */
+
+int bw_comm_rank(const bw_comm *comm); /* 0 .. size-1. Local. */
+int bw_comm_size(const bw_comm *comm); /* Local. */
+MPI_Comm bw_comm_mpi(const bw_comm *comm); /* for libraries that want it (HDF5). Local. */
+
+/* All ranks return the largest of the codes given; the message of the lowest rank that failed
+ * replaces the others'. Call before branching on a result that may differ. Collective. */
+bw_status bw_comm_agree(const bw_comm *comm, bw_status mine) BW_MUST_CHECK;
+
+/* Element-wise over ranks, in place, result on all ranks. Collective. */
+void bw_comm_sum(const bw_comm *comm, int n, double x[]);
+void bw_comm_max(const bw_comm *comm, int n, double x[]);
+void bw_comm_min(const bw_comm *comm, int n, double x[]);
+void bw_comm_sum_int(const bw_comm *comm, int n, int64_t x[]);
+void bw_comm_max_int(const bw_comm *comm, int n, int64_t x[]);
+void bw_comm_xor(const bw_comm *comm, int n, uint64_t x[]);
+
+/* Sum of x over the ranks below this one (0 on rank 0). Collective. */
+int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x);
+
+/* Rank 0's bytes on all ranks. Collective. */
+void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data);
+
+/* Bytes of every rank, in rank order, on rank 0 (gather) or on all (allgather). *out is
+ * allocated and owned by the caller (bw_release); NULL on ranks that receive nothing.
+ * *total counts its bytes. Collective. */
+bw_status bw_comm_gather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
+                         void **out) BW_MUST_CHECK;
+bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
+                            void **out) BW_MUST_CHECK;
+
+void bw_comm_barrier(const bw_comm *comm); /* Collective. */
+double bw_wall_time(void);                 /* [s] from an arbitrary origin. Local. */

@@ -1,0 +1,14 @@
+/* bw_memory.h -- allocation with overflow check, 64-byte alignment and zeroed content. */
+#pragma once
+#include "bw_status.h"
+#include <stddef.h>
+
+/* *out = zeroed array of `count` items of `size` bytes, aligned to 64 bytes; never NULL on
+ * success, also for count = 0. The caller owns it and frees it with bw_release. Local. */
+bw_status bw_allocate(size_t count, size_t size, void *out) BW_MUST_CHECK;
+
+/* Free *out (a pointer's address) and set it to NULL; NULL inside is fine. Local. */
+void bw_release(void *out);
+
+/* Typed form: BW_ALLOCATE(&x, n) for `double *x`. */
+#define BW_ALLOCATE(pointer, count) bw_allocate((count), sizeof **(pointer), (pointer))

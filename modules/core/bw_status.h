@@ -1,0 +1,54 @@
+/* bw_status.h -- how every function of Breakwater reports failure.
+ *
+ * Two kinds of failure, two mechanisms:
+ *   - the caller or the data is wrong (bad input, no memory, diverged): return a bw_status;
+ *   - this code is wrong (broken invariant): BW_ASSERT, compiled out in Release.
+ * BW_FAIL, at the place of the failure, writes the message; BW_TRY only passes it on.
+ * Messages name what and where, the value found and the remedy, in one line. */
+#pragma once
+#include <assert.h>
+
+/* One list, three uses (enum, name, text). Append only; the numbers are exit codes. */
+#define BW_STATUS_LIST(X)                                                                          \
+  X(BW_OK, 0, "success")                                                                           \
+  X(BW_EINPUT, 2, "a value is missing, out of range or contradicts another")                       \
+  X(BW_EMEM, 3, "out of memory")                                                                   \
+  X(BW_EIO, 4, "a file could not be read or written")                                              \
+  X(BW_ECFL, 5, "the time step exceeds the stability limit")                                       \
+  X(BW_EDIVERGED, 6, "the solution is not finite or an iteration did not converge")                \
+  X(BW_EUSAGE, 7, "the command line was not understood")
+
+typedef enum {
+#define X(name, value, text) name = value,
+  BW_STATUS_LIST(X)
+#undef X
+} bw_status;
+
+#define BW_MUST_CHECK __attribute__((warn_unused_result))
+#define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
+
+/* Record where and why, return `code` unchanged. Use through BW_FAIL. Local. */
+bw_status bw_fail(bw_status code, const char *file, int line, const char *fmt, ...) BW_PRINTF(4, 5);
+
+/* Text of a status code; static storage. Local. */
+const char *bw_status_text(bw_status code);
+
+/* The last message recorded by this thread ("" when none); static storage. Local. */
+const char *bw_last_message(void);
+
+#define BW_FAIL(code, ...) bw_fail((code), __FILE__, __LINE__, __VA_ARGS__)
+#define BW_REQUIRE(cond, code, ...)                                                                \
+  do {                                                                                             \
+    if (!(cond)) return BW_FAIL((code), __VA_ARGS__);                                              \
+  } while (0)
+#define BW_TRY(call)                                                                               \
+  do {                                                                                             \
+    const bw_status st_ = (call);                                                                  \
+    if (st_ != BW_OK) return st_;                                                                  \
+  } while (0)
+/* Straight-line set-up code that must reach its clean-up: skipped after a failure. */
+#define BW_THEN(st, call)                                                                          \
+  do {                                                                                             \
+    if ((st) == BW_OK) (st) = (call);                                                              \
+  } while (0)
+#define BW_ASSERT(cond) assert(cond)

@@ -1,0 +1,105 @@
+/* bw_ns_channel.h -- incompressible Navier-Stokes in a box: MAC grid, RK3, pressure correction.
+ *
+ *   du/dt + div(u u) = -grad p + nu lap u + g,   div u = 0,
+ * p is the pressure over the density [L^2/T^2]. One step is three sub-steps r = 0, 1, 2
+ * (POROUS 3.70-3.73; ERRATA 5, 15):
+ *   predict  u* = u + dt (alpha_r R(u) + beta_r R_prev - gamma_r grad p) + dt gamma_r g
+ *   (a body may now change u*)
+ *   project  lap p^ = (div u*) / (gamma_r dt);  u = u* - gamma_r dt grad p^;  p += p^
+ * with alpha = 8/15, 5/12, 3/4; beta = 0, -17/60, -5/12; gamma = alpha + beta. Second-order
+ * central differences in the divergence form that keeps kinetic energy.
+ * Boundaries, per side: periodic; wall (no-slip, moving tangentially; free-slip); inflow
+ * (uniform, Poiseuille, callback); outflow (convective du/dt + U_c du/dn = 0 with U_c the bulk
+ * velocity, then a uniform correction that balances mass globally).
+ * 2D: n[2] == 1 computes and stores nothing for w.
+ * Halos: u, v, w, p valid (all layers) after create, set_velocity, step and project; after
+ * predict too. Life: config_default -> create -> set_velocity -> { step } -> destroy. */
+#pragma once
+#include "bw_grid.h"
+
+typedef struct bw_ns_channel bw_ns_channel;
+
+typedef enum { BW_SIDE_PERIODIC, BW_SIDE_WALL, BW_SIDE_FREE_SLIP, BW_SIDE_INFLOW, BW_SIDE_OUTFLOW }
+    bw_ns_side_kind;
+typedef enum { BW_PROFILE_UNIFORM, BW_PROFILE_POISEUILLE, BW_PROFILE_CALLBACK } bw_ns_profile;
+
+/* u[3] [L/T] at the point x[3] [L] and time t [T]. Pure; called for any point, in any order. */
+typedef void (*bw_ns_velocity_fn)(const double x[3], double t, void *context, double u[3]);
+
+typedef struct {
+  bw_ns_side_kind kind;    /*                                          default wall */
+  double velocity[3];      /* of the wall; of a uniform inflow [L/T]   default 0 */
+  bw_ns_profile profile;   /* inflow only                              default uniform */
+  double bulk_velocity;    /* of a Poiseuille inflow (plane, in y) [L/T] */
+  bw_ns_velocity_fn function; /* of a callback inflow */
+  void *context;              /* borrowed for the life of the solver */
+} bw_ns_side;
+
+typedef enum { BW_FORCING_NONE, BW_FORCING_FLOW_RATE, BW_FORCING_GRADIENT } bw_ns_forcing;
+typedef enum { BW_VISCOUS_EXPLICIT, BW_VISCOUS_IMPLICIT_Y } bw_ns_viscous;
+
+typedef struct {
+  bw_ns_side side[3][2];    /* lower, upper */
+  double nu;                /* kinematic viscosity [L^2/T]             required */
+  bw_ns_forcing forcing;    /* in x                                    default none */
+  double forcing_value;     /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
+  bw_ns_viscous viscous;    /*                                         default explicit */
+} bw_ns_channel_config;
+
+bw_ns_channel_config bw_ns_channel_config_default(void);
+
+/* `grid` is borrowed until destroy. BW_EINPUT for impossible or contradictory boundaries (named),
+ * nu <= 0 or NaN, forcing without periodic x. Fluid at rest. Collective. */
+bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config,
+                               bw_ns_channel **out) BW_MUST_CHECK;
+void bw_ns_channel_destroy(bw_ns_channel **ns); /* NULL is fine. Collective. */
+
+/* Set u at each component's own points, project it divergence-free, zero the pressure, set the
+ * time to t [T]. Collective. */
+bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
+                                     double t) BW_MUST_CHECK;
+
+/* Largest stable dt of the present field: 1.65/(12 nu sum..) explicit viscous limit of RK3 and
+ * CFL sqrt(3) [T]; see README. Collective. */
+double bw_ns_channel_dt_max(bw_ns_channel *ns);
+
+/* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,
+ * BW_EDIVERGED when the field is not finite (message says where). Collective. */
+bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
+
+/* The parts, for the coupler; r = 0, 1, 2 in order, the same dt. After predict the velocity of
+ * bw_ns_channel_velocity holds u*; a body may change its interior; project then updates halos
+ * itself. project with r = 2 advances the time. Collective. */
+void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt);
+void bw_ns_channel_project(bw_ns_channel *ns, int r, double dt);
+
+/* Is the field finite and the step within its limit? The check that step makes. Collective. */
+bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
+
+/* Fields (with halos, layout of bw_grid.h), borrowed; u[2] is NULL in 2D. Local. */
+bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns); /* u[3] [L/T] */
+bw_real *bw_ns_channel_pressure(bw_ns_channel *ns);        /* p/rho [L^2/T^2] */
+bw_grid *bw_ns_channel_grid(bw_ns_channel *ns);
+double bw_ns_channel_time(const bw_ns_channel *ns);
+void bw_ns_channel_set_time(bw_ns_channel *ns, double t);
+
+/* After fields were overwritten through the views (restart): boundaries, halos. Collective. */
+void bw_ns_channel_refresh(bw_ns_channel *ns);
+
+double bw_ns_channel_divergence(bw_ns_channel *ns); /* max |div u| dx/U [-]. Collective. */
+
+typedef struct {
+  double bulk_velocity;      /* mean u over the box [L/T] */
+  double kinetic_energy;     /* integral u.u/2 [L^5/T^2] */
+  double pressure_gradient;  /* mean forcing applied in the last step [L/T^2] */
+  double inflow, outflow;    /* volume flux through x sides [L^3/T] */
+} bw_ns_summary;
+bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns); /* Collective. */
+
+/* Force per density of everything inside the cells lo[d] < i <= hi[d] (global) on the fluid,
+ * from the momentum balance of that box over the last step:
+ *   F = d/dt int u dV + oint (u u.n + p n - nu (grad u + grad u^T).n) dS - int g dV  [L^4/T^2].
+ * Discrete fluxes are those of the scheme; time derivative by the difference over the last step
+ * (zero before the first). What a fixed body feels is -rho F. Collective. */
+void bw_ns_channel_control_volume(bw_ns_channel *ns, const int lo[3], const int hi[3],
+                                  double force[3]);

@@ -1,0 +1,148 @@
+/* bw_pd_bond.h -- bond-based peridynamic solid: particles, bonds, damage, explicit dynamics.
+ *
+ *   rho X'' = L + F + C + D,   L_h = sum_l c0 alpha_hl lambda_hl s_hl e_hl Gamma_hl dV_l
+ * with stretch s = (|xi+eta|-|xi|)/|xi| and e the present bond direction (POROUS 3.29-3.51, read
+ * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4).
+ * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
+ * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
+ * after every step when breakage is enabled.
+ * 2D: site[2] = 0, one layer of `thickness`; z components stay zero.
+ * Shapes   vectors row-major (n,3); particles of a rank are 0..n-1, in lattice order; the global
+ *          id of a particle is its row in the list given to create.
+ * Units    any consistent set: [M], [L], [T].
+ * Life     config_default -> create -> { set_force, step }* -> destroy.
+ * MPI      particles are divided into compact blocks; "collective" as in bw_comm.h. */
+#pragma once
+#include "bw_comm.h"
+#include "bw_real.h"
+#include <stdbool.h>
+
+typedef struct bw_pd_bond bw_pd_bond;
+
+typedef enum { BW_PD_3D, BW_PD_PLANE_STRESS, BW_PD_PLANE_STRAIN } bw_pd_geometry;
+typedef enum { BW_PD_SURFACE_NONE, BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_ENERGY }
+    bw_pd_surface_correction;
+typedef enum { BW_PD_FRACTION_LINEAR, BW_PD_FRACTION_EXACT, BW_PD_FRACTION_NONE }
+    bw_pd_volume_fraction; /* 3D: linear is refused */
+typedef enum { BW_PD_VERLET, BW_PD_RK3 } bw_pd_integrator;
+
+typedef struct {
+  bw_pd_geometry geometry;  /*                                      default 3D */
+  double ds;                /* lattice spacing [L]                  required */
+  double thickness;         /* 2D only [L]                          default 1 */
+  double horizon_ratio;     /* m = horizon/ds [-]                   default 3 */
+  double rho;               /* density [M/L^3]                      required */
+  double E;                 /* Young [M/(L T^2)]                    required */
+  double nu;                /* Poisson: NaN (the model's own) or exactly 1/4, 1/3 (ERRATA 14) */
+  double G0;                /* fracture energy [M/T^2]              default INFINITY */
+  bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
+  bw_pd_surface_correction surface_correction; /* default volume */
+  bw_pd_integrator integrator;                 /* default Verlet */
+  double damping_pair;      /* k_d of 3.41 [M/(L^6 T)]              default 0 */
+  double damping_mean;      /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
+  double damping_absolute;  /* -k V (settling) [M/(L^3 T)]          default 0 */
+  bool contact;             /* short-range repulsion between surfaces  default false */
+  double origin[3];         /* of the lattice [L]                   default 0 */
+  double axes[3][3];        /* rows: lattice directions             default identity */
+  double period[3];         /* periodic length per direction [L], 0: not periodic. Must be a whole
+                               number of ds along that axis         default 0 */
+} bw_pd_bond_config;
+
+bw_pd_bond_config bw_pd_bond_config_default(void);
+
+/* What a particle is. Prescribed ones move with the velocity given by set_prescribed (0 at first)
+ * and are not accelerated: the ghost layers of POROUS 3.3.11. Unbreakable ones keep their bonds. */
+enum { BW_PD_FREE = 0, BW_PD_PRESCRIBED = 1, BW_PD_UNBREAKABLE = 2 };
+
+/* Build particles, families and bonds of `n` lattice sites: site (n,3), kind (n) or NULL. All
+ * ranks pass the same list. BW_EINPUT names the field; two particles on one site are an error.
+ * `comm` is borrowed until destroy. Collective. */
+bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
+                            const int32_t site[], const uint8_t kind[],
+                            bw_pd_bond **out) BW_MUST_CHECK;
+void bw_pd_bond_destroy(bw_pd_bond **pd); /* NULL is fine. Collective. */
+
+/* Break the bonds that cross a segment (2D: from a to b; ends included) or a parallelogram with
+ * corner a and edges b-a, c-a (3D; pass c = NULL in 2D). Unbreakable ones too. Collective. */
+bw_status bw_pd_bond_precrack(bw_pd_bond *pd, const double a[3], const double b[3],
+                              const double c[3]) BW_MUST_CHECK;
+
+void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on);  /* default on. Local. */
+void bw_pd_bond_set_damping(bw_pd_bond *pd, double pair, double mean, double absolute); /* Local */
+void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0);         /* new s0. Local. */
+
+/* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
+void bw_pd_bond_set_force(bw_pd_bond *pd, const double F[]);
+/* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored); copied. Local. */
+void bw_pd_bond_set_prescribed(bw_pd_bond *pd, const double V[]);
+
+/* One step of dt [T]. BW_ECFL when dt > dt_max; BW_EDIVERGED when a particle is not finite or
+ * moves more than one horizon in the step (names the particle, its place). Collective. */
+bw_status bw_pd_bond_step(bw_pd_bond *pd, double dt) BW_MUST_CHECK;
+
+/* Largest stable step of the intact network [T], ERRATA 6; the same on all ranks. Local. */
+double bw_pd_bond_dt_max(const bw_pd_bond *pd);
+
+/* Views, borrowed until the next step, restart or destroy. Local. */
+size_t bw_pd_bond_count(const bw_pd_bond *pd);              /* particles of this rank */
+int64_t bw_pd_bond_total(const bw_pd_bond *pd);             /* of all ranks */
+const int64_t *bw_pd_bond_id(const bw_pd_bond *pd);         /* (n) global ids */
+const uint8_t *bw_pd_bond_kind(const bw_pd_bond *pd);       /* (n) */
+const bw_pd_bond_config *bw_pd_bond_settings(const bw_pd_bond *pd);
+double bw_pd_bond_horizon(const bw_pd_bond *pd);
+double bw_pd_bond_micromodulus(const bw_pd_bond *pd);       /* c0 [M/(L^7 T^2)] */
+double bw_pd_bond_critical_stretch(const bw_pd_bond *pd);   /* s0 [-] */
+double bw_pd_bond_volume(const bw_pd_bond *pd);             /* of one particle [L^3] */
+
+/* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
+ * Local, except get_damage (Collective). */
+void bw_pd_bond_get_reference(const bw_pd_bond *pd, double X0[]);
+void bw_pd_bond_get_position(const bw_pd_bond *pd, double X[]);
+void bw_pd_bond_get_velocity(const bw_pd_bond *pd, double V[]);
+void bw_pd_bond_get_acceleration(const bw_pd_bond *pd, double A[]); /* of the last step */
+void bw_pd_bond_get_damage(const bw_pd_bond *pd, double damage[]);  /* 3.28: 0 .. 1, by volume */
+void bw_pd_bond_set_state(bw_pd_bond *pd, const double X[], const double V[]); /* Collective */
+
+/* The bonds of particle h (0 <= h < n), for those who need them one by one (surface detection,
+ * fragments): writes up to bw_pd_bond_max_family rows and returns how many. `neighbour` is an
+ * index into the extended arrays of get_extended (own particles first, then copies of other
+ * ranks' particles and periodic images), `slot` the number of the bond's direction in the stencil
+ * (the same for the same lattice offset everywhere), `intact` whether it still holds. Local. */
+typedef struct { int32_t neighbour; int16_t slot; bool intact; } bw_pd_bond_link;
+int bw_pd_bond_max_family(const bw_pd_bond *pd);
+int bw_pd_bond_links(const bw_pd_bond *pd, size_t h, bw_pd_bond_link link[]);
+const double *bw_pd_bond_stencil_offset(const bw_pd_bond *pd, int slot); /* xi [L], [3] */
+double bw_pd_bond_stencil_fraction(const bw_pd_bond *pd, int slot);      /* Gamma [-] */
+
+/* Own particles and copies. id: global id; X: present position, copies shifted to where they act.
+ * n_extended >= count; borrowed until the next step. Collective (updates the copies). */
+typedef struct { size_t n; const int64_t *id; const bw_real *X; } bw_pd_bond_extended;
+bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
+
+/* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
+ * Collective. */
+void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);
+
+/* Counts bond-breaking events of this rank so far: unchanged means nothing to update. Local. */
+int64_t bw_pd_bond_events(const bw_pd_bond *pd);
+
+typedef struct {
+  double kinetic, elastic;         /* [M L^2/T^2] present */
+  double contact;                  /* elastic energy of contact, present */
+  double damping, fracture;        /* dissipated since the start (or restart's stored value) */
+  double external;                 /* work of F and of prescribed motion since the start */
+  double momentum[3], angular[3];  /* about the origin */
+  int64_t bonds, broken;           /* undirected bonds: at the start, broken since */
+} bw_pd_bond_ledger;
+bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
+
+/* State for a checkpoint: rows of `bytes` per particle holding its bonds' bits in stencil order
+ * (the same on any number of ranks). Collective on loading. */
+size_t bw_pd_bond_bits_bytes(const bw_pd_bond *pd);
+void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[]);
+bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[]) BW_MUST_CHECK;
+/* Everything else a restart needs: X0-relative displacement, V, acceleration (n,9), and the
+ * ledger's running sums (4: damping, fracture, external, broken-at-start offset). */
+void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4]);
+bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[],
+                                 const double sums[4]) BW_MUST_CHECK;

@@ -1,7 +1,10 @@
 /* bw_pd_shape.h -- which lattice sites are solid: shapes, their unions and differences.
  *
  * A body is a list of shapes applied in order: `add` or `remove`. The lattice sites whose centre
- * lies inside are particles. An extension is one row in the table of bw_pd_shape.c.
+ * lies inside are particles: half-open in a box (lower <= x < upper, so that n ds hold n sites),
+ * the surface included in balls; ties within 1e-9 do not depend on rounding. The last shape that
+ * holds a site decides, also on its particle kind. An endless shape that is added ends where the
+ * other added ones end. An extension is one row in the table of bw_pd_shape.c.
  * Pore lattices (simple cubic, body-centred, face-centred) are overlapping spherical pores of
  * `radius` on a lattice of `pitch` anchored at `centre`. */
 #pragma once
@@ -31,8 +34,7 @@ typedef struct {
 const char *bw_shape_name(bw_shape_kind kind); /* "pores_sc": the word used in YAML. Local. */
 
 /* All sites inside the body, x fastest, then y, then z: site (n,3), kind (n); owned by the
- * caller (bw_release). `planar`: only site[2] = 0 (its centre in the plane z = origin + ds/2 is
- * tested with z = 0). BW_EINPUT for an invalid shape (named by its number) or an empty body.
+ * caller (bw_release). `planar`: only site[2] = 0, and z of the shapes is ignored. BW_EINPUT for an invalid shape (named by its number) or an empty body.
  * Local. */
 bw_status bw_pd_shape_fill(int count, const bw_shape shape[], double ds, const double origin[3],
                            bool planar, int64_t *n, int32_t **site, uint8_t **kind) BW_MUST_CHECK;

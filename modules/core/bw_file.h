@@ -1,0 +1,37 @@
+/* bw_file.h -- one file written by all ranks together at byte offsets.
+ *
+ * The bytes go to PATH.part, which is renamed to PATH by a close that found all of them written:
+ * an interrupted or failed write never replaces a good file. (No fsync: a killed program is
+ * covered, a power failure is not.)
+ * Life     create -> { write_at_all }* -> close, or abandon after an error.
+ * Errors   BW_EIO with the path and the system's reason; agreed by all ranks. */
+#pragma once
+#include "bw_comm.h"
+
+typedef struct bw_file bw_file;
+
+/* Begin PATH.part; its folder has to exist (bw_folder_make). `comm` is borrowed until close.
+ * On failure *out is NULL. Collective. */
+bw_status bw_file_create(const bw_comm *comm, const char *path, bw_file **out) BW_MUST_CHECK;
+
+/* Each rank writes `bytes` bytes (0 is fine, data may then be NULL) at `offset` from the start of
+ * the file; the ranges of different ranks must not overlap. Any size (split inside). Collective. */
+bw_status bw_file_write_at_all(bw_file *file, int64_t offset, size_t bytes,
+                               const void *data) BW_MUST_CHECK;
+
+/* Finish and rename; *file becomes NULL, also on failure (then PATH.part is removed). NULL inside
+ * is fine. Collective. */
+bw_status bw_file_close(bw_file **file) BW_MUST_CHECK;
+
+/* Give up after an error: PATH.part is removed, PATH stays as it was; NULL is fine. Collective. */
+void bw_file_abandon(bw_file **file);
+
+/* A small text file written by rank 0 (other ranks' text is not looked at), with the same
+ * promise: PATH.part, then renamed. Collective. */
+bw_status bw_file_write_text(const bw_comm *comm, const char *path,
+                             const char *text) BW_MUST_CHECK;
+
+/* The content of a file read by rank 0, on all ranks, with a 0 behind it: *text is allocated and
+ * owned by the caller (bw_release); *bytes (may be NULL) excludes the 0. Collective. */
+bw_status bw_file_read_text(const bw_comm *comm, const char *path, size_t *bytes,
+                            char **text) BW_MUST_CHECK;

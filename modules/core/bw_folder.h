@@ -1,0 +1,14 @@
+/* bw_folder.h -- folders and paths. Rank 0 touches the disk; all ranks get its answer. */
+#pragma once
+#include "bw_comm.h"
+
+/* Make `path` and its missing parents; an existing folder is fine. BW_EIO with the part that
+ * failed and the system's reason, also when the folder is there but not writable. Collective. */
+bw_status bw_folder_make(const bw_comm *comm, const char *path) BW_MUST_CHECK;
+
+/* Is there a file or folder of that name? The same answer on all ranks. Collective. */
+bool bw_path_exists(const bw_comm *comm, const char *path);
+
+/* *out = "FOLDER/NAME" (just NAME when folder is "" or NAME begins with '/'), allocated, owned by
+ * the caller (bw_release). Local. */
+bw_status bw_path_join(const char *folder, const char *name, char **out) BW_MUST_CHECK;

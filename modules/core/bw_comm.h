@@ -23,8 +23,8 @@ int bw_finish(bw_comm **world, bw_status mine);
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 void bw_comm_destroy(bw_comm **comm); /* NULL is fine; the world is freed by bw_finish */
 
-int bw_comm_rank(const bw_comm *comm); /* 0 .. size-1. Local. */
-int bw_comm_size(const bw_comm *comm); /* Local. */
+int bw_comm_rank(const bw_comm *comm);     /* 0 .. size-1. Local. */
+int bw_comm_size(const bw_comm *comm);     /* Local. */
 MPI_Comm bw_comm_mpi(const bw_comm *comm); /* for libraries that want it (HDF5). Local. */
 
 /* All ranks return the largest of the codes given; the message of the lowest rank that failed

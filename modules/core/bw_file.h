@@ -28,8 +28,7 @@ void bw_file_abandon(bw_file **file);
 
 /* A small text file written by rank 0 (other ranks' text is not looked at), with the same
  * promise: PATH.part, then renamed. Collective. */
-bw_status bw_file_write_text(const bw_comm *comm, const char *path,
-                             const char *text) BW_MUST_CHECK;
+bw_status bw_file_write_text(const bw_comm *comm, const char *path, const char *text) BW_MUST_CHECK;
 
 /* The content of a file read by rank 0, on all ranks, with a 0 behind it: *text is allocated and
  * owned by the caller (bw_release); *bytes (may be NULL) excludes the 0. Collective. */

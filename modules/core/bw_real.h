@@ -8,9 +8,9 @@
 #ifdef BW_SINGLE
 typedef float bw_real;
 #define BW_REAL_EPSILON ((double)FLT_EPSILON)
-#define BW_REAL_NAME "single"
+#define BW_REAL_NAME    "single"
 #else
 typedef double bw_real;
 #define BW_REAL_EPSILON DBL_EPSILON
-#define BW_REAL_NAME "double"
+#define BW_REAL_NAME    "double"
 #endif

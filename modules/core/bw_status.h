@@ -24,7 +24,7 @@ typedef enum {
 #undef X
 } bw_status;
 
-#define BW_MUST_CHECK __attribute__((warn_unused_result))
+#define BW_MUST_CHECK         __attribute__((warn_unused_result))
 #define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
 
 /* Record where and why, return `code` unchanged. Use through BW_FAIL. Local. */

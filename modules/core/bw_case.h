@@ -1,0 +1,56 @@
+/* bw_case.h -- the command line, output folder and record (run.yaml) that every case shares.
+ *
+ *   my_case c = my_case_default();
+ *   static const bw_case_about about = {"porous_breakup", "what it computes", fields, sizeof c};
+ *   bw_comm *world = NULL; bw_case *run = NULL;
+ *   bw_status st = bw_init(&argc, &argv, &world);
+ *   BW_THEN(st, bw_case_begin(world, argc, argv, &about, &c, &run));
+ *   if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(run, &c);
+ *   st = bw_case_end(world, &run, st);
+ *   return bw_finish(&world, st);
+ *
+ * Command line: CASE.yaml [--set key.path=value]... [--out DIR] [--restart FILE] [--check]
+ * [--quiet] [--help] [--version]. */
+#pragma once
+#include "bw_config.h"
+#include "bw_log.h"
+
+typedef struct {
+  const char *name;    /* of the program; the default folder is out/NAME of the YAML file */
+  const char *summary; /* one line for --help */
+  const bw_config_field *fields;
+  size_t config_size;
+} bw_case_about;
+
+typedef struct {
+  const bw_comm *comm;
+  const char *yaml;    /* path of the case file */
+  const char *out;     /* folder of the results; exists unless check or stop */
+  const char *restart; /* checkpoint to go on from, or NULL */
+  const char *const *overrides;
+  int n_overrides;
+  bool check; /* --check: print the sizes, run and write nothing */
+  bool quiet;
+  bool stop; /* --help or --version was answered: nothing to do (the configuration is not read) */
+} bw_case_args;
+
+typedef struct bw_case bw_case;
+
+/* Read the command line; load and check the configuration; make the folder; write run.yaml; print
+ * the heading. With --check: prints the resolved configuration instead, touches no folder.
+ * BW_EUSAGE for a command line not understood (with a hint), BW_EINPUT for the configuration,
+ * BW_EINPUT when the folder holds another run (the remedy is named), BW_EIO when it cannot be
+ * written. `about` is borrowed until end; `config` is not kept. Collective. */
+bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_case_about *about,
+                        void *config, bw_case **out) BW_MUST_CHECK;
+
+/* Valid until bw_case_end. Local. */
+const bw_case_args *bw_case_args_of(const bw_case *run);
+bw_log *bw_case_log(const bw_case *run);
+
+/* *path = a file in the output folder, allocated, owned by the caller (bw_release). Local. */
+bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
+
+/* Ranks agree on `mine`; end time and status are added to run.yaml; *run is freed (NULL inside is
+ * fine). Returns the agreed status; bw_finish prints its message. Collective. */
+bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine) BW_MUST_CHECK;

@@ -1,0 +1,51 @@
+/* bw_log.h -- what a run tells its user: lines from rank 0, and one progress line.
+ *
+ * On a terminal the progress line is redrawn in place; elsewhere a plain line is printed now and
+ * then. Log lines never mix with it. A NULL log or progress is silent, so that modules and tests
+ * may do without. Calls are local: ranks other than 0 return at once. */
+#pragma once
+#include "bw_comm.h"
+#include <stdio.h>
+
+typedef struct bw_log bw_log;
+
+typedef struct {
+  bool quiet;            /* no info lines and no progress; warnings stay. Default false. */
+  FILE *out, *err;       /* default stdout, stderr; borrowed until destroy */
+  int terminal;          /* is `out` a terminal: 1 yes, 0 no, -1 ask the system (default) */
+  double plain_seconds;  /* between plain progress lines [s]; default 10 */
+  double redraw_seconds; /* between redraws on a terminal [s]; default 0.2 */
+} bw_log_config;
+bw_log_config bw_log_config_default(void);
+
+/* NULL config: the defaults. Local. */
+bw_status bw_log_create(const bw_comm *comm, const bw_log_config *config,
+                        bw_log **out) BW_MUST_CHECK;
+void bw_log_destroy(bw_log **log); /* NULL is fine */
+
+/* One or more lines on rank 0; a newline is added at the end. Local. */
+void bw_log_info(bw_log *log, const char *fmt, ...) BW_PRINTF(2, 3);
+/* The same on stderr with "warning: " in front, also when quiet. Local. */
+void bw_log_warn(bw_log *log, const char *fmt, ...) BW_PRINTF(2, 3);
+
+typedef struct bw_progress bw_progress;
+
+typedef struct {
+  double time_start, time_end;  /* simulated time [s] of this run (after a restart: from there);
+                                   NaN end: the ETA follows the steps */
+  int64_t step_start, step_end; /* step_end 0: not known */
+  const char *time_unit;        /* default "s" */
+} bw_progress_config;
+bw_progress_config bw_progress_config_default(void);
+
+/* `log` is borrowed until destroy. Local. */
+bw_status bw_progress_create(bw_log *log, const bw_progress_config *config,
+                             bw_progress **out) BW_MUST_CHECK;
+
+/* After a step: `fmt` adds the watched quantities, e.g. "dp/p0 %.4f". The text is formed only
+ * when a line is due, so call it in every step with values this rank has already. Local. */
+void bw_progress_update(bw_progress *progress, int64_t step, double time, const char *fmt, ...)
+    BW_PRINTF(4, 5);
+
+/* The last state as a plain line with the mean speed, then *progress is freed. NULL is fine. */
+void bw_progress_finish(bw_progress **progress);

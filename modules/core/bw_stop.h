@@ -1,0 +1,18 @@
+/* bw_stop.h -- end a long run in good order when the system or the user asks for it.
+ *
+ *   bw_stop_install();
+ *   while (...) { step; if (bw_stop_requested(comm)) { write a checkpoint; break; } }
+ * Signals: SIGTERM, SIGINT, and SIGUSR1, the one that mpirun passes on to its ranks without
+ * killing them (kill -USR1 PID_OF_MPIRUN; batch systems: --signal=USR1@300). A second signal of
+ * the same kind has its usual effect. */
+#pragma once
+#include "bw_comm.h"
+
+/* From now on the signals only set a flag. Local. */
+void bw_stop_install(void);
+
+/* Has any rank been asked? The same answer on all ranks. Once per step is cheap. Collective. */
+bool bw_stop_requested(const bw_comm *comm);
+
+/* Forget a request (a program that runs several jobs; tests). Local. */
+void bw_stop_clear(void);

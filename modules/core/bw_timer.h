@@ -1,0 +1,44 @@
+/* bw_timer.h -- where the wall time of a run goes, by part, and what one unit of work costs.
+ *
+ *   static const bw_timer_part parts[] = {{"momentum", "cell sub-step"}, {"solid", "bond"}};
+ *   bw_timer_start(t, MOMENTUM); ...; bw_timer_stop(t, MOMENTUM); bw_timer_work(t, MOMENTUM, n);
+ * Parts do not overlap or nest. A NULL timer is fine everywhere: nothing is measured. */
+#pragma once
+#include "bw_log.h"
+
+typedef struct bw_timer bw_timer;
+
+typedef struct {
+  const char *name;
+  const char *work_unit; /* what bw_timer_work counts; NULL when nothing is counted */
+} bw_timer_part;
+
+typedef struct {
+  const char *name, *work_unit;
+  double seconds;      /* wall time in this part: the largest over ranks [s] */
+  double seconds_mean; /* mean over ranks [s]; below `seconds` where ranks wait or idle */
+  double share;        /* seconds_mean over the mean wall time since create or reset */
+  double work;         /* units, summed over ranks */
+  double ns_per_unit;  /* core-ns per unit: 1e9 seconds ranks / work; NaN without work */
+  int64_t calls;       /* starts, largest over ranks */
+} bw_timer_row;
+
+/* Names are borrowed (literals). Local. */
+bw_status bw_timer_create(int n, const bw_timer_part parts[], bw_timer **out) BW_MUST_CHECK;
+void bw_timer_destroy(bw_timer **timer); /* NULL is fine. Local. */
+void bw_timer_reset(bw_timer *timer);    /* all sums to zero, the total starts now. Local. */
+
+void bw_timer_start(bw_timer *timer, int part);
+void bw_timer_stop(bw_timer *timer, int part);
+/* Count `units` of work of this rank in `part`. Local. */
+void bw_timer_work(bw_timer *timer, int part, double units);
+/* Seconds of this rank in `part` so far. Local. */
+double bw_timer_seconds(const bw_timer *timer, int part);
+
+/* rows[n+1]: the parts, then "other" (the wall time in no part); shares sum to 1. *total [s] is
+ * the largest wall time over ranks. The same on all ranks. Collective. */
+void bw_timer_summary(const bw_timer *timer, const bw_comm *comm, bw_timer_row rows[],
+                      double *total);
+
+/* The summary as a table through `log`. Collective. */
+bw_status bw_timer_report(const bw_timer *timer, const bw_comm *comm, bw_log *log) BW_MUST_CHECK;

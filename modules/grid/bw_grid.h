@@ -23,16 +23,18 @@ typedef struct bw_grid bw_grid;
 typedef enum { BW_STRETCH_NONE, BW_STRETCH_TANH } bw_stretch;
 
 typedef struct {
-  int n[3];          /* cells                                        required */
-  double length[3];  /* box [L], lower corner at the origin          required */
-  bool periodic[3];  /*                                              default false */
-  bw_stretch y_stretch; /*                                           default none */
+  int n[3];                  /* cells                                        required */
+  double length[3];          /* box [L], lower corner at the origin          required */
+  bool periodic[3];          /*                                              default false */
+  bw_stretch y_stretch;      /*                                           default none */
   double y_stretch_strength; /* tanh parameter [-], > 0              default 1.5 */
-  int halo;          /* layers, 1 or 2 (2 where markers are)         default 1 */
-  int ranks[2];      /* blocks in y and z; 0,0: chosen for the least halo */
+  int halo;                  /* layers, 1 or 2 (2 where markers are)         default 1 */
+  int ranks[2];              /* blocks in y and z; 0,0: chosen for the least halo */
 } bw_grid_config;
 
 bw_grid_config bw_grid_config_default(void);
+
+/* y faces: L j/n, or L/2 (1 + tanh(s (2j/n - 1)) / tanh s) with s = y_stretch_strength (<= 10). */
 
 /* What kernels need to know; read-only, owned by the grid. Arrays of y are indexed globally:
  * y_face[0..n1] faces, y_centre[1-2..n1+2] centres with two mirrored ghosts on either side. */
@@ -40,25 +42,28 @@ typedef struct {
   int n[3], m[3], lo[3], halo[3]; /* halo[2] = 0 for n[2] == 1 */
   int ranks[3], coord[3];         /* blocks per direction (ranks[0] = 1), and this rank's */
   bool periodic[3];
-  bool first[3], last[3];         /* does this rank touch the lower / upper boundary? */
+  bool first[3], last[3]; /* does this rank touch the lower / upper boundary? */
   bool uniform_y;
   double length[3];
-  double spacing[3];              /* dx, length/n in y (exact when uniform_y), dz [L] */
+  double spacing[3]; /* dx, length/n in y (exact when uniform_y), dz [L] */
   const double *y_face, *y_centre;
-  ptrdiff_t stride[3];            /* 1, row, plane; plane = 0 for n[2] == 1 */
-  ptrdiff_t origin;               /* offset of (0,0,0): bw_at(g,0,0,0) */
-  size_t size;                    /* bw_reals in one field, halos included */
+  ptrdiff_t stride[3]; /* 1, row (padded: i = 1 is 64-byte aligned in every row), plane;
+                          plane = 0 for n[2] == 1 */
+  ptrdiff_t origin;    /* offset of (0,0,0): bw_at(g,0,0,0) */
+  size_t size;         /* bw_reals in one field, halos and padding included */
 } bw_grid_view;
 
-/* Divide the box over the ranks of `comm` (borrowed until destroy). Fails with BW_EINPUT when a
- * size is not positive, when ranks do not fit (at most n[1] x n[2], and each block at least
- * `halo` thick; the message says how many would) or the stretching is invalid. Collective. */
+/* Divide the box over the ranks of `comm` (borrowed until destroy): blocks differ by at most one
+ * cell per direction; rank = coord[1] + ranks[1] coord[2]. Fails with BW_EINPUT when a
+ * size is not positive (n[0], n[1] >= 2), when ranks do not fit (at most n[1] x n[2], and each
+ * block at least `halo` thick; the message says how many would) or the stretching is invalid.
+ * Collective. */
 bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config,
                          bw_grid **out) BW_MUST_CHECK;
 void bw_grid_destroy(bw_grid **grid); /* NULL is fine. Collective. */
 
-const bw_grid_view *bw_grid_look(const bw_grid *grid);    /* borrowed. Local. */
-const bw_comm *bw_grid_comm(const bw_grid *grid);         /* borrowed. Local. */
+const bw_grid_view *bw_grid_look(const bw_grid *grid); /* borrowed. Local. */
+const bw_comm *bw_grid_comm(const bw_grid *grid);      /* borrowed. Local. */
 
 static inline ptrdiff_t bw_at(const bw_grid_view *g, int i, int j, int k)
 {
@@ -72,12 +77,15 @@ int bw_grid_owner(const bw_grid *grid, const double x[3]);
 /* A zeroed field with halos; free with bw_release. Local. */
 bw_status bw_field_create(const bw_grid *grid, bw_real **out) BW_MUST_CHECK;
 
-/* Fill the halos of `count` fields (<= 8): between ranks, and over periodic directions. Halos
- * beyond a physical boundary stay as they are. Edges and corners are filled too. Collective. */
+/* Fill the halos of `count` fields: between ranks, and over periodic directions (no message where
+ * one block spans it). Halos beyond a physical boundary stay as they are. Edges and corners are
+ * filled too; one that is over a physical boundary and also over a block's edge gets the
+ * neighbour's ghost value, so set the physical ghosts first. Allocates nothing. Collective. */
 void bw_halo_update(bw_grid *grid, int count, bw_real *const field[]);
 
 /* The adjoint of bw_halo_update: what was added in halo cells moves to the cell's owner and the
- * halo becomes zero. Halos beyond a physical boundary stay as they are. Collective. */
+ * halo becomes zero. Halos beyond a physical boundary keep what is there (the exact transpose:
+ * they receive from the neighbours' halos as interior cells do). Collective. */
 void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[]);
 
 /* Bytes one bw_halo_update of one field sends to other ranks, from this rank. Local. */

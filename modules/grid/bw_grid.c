@@ -1,0 +1,198 @@
+#include "bw_grid.h"
+#include "bw_memory.h"
+#include "grid_internal.h"
+
+#include <math.h>
+
+static const char axis[] = "xyz";
+
+bw_grid_config bw_grid_config_default(void)
+{
+  return (bw_grid_config){.length = {NAN, NAN, NAN},
+                          .y_stretch = BW_STRETCH_NONE,
+                          .y_stretch_strength = 1.5,
+                          .halo = 1};
+}
+
+static bw_status check(const bw_grid_config *c)
+{
+  for (int d = 0; d < 3; d++) {
+    BW_REQUIRE(c->n[d] >= (d < 2 ? 2 : 1), BW_EINPUT,
+               "grid: n[%d] = %d cells in %c; at least %d are needed", d, c->n[d], axis[d],
+               d < 2 ? 2 : 1);
+    BW_REQUIRE(isfinite(c->length[d]) && c->length[d] > 0, BW_EINPUT,
+               "grid: length[%d] = %g in %c is missing or not positive", d, c->length[d], axis[d]);
+  }
+  BW_REQUIRE(c->halo == 1 || c->halo == 2, BW_EINPUT, "grid: halo = %d; 1 or 2 layers are possible",
+             c->halo);
+  BW_REQUIRE(c->n[0] >= c->halo, BW_EINPUT, "grid: n[0] = %d cells in x are fewer than halo = %d",
+             c->n[0], c->halo);
+  BW_REQUIRE(c->y_stretch == BW_STRETCH_NONE || c->y_stretch == BW_STRETCH_TANH, BW_EINPUT,
+             "grid: y_stretch = %d is no kind of stretching", (int)c->y_stretch);
+  if (c->y_stretch == BW_STRETCH_NONE) return BW_OK;
+  BW_REQUIRE(isfinite(c->y_stretch_strength) && c->y_stretch_strength > 0 &&
+                 c->y_stretch_strength <= 10,
+             BW_EINPUT, "grid: y_stretch_strength = %g; a number above 0 and up to 10 is needed",
+             c->y_stretch_strength);
+  BW_REQUIRE(!c->periodic[1], BW_EINPUT,
+             "grid: y is periodic and stretched; choose one (the mirror image would not fit)");
+  return BW_OK;
+}
+
+/* y_j = L/2 (1 + tanh(s (2j/n - 1)) / tanh s), finest at both walls, 0 and L exactly; ghosts
+ * mirror about the boundary faces (which is the periodic image too, as that grid is uniform). */
+static bw_status make_y(bw_grid *g, const bw_grid_config *c)
+{
+  const int n = c->n[1];
+  const double length = c->length[1], s = c->y_stretch_strength;
+  BW_TRY(BW_ALLOCATE(&g->y_face, (size_t)n + 1));
+  BW_TRY(BW_ALLOCATE(&g->y_centre_store, (size_t)n + 4));
+  double *face = g->y_face, *centre = g->y_centre_store + 1;
+  for (int j = 0; j <= n; j++) {
+    const double t = 2.0 * j / n - 1.0; /* -1 .. 1 */
+    if (c->y_stretch == BW_STRETCH_NONE)
+      face[j] = length * j / n;
+    else
+      face[j] = 0.5 * length * (1.0 + tanh(s * t) / tanh(s));
+  }
+  face[0] = 0.0;
+  face[n] = length;
+  for (int j = 1; j <= n; j++)
+    centre[j] = 0.5 * (face[j - 1] + face[j]);
+  for (int q = 0; q < 2; q++) {
+    centre[-q] = -centre[1 + q];
+    centre[n + 1 + q] = 2.0 * length - centre[n - q];
+  }
+  g->view.y_face = face;
+  g->view.y_centre = centre;
+  for (int j = 1; j <= n; j++)
+    BW_REQUIRE(face[j] > face[j - 1], BW_EINPUT,
+               "grid: y_stretch_strength = %g makes the cell %d in y empty; use a smaller one", s,
+               j);
+  return BW_OK;
+}
+
+/* Rows start so that i = 1 lies on a cache line: vector loads of the interior do not straddle. */
+static void set_storage(bw_grid_view *v)
+{
+  const ptrdiff_t line = 64 / (ptrdiff_t)sizeof(bw_real), h = v->halo[0];
+  ptrdiff_t row = (v->n[0] + 2 * h + line - 1) / line * line;
+  if (row * (ptrdiff_t)sizeof(bw_real) % 4096 == 0) row += line; /* rows would share cache sets */
+  const ptrdiff_t rows = v->m[1] + 2 * v->halo[1], planes = v->m[2] + 2 * v->halo[2];
+  v->stride[0] = 1;
+  v->stride[1] = row;
+  v->stride[2] = v->n[2] == 1 ? 0 : row * rows;
+  v->origin = line - 1 + row * (v->halo[1] - 1) + v->stride[2] * (v->halo[2] - 1);
+  v->size = (size_t)(line + row * rows * planes);
+}
+
+static void set_view(bw_grid *g, const bw_grid_config *c)
+{
+  bw_grid_view *v = &g->view;
+  const int rank = bw_comm_rank(g->comm);
+  v->coord[0] = 0;
+  v->coord[1] = rank % v->ranks[1];
+  v->coord[2] = rank / v->ranks[1];
+  for (int d = 0; d < 3; d++) {
+    v->n[d] = c->n[d];
+    v->lo[d] = bw_grid__block_start(c->n[d], v->ranks[d], v->coord[d]);
+    v->m[d] = bw_grid__block_start(c->n[d], v->ranks[d], v->coord[d] + 1) - v->lo[d];
+    v->halo[d] = d == 2 && c->n[2] == 1 ? 0 : c->halo;
+    v->periodic[d] = c->periodic[d];
+    v->first[d] = v->coord[d] == 0;
+    v->last[d] = v->coord[d] == v->ranks[d] - 1;
+    v->length[d] = c->length[d];
+    v->spacing[d] = c->length[d] / c->n[d];
+  }
+  v->uniform_y = c->y_stretch == BW_STRETCH_NONE;
+  set_storage(v);
+}
+
+bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_grid **out)
+{
+  bw_grid *g = NULL;
+  *out = NULL;
+  bw_status st = BW_ALLOCATE(&g, 1);
+  if (st == BW_OK) g->mpi = MPI_COMM_NULL;
+  BW_THEN(st, check(config));
+  BW_THEN(st, bw_grid__divide(config, bw_comm_size(comm), g->view.ranks));
+  if (st == BW_OK) {
+    g->comm = comm;
+    set_view(g, config);
+    st = make_y(g, config);
+  }
+  BW_THEN(st, bw_grid__halo_create(g));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK)
+    MPI_Comm_dup(bw_comm_mpi(comm), &g->mpi);
+  else
+    bw_grid_destroy(&g);
+  *out = g;
+  return st;
+}
+
+void bw_grid_destroy(bw_grid **grid)
+{
+  bw_grid *g = *grid;
+  if (g == NULL) return;
+  if (g->mpi != MPI_COMM_NULL) MPI_Comm_free(&g->mpi);
+  bw_grid__halo_destroy(g);
+  bw_release(&g->y_face);
+  bw_release(&g->y_centre_store);
+  bw_release(grid);
+}
+
+const bw_grid_view *bw_grid_look(const bw_grid *grid)
+{
+  return &grid->view;
+}
+
+const bw_comm *bw_grid_comm(const bw_grid *grid)
+{
+  return grid->comm;
+}
+
+bw_status bw_field_create(const bw_grid *grid, bw_real **out)
+{
+  return BW_ALLOCATE(out, grid->view.size);
+}
+
+/* Cell of y with face[cell-1] <= y < face[cell], by bisection: exact for any stretching. */
+static int cell_in_y(const bw_grid_view *v, double y)
+{
+  int below = 0, above = v->n[1];
+  while (above - below > 1) {
+    const int middle = (below + above) / 2;
+    if (v->y_face[middle] <= y)
+      below = middle;
+    else
+      above = middle;
+  }
+  return below + 1;
+}
+
+/* Block of r blocks over n cells that holds the cell (1..n). */
+static int block_of(int n, int r, int cell)
+{
+  int c = (int)((long)(cell - 1) * r / n); /* exact up to one where the blocks are uneven */
+  while (c > 0 && bw_grid__block_start(n, r, c) >= cell)
+    c--;
+  while (c < r - 1 && bw_grid__block_start(n, r, c + 1) < cell)
+    c++;
+  return c;
+}
+
+int bw_grid_owner(const bw_grid *grid, const double x[3])
+{
+  const bw_grid_view *v = &grid->view;
+  int block[3];
+  for (int d = 0; d < 3; d++) {
+    double at = x[d];
+    if (v->periodic[d]) at -= v->length[d] * floor(at / v->length[d]);
+    if (!(at >= 0.0 && at <= v->length[d])) return -1; /* NaN too */
+    int cell = d == 1 ? cell_in_y(v, at) : 1 + (int)(at / v->spacing[d]);
+    if (cell > v->n[d]) cell = v->n[d]; /* the upper boundary belongs to the last cell */
+    block[d] = block_of(v->n[d], v->ranks[d], cell);
+  }
+  return block[1] + v->ranks[1] * block[2];
+}

@@ -1,0 +1,30 @@
+/* grid_internal.h -- shared by the sources of grid only. */
+#pragma once
+#include "bw_grid.h"
+
+/* Fields that travel in one message; more are sent in turns, which bounds the buffers. */
+enum { BW_GRID__BATCH = 4 };
+
+struct bw_grid {
+  const bw_comm *comm;
+  MPI_Comm mpi; /* duplicate of comm's: our messages never meet those of others */
+  bw_grid_view view;
+  double *y_face;         /* [0..n1] */
+  double *y_centre_store; /* [0..n1+3]; view.y_centre points at its entry 1 (index 0) */
+  int neighbour[3][2];    /* rank below and above, MPI_PROC_NULL beyond a physical boundary */
+  bw_real *send[2], *receive[2]; /* one face of BW_GRID__BATCH fields each; NULL when serial */
+};
+
+/* Cells before block c of r blocks over n cells: sizes differ by at most one, larger ones first. */
+static inline int bw_grid__block_start(int n, int r, int c)
+{
+  const int base = n / r, extra = n % r;
+  return c * base + (c < extra ? c : extra);
+}
+
+/* Neighbours and buffers of the halo exchange. Local. */
+bw_status bw_grid__halo_create(bw_grid *grid);
+void bw_grid__halo_destroy(bw_grid *grid);
+
+/* Blocks in y and z (ranks[1], ranks[2] of the view) for `size` ranks. Local. */
+bw_status bw_grid__divide(const bw_grid_config *config, int size, int ranks[3]);

@@ -1,0 +1,145 @@
+/* Halo update and reduce: every halo cell gets its image, the rest stays; reduce is the adjoint.
+ * TEST ranks=1,2,3,4 */
+#include "grid_cases.h"
+
+/* A number for each global cell, ghosts included, distinct and exact also in float. */
+static double code(const int at[3])
+{
+  return 1 + (at[0] + 3) + 20.0 * (at[1] + 3) + 400.0 * (at[2] + 3);
+}
+
+static const double untouched = -7;
+
+/* Where the value of a storage cell comes from: false if the cell belongs to this rank or is a
+ * physical ghost of its block, else image[] is the global cell (or ghost) it mirrors. */
+static bool image_of(const bw_grid_view *v, const int cell[3], int image[3])
+{
+  bool foreign = false;
+  for (int d = 0; d < 3; d++) {
+    image[d] = cell[d] + v->lo[d];
+    const bool outside = cell[d] < 1 || cell[d] > v->m[d];
+    const bool beyond = image[d] < 1 || image[d] > v->n[d];
+    if (outside && (!beyond || v->periodic[d])) foreign = true;
+    if (beyond && v->periodic[d]) image[d] = (image[d] - 1 + v->n[d]) % v->n[d] + 1;
+  }
+  return foreign;
+}
+
+#define FOR_STORAGE(v, c)                                                                          \
+  for (int c[3] = {0, 0, 1 - (v)->halo[2]}; c[2] <= (v)->m[2] + (v)->halo[2]; c[2]++)              \
+    for (c[1] = 1 - (v)->halo[1]; c[1] <= (v)->m[1] + (v)->halo[1]; c[1]++)                        \
+      for (c[0] = 1 - (v)->halo[0]; c[0] <= (v)->m[0] + (v)->halo[0]; c[0]++)
+
+static void check_update(const grid_case *c, int count)
+{
+  bw_grid *grid = grid_case_create(c);
+  const bw_grid_view *v = bw_grid_look(grid);
+  bw_real *f[6];
+  int image[3];
+  for (int q = 0; q < count; q++) {
+    bw_check_ok(bw_field_create(grid, &f[q]));
+    FOR_STORAGE(v, at)
+    f[q][bw_at(v, at[0], at[1], at[2])] =
+        (bw_real)(image_of(v, at, image) ? untouched : code(image) + 10000.0 * q);
+  }
+  bw_halo_update(grid, count, f);
+  for (int q = 0; q < count; q++) {
+    FOR_STORAGE(v, at)
+    {
+      image_of(v, at, image);
+      const double got = (double)f[q][bw_at(v, at[0], at[1], at[2])];
+      ck_assert_msg(got == code(image) + 10000.0 * q,
+                    "field %d, cell %d %d %d (global %d %d %d): %g instead of %g", q, at[0], at[1],
+                    at[2], image[0], image[1], image[2], got, code(image) + 10000.0 * q);
+    }
+    bw_release(&f[q]);
+  }
+  bw_grid_destroy(&grid);
+}
+
+START_TEST(update_fills_every_halo_cell_with_its_image)
+{
+  for (int q = 0; q < GRID_CASES; q++)
+    for (int way = 0; way < GRID_WAYS; way++) {
+      grid_case c = grid_case_number(q);
+      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_update(&c, 1 + q % 6);
+    }
+}
+END_TEST
+
+static double pseudo_random(uint64_t *state)
+{
+  *state = *state * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*state >> 11) / 9007199254740992.0 - 0.5;
+}
+
+/* Random numbers over all storage cells; returns nothing the grid computed. */
+static void randomise(const bw_grid_view *v, uint64_t seed, bw_real *f)
+{
+  FOR_STORAGE(v, at)
+  f[bw_at(v, at[0], at[1], at[2])] = (bw_real)pseudo_random(&seed);
+}
+
+/* <a, b> over all storage cells of all ranks. */
+static double dot(const bw_grid_view *v, const bw_real *a, const bw_real *b)
+{
+  double s = 0;
+  FOR_STORAGE(v, at)
+  s += (double)a[bw_at(v, at[0], at[1], at[2])] * (double)b[bw_at(v, at[0], at[1], at[2])];
+  bw_comm_sum(bw_check_world(), 1, &s);
+  return s;
+}
+
+static void check_adjoint(const grid_case *c)
+{
+  bw_grid *grid = grid_case_create(c);
+  const bw_grid_view *v = bw_grid_look(grid);
+  bw_real *f = NULL, *g = NULL, *uf = NULL, *rg = NULL;
+  bw_check_ok(bw_field_create(grid, &f));
+  bw_check_ok(bw_field_create(grid, &uf));
+  bw_check_ok(bw_field_create(grid, &g));
+  bw_check_ok(bw_field_create(grid, &rg));
+  const uint64_t rank = (uint64_t)bw_comm_rank(bw_check_world());
+  randomise(v, 17 + rank, f), randomise(v, 17 + rank, uf);
+  randomise(v, 991 + rank, g), randomise(v, 991 + rank, rg);
+  bw_halo_update(grid, 1, &uf);
+  bw_halo_reduce(grid, 1, &rg);
+  /* Halo cells of f are overwritten by update: they must carry nothing after reduce. Origin of
+   * the tolerance: about 1000 terms of size 1/4 in sums of size 100, plus round-off in reduce. */
+  const double left = dot(v, uf, g), right = dot(v, f, rg);
+  ck_assert_msg(fabs(left - right) <= 50 * BW_REAL_EPSILON * (1.0 + fabs(left)),
+                "<update f, g> = %.17g, <f, reduce g> = %.17g", left, right);
+  int image[3];
+  FOR_STORAGE(v, at)
+  if (image_of(v, at, image)) ck_assert_double_eq(rg[bw_at(v, at[0], at[1], at[2])], 0);
+  bw_release(&f), bw_release(&g), bw_release(&uf), bw_release(&rg);
+  bw_grid_destroy(&grid);
+}
+
+START_TEST(reduce_is_the_adjoint_of_update)
+{
+  for (int q = 0; q < GRID_CASES; q++)
+    for (int way = 0; way < GRID_WAYS; way++) {
+      grid_case c = grid_case_number(q);
+      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_adjoint(&c);
+    }
+}
+END_TEST
+
+/* Bytes of one field between blocks, counted by hand for z cut in two of a periodic box:
+ * two faces of (n0 + 2h) (m1 + 2h) h cells. */
+START_TEST(volume_counts_messages_only)
+{
+  const grid_case c = {.n = {5, 8, 9}, .periodic = 7, .halo = 2};
+  bw_grid *grid = grid_case_create(&c);
+  const size_t size = (size_t)bw_comm_size(bw_check_world());
+  if (size == 1) ck_assert_uint_eq(bw_halo_volume(grid), 0);
+  if (size == 2) ck_assert_uint_eq(bw_halo_volume(grid), 2u * (9 * 12) * 2u * sizeof(bw_real));
+  bw_grid_destroy(&grid);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(update_fills_every_halo_cell_with_its_image),
+                                      BW_TEST(reduce_is_the_adjoint_of_update),
+                                      BW_TEST(volume_counts_messages_only)};
+BW_CHECK_MAIN("grid.halo", tests)

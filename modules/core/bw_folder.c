@@ -1,0 +1,70 @@
+#include "bw_folder.h"
+#include "bw_memory.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bw_status make_one(const char *path)
+{
+  struct stat info;
+  if (mkdir(path, 0777) == 0) return BW_OK;
+  const int reason = errno;
+  if (stat(path, &info) == 0) {
+    BW_REQUIRE(S_ISDIR(info.st_mode), BW_EIO,
+               "cannot make the folder %s: a file of that name is in the way", path);
+    return BW_OK;
+  }
+  return BW_FAIL(BW_EIO, "cannot make the folder %s: %s", path, strerror(reason));
+}
+
+/* `path` is cut at each '/' in turn and restored. */
+static bw_status make_all(char *path)
+{
+  BW_REQUIRE(path[0] != '\0', BW_EIO, "cannot make a folder without a name");
+  for (char *p = path + 1; *p != '\0'; p++) {
+    if (*p != '/') continue;
+    *p = '\0';
+    const bw_status st = make_one(path);
+    *p = '/';
+    BW_TRY(st);
+  }
+  BW_TRY(make_one(path));
+  BW_REQUIRE(access(path, W_OK | X_OK) == 0, BW_EIO, "cannot write into the folder %s: %s", path,
+             strerror(errno));
+  return BW_OK;
+}
+
+bw_status bw_folder_make(const bw_comm *comm, const char *path)
+{
+  bw_status st = BW_OK;
+  if (bw_comm_rank(comm) == 0) {
+    char *copy = NULL;
+    st = bw_path_join("", path, &copy);
+    BW_THEN(st, make_all(copy));
+    bw_release(&copy);
+  }
+  return bw_comm_agree(comm, st);
+}
+
+bool bw_path_exists(const bw_comm *comm, const char *path)
+{
+  struct stat info;
+  int64_t found = bw_comm_rank(comm) == 0 && stat(path, &info) == 0;
+  bw_comm_max_int(comm, 1, &found);
+  return found != 0;
+}
+
+bw_status bw_path_join(const char *folder, const char *name, char **out)
+{
+  const bool alone = folder[0] == '\0' || name[0] == '/';
+  const char *slash = alone || folder[strlen(folder) - 1] == '/' ? "" : "/";
+  const char *front = alone ? "" : folder;
+  const size_t length = strlen(front) + strlen(slash) + strlen(name) + 1;
+  *out = NULL;
+  BW_TRY(BW_ALLOCATE(out, length));
+  snprintf(*out, length, "%s%s%s", front, slash, name);
+  return BW_OK;
+}

@@ -1,43 +1,54 @@
-/* bw_vtk.h -- VTK files that ParaView opens as they are: .vti, .vtp and .pvd.
+/* bw_vtk.h -- VTK files that ParaView opens as they are: .vti, .vtr, .vtp and .pvd.
  *
  * Self-contained writer: XML with appended raw binary (UInt64 headers, the byte order of this
  * machine), one file per data set written by all ranks together. Values are written as Float32
  * unless said otherwise. Files are written beside their final name and renamed when complete.
- * Errors: BW_EIO with the path and the system's reason; agreed by all ranks. */
+ * Errors: BW_EIO with the path and the system's reason; BW_EINPUT for arguments that make no
+ * file; agreed by all ranks. */
 #pragma once
 #include "bw_grid.h"
 
 typedef struct {
-  const char *name;         /* "pressure" */
-  const bw_real *data[3];   /* one field, or three for a vector (data[1] NULL: scalar). A NULL
-                               data[2] with data[1] set is a zero third component (2D) */
-  bool staggered;           /* data are u, v, w on faces: averaged to the centres on writing */
-  double scale;             /* factor on writing; 0 means 1 */
+  const char *name;       /* "pressure" */
+  const bw_real *data[3]; /* one field, or three for a vector (data[1] NULL: scalar). A NULL
+                             data[2] with data[1] set is a zero third component (2D) */
+  bool staggered;         /* data are u, v, w on faces: averaged to the centres on writing, for
+                             which the lower halo has to be up to date (bw_halo_update) */
+  double scale;           /* factor on writing; 0 means 1 */
 } bw_vtk_field;
 
-/* Cell data of the grid as ImageData (uniform grid) or, when y is stretched, RectilinearGrid
- * (.vtr is then the extension to use). Collective. */
+/* ".vti" for a uniform grid, ".vtr" when y is stretched; static storage. Local. */
+const char *bw_vtk_grid_extension(const bw_grid *grid);
+
+/* Cell data of the grid as ImageData (uniform grid) or, when y is stretched, RectilinearGrid;
+ * `path` has to end in the extension of that kind. Collective. */
 bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
                             const bw_vtk_field field[]) BW_MUST_CHECK;
 
-typedef enum { BW_VTK_FLOAT32, BW_VTK_FLOAT64, BW_VTK_INT32, BW_VTK_INT64, BW_VTK_UINT8 }
-    bw_vtk_type;
+typedef enum {
+  BW_VTK_FLOAT32,
+  BW_VTK_FLOAT64,
+  BW_VTK_INT32,
+  BW_VTK_INT64,
+  BW_VTK_UINT8
+} bw_vtk_type;
 
 typedef struct {
   const char *name;
-  bw_vtk_type type;  /* of the array in memory and in the file */
-  int components;    /* 1 or 3 */
-  const void *data;  /* (n, components) of this rank */
+  bw_vtk_type type; /* of the array in memory and in the file */
+  int components;   /* 1 or 3 */
+  const void *data; /* (n, components) of this rank */
 } bw_vtk_array;
 
-/* Points as PolyData vertices; position (n,3) of this rank [L]. n may differ and be 0.
- * Collective. */
+/* Points as PolyData vertices, in rank order; position (n,3) of this rank [L]. n may differ and
+ * be 0. Collective. */
 bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
                               const double position[], int count,
                               const bw_vtk_array array[]) BW_MUST_CHECK;
 
 /* Add one file to a time series: rewrites `path` (.pvd) with the entries already in it whose time
  * is below `time`, and this one (so that a restarted run continues its series). `file` is
- * relative to the .pvd. Collective. */
+ * relative to the .pvd. A `path` that holds something else is an error, not overwritten.
+ * Collective. */
 bw_status bw_vtk_series_add(const bw_comm *comm, const char *path, double time,
                             const char *file) BW_MUST_CHECK;

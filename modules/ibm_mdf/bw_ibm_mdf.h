@@ -51,11 +51,11 @@ void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[]);
 void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
 typedef struct {
-  double slip_before, slip_after; /* rms |V - U| over markers before and after the last force
-                                     call [L/T]; slip_after costs one interpolation */
-  double total_force[3];          /* sum of QdV over all markers since begin_step [L^4/T^2] */
-  int64_t markers, outside;       /* over all ranks */
-  double imbalance;               /* most markers on a rank over the mean */
+  double slip_before, slip_after;  /* rms |V - U| over markers before and after the last force
+                                      call [L/T]; slip_after costs one interpolation */
+  double total_force[3];           /* sum of QdV over all markers since begin_step [L^4/T^2] */
+  int64_t markers, outside;        /* over all ranks */
+  double imbalance;                /* most markers on a rank over the mean */
   double spacing_min, spacing_max; /* nothing to do with the grid: dV/h^3 range [-] */
 } bw_ibm_mdf_report;
 /* u as in force: used to measure slip_after. Collective. */

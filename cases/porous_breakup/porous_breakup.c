@@ -1,0 +1,125 @@
+/* A porous medium that breaks in a channel flow (POROUS chapters 5 and 6).
+ *
+ * Three phases in one run, each ending in a checkpoint: the medium is held until the flow has
+ * settled; it deforms, with breakage off and settling damping; breakage on.
+ * Run:   mpirun -n 2 build/bin/porous_breakup cases/porous_breakup/porous_breakup.yaml
+ * BUILD modules=coupler */
+#include "bw_stop.h"
+#include "porous_case.h"
+
+#include <math.h>
+
+/* What the phase allows the solid to do. */
+static void enter_phase(porous_run *p)
+{
+  const porous_phase *f = porous_phase_of(p->config, p->phase);
+  bw_coupler_hold_solid(p->coupler, p->phase == PHASE_FLOW);
+  bw_pd_bond_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
+  bw_pd_bond_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
+                         f->settling_rate * p->config->solid.density);
+  if (p->phase == PHASE_BREAKAGE && p->step == 0) p->breakage_start = bw_ns_channel_time(p->fluid);
+}
+
+/* Once per tenth of h/U_b: has the pressure drop stopped changing? */
+static bool settled(porous_run *p, double drop)
+{
+  const porous_config *q = p->config;
+  const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
+  const double elapsed = bw_ns_channel_time(p->fluid) - p->last_drop_time;
+  if (elapsed < 0.1 * t0) return false;
+  const double change = fabs(drop - p->last_drop) / fabs(drop) * t0 / elapsed;
+  p->last_drop = drop;
+  p->last_drop_time = bw_ns_channel_time(p->fluid);
+  return change < porous_phase_of(q, p->phase)->settled;
+}
+
+/* What is due after a step: samples, pictures, checkpoints, the last good state. */
+static bw_status after_step(porous_run *p)
+{
+  const porous_output *out = &p->config->output;
+  if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
+  if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
+  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
+  if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
+    BW_TRY(porous_checkpoint(p, "checkpoint-last.h5", false));
+  return BW_OK;
+}
+
+static bw_status run_phase(porous_run *p)
+{
+  const porous_phase *f = porous_phase_of(p->config, p->phase);
+  bw_progress *line = NULL;
+  bw_progress_config about = bw_progress_config_default();
+  about.step_start = p->step, about.step_end = f->steps;
+  about.time_start = bw_ns_channel_time(p->fluid);
+  about.time_end = about.time_start + (double)(f->steps - p->step) * f->time_step;
+  enter_phase(p);
+  bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
+  for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
+    BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
+    if (st != BW_OK) break;
+    p->step++, p->total_step++;
+    st = after_step(p);
+    const double drop = porous_pressure_drop(p);
+    bw_progress_update(line, p->step, bw_ns_channel_time(p->fluid),
+                       "%s, pressure drop %.2f p0, "
+                       "%lld bond ends broken",
+                       porous_phase_name[p->phase], drop, (long long)bw_pd_bond_events(p->solid));
+    done = p->step >= f->steps || settled(p, drop);
+    p->stopped = bw_stop_requested(p->comm);
+  }
+  bw_progress_finish(&line);
+  return st;
+}
+
+static bw_status end_phase(porous_run *p)
+{
+  char name[64];
+  if (p->stopped) {
+    bw_log_warn(bw_case_log(p->run), "asked to stop: continue with --restart checkpoint-last.h5");
+    return porous_checkpoint(p, "checkpoint-last.h5", false);
+  }
+  BW_TRY(porous_sample(p));
+  BW_TRY(porous_picture(p));
+  snprintf(name, sizeof name, "checkpoint-%s.h5", porous_phase_name[p->phase]);
+  p->phase++;
+  p->step = 0;
+  return porous_checkpoint(p, name, false);
+}
+
+static bw_status simulate(porous_run *p)
+{
+  const bw_case_args *args = bw_case_args_of(p->run);
+  BW_TRY(porous_build(p));
+  porous_describe(p);
+  if (args->check) return BW_OK;
+  if (args->restart != NULL) BW_TRY(porous_restart(p, args->restart));
+  BW_TRY(porous_open_history(p, args->restart != NULL ? bw_ns_channel_time(p->fluid) : NAN));
+  bw_status st = porous_keep(p);
+  bw_stop_install();
+  while (st == BW_OK && p->phase < PHASE_COUNT && !p->stopped) {
+    st = run_phase(p);
+    BW_THEN(st, end_phase(p));
+  }
+  if (st == BW_EDIVERGED) st = porous_save_last_good(p, st);
+  BW_THEN(st, porous_fragments_csv(p));
+  BW_THEN(st, bw_timer_report(bw_coupler_timer(p->coupler), p->comm, bw_case_log(p->run)));
+  return st;
+}
+
+int main(int argc, char **argv)
+{
+  porous_config config = porous_config_default();
+  const bw_case_about about = {"porous_breakup", "a porous medium that breaks in a channel flow",
+                               porous_fields, sizeof config};
+  bw_comm *world = NULL;
+  porous_run p = {.config = &config};
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &p.run));
+  p.comm = world;
+  if (st == BW_OK && !bw_case_args_of(p.run)->stop) st = simulate(&p);
+  if (p.history != NULL) BW_THEN(st, bw_history_close(world, &p.history));
+  porous_destroy(&p);
+  st = bw_case_end(world, &p.run, st);
+  return bw_finish(&world, st);
+}

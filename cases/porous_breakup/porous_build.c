@@ -1,0 +1,182 @@
+#include "bw_memory.h"
+#include "porous_case.h"
+
+#include <math.h>
+#include <string.h>
+
+static bw_status check_combinations(const porous_config *q)
+{
+  const porous_domain *d = &q->domain;
+  const double h = d->length[1] / d->cells[1];
+  for (int k = 0; k < 3; k += 2)
+    BW_REQUIRE(fabs(d->length[k] / d->cells[k] / h - 1.0) < 1e-9, BW_EINPUT,
+               "domain.cells[%d] = %d: cells must be cubes, %g would give the spacing %g m of y", k,
+               d->cells[k], d->length[k] / h, h);
+  BW_REQUIRE(q->medium.front + q->medium.length < d->length[0], BW_EINPUT,
+             "medium.front + medium.length = %g m reaches the outflow at domain.length[0] = %g m",
+             q->medium.front + q->medium.length, d->length[0]);
+  BW_REQUIRE(q->medium.pitch * (1.0 - 1e-9) <= d->length[2], BW_EINPUT,
+             "medium.pitch = %g m is larger than the span domain.length[2] = %g m", q->medium.pitch,
+             d->length[2]);
+  const double pitches = d->length[2] / q->medium.pitch;
+  BW_REQUIRE(fabs(pitches - round(pitches)) < 1e-9 * pitches, BW_EINPUT,
+             "medium.pitch = %g m: the periodic span %g m must hold a whole number of pitches (%g)",
+             q->medium.pitch, d->length[2], pitches);
+  return BW_OK;
+}
+
+static bw_status build_fluid(porous_run *p)
+{
+  const porous_config *q = p->config;
+  bw_grid_config grid = bw_grid_config_default();
+  memcpy(grid.n, q->domain.cells, sizeof grid.n);
+  memcpy(grid.length, q->domain.length, sizeof grid.length);
+  grid.periodic[2] = true;
+  grid.halo = 2;
+  BW_TRY(bw_grid_create(p->comm, &grid, &p->grid));
+
+  bw_ns_channel_config flow = bw_ns_channel_config_default();
+  flow.nu = q->fluid.viscosity;
+  flow.side[0][0] = (bw_ns_side){.kind = BW_SIDE_INFLOW,
+                                 .profile = BW_PROFILE_POISEUILLE,
+                                 .bulk_velocity = q->fluid.bulk_velocity};
+  flow.side[0][1].kind = BW_SIDE_OUTFLOW;
+  flow.side[2][0].kind = flow.side[2][1].kind = BW_SIDE_PERIODIC;
+  return bw_ns_channel_create(p->grid, &flow, &p->fluid);
+}
+
+/* Box minus pores, on a slab under the lower wall that holds it. */
+static bw_status build_solid(porous_run *p)
+{
+  const porous_config *q = p->config;
+  const porous_medium *m = &q->medium;
+  const double ds = q->domain.length[1] / q->domain.cells[1], under = m->clamped_layers * ds;
+  const double end = m->front + m->length;
+  bw_shape body[3] = {
+      {.kind = BW_SHAPE_BOX, .lower = {m->front}, .upper = {end}},
+      {.kind = (bw_shape_kind)m->lattice,
+       .remove = true,
+       .radius = m->radius_over_pitch * m->pitch,
+       .pitch = m->pitch,
+       .centre = {m->front}},
+      {.kind = BW_SHAPE_BOX,
+       .lower = {m->front, -under},
+       .upper = {end},
+       .particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE},
+  };
+  for (int d = 1; d < 3; d++)
+    body[0].upper[d] = q->domain.length[d];
+  body[2].upper[2] = q->domain.length[2];
+  for (int d = 0; d < 3; d++)
+    body[1].centre[d] += m->offset[d] * m->pitch;
+
+  bw_pd_bond_config solid = bw_pd_bond_config_default();
+  solid.ds = ds;
+  solid.horizon_ratio = q->solid.horizon_ratio;
+  solid.rho = q->solid.density;
+  solid.E = q->solid.young_modulus;
+  solid.G0 = q->solid.fracture_energy;
+  solid.surface_correction = (bw_pd_surface_correction)q->solid.surface_correction;
+  solid.integrator = (bw_pd_integrator)q->solid.integrator;
+  solid.damping_pair = q->solid.damping_pair;
+  solid.contact = q->solid.contact;
+  solid.period[2] = q->domain.length[2];
+  int64_t n = 0;
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  bw_status st = bw_pd_shape_fill(m->clamped_layers > 0 ? 3 : 2, body, ds, solid.origin, false, &n,
+                                  &site, &kind);
+  BW_THEN(st, bw_pd_bond_create(p->comm, &solid, n, site, kind, &p->solid));
+  bw_release(&site);
+  bw_release(&kind);
+  return st;
+}
+
+static bw_status build_coupler(porous_run *p)
+{
+  const porous_config *q = p->config;
+  bw_coupler_config c = bw_coupler_config_default();
+  c.rho = q->fluid.density;
+  c.nu = q->fluid.viscosity;
+  c.kernel = (bw_kernel_delta_id)q->coupling.kernel;
+  c.n_iter = q->coupling.iterations;
+  c.retraction = q->coupling.retraction;
+  c.probe_length = q->coupling.probe_length;
+  c.solid_safety = q->coupling.solid_safety;
+  c.walled[1][0] = c.walled[1][1] = true;
+  return bw_coupler_create(&c, p->fluid, p->solid, &p->coupler);
+}
+
+static void uniform_stream(const double x[3], double t, void *context, double u[3])
+{
+  const porous_config *q = context;
+  (void)x, (void)t;
+  u[0] = q->fluid.bulk_velocity;
+  u[1] = u[2] = 0.0;
+}
+
+/* Momentum balance over the whole height and span, two cells clear of the medium. */
+static bw_status watch_medium(porous_run *p)
+{
+  const porous_config *q = p->config;
+  const double h = q->domain.length[0] / q->domain.cells[0];
+  const int first = (int)floor(q->medium.front / h + 0.5), clear = 2;
+  const int last = (int)floor((q->medium.front + q->medium.length) / h + 0.5);
+  const int n = q->domain.cells[0];
+  const int lo[3] = {first - clear > 0 ? first - clear : 0, 0, 0};
+  const int hi[3] = {last + clear < n ? last + clear : n, q->domain.cells[1], q->domain.cells[2]};
+  return bw_ns_channel_watch_box(p->fluid, lo, hi);
+}
+
+bw_status porous_build(porous_run *p)
+{
+  BW_TRY(check_combinations(p->config));
+  BW_TRY(build_fluid(p));
+  BW_TRY(build_solid(p));
+  BW_TRY(build_coupler(p));
+  BW_TRY(watch_medium(p));
+  return bw_ns_channel_set_velocity(p->fluid, uniform_stream, (void *)(uintptr_t)p->config, 0.0);
+}
+
+void porous_destroy(porous_run *p)
+{
+  bw_coupler_destroy(&p->coupler);
+  bw_pd_bond_destroy(&p->solid);
+  bw_ns_channel_destroy(&p->fluid);
+  bw_grid_destroy(&p->grid);
+}
+
+void porous_describe(porous_run *p)
+{
+  const porous_config *q = p->config;
+  bw_log *log = bw_case_log(p->run);
+  const double h = q->domain.length[1], U = q->fluid.bulk_velocity, rho = q->fluid.density;
+  const double clamped = (double)q->medium.clamped_layers *
+                         round(q->medium.length / q->domain.length[1] * q->domain.cells[1]) *
+                         q->domain.cells[2];
+  const int64_t total = bw_pd_bond_total(p->solid);
+  bw_log_info(log, "channel    %d x %d x %d cells, spacing %g m, %d ranks", q->domain.cells[0],
+              q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
+              bw_comm_size(p->comm));
+  bw_log_info(log,
+              "medium     %lld particles in the channel (POROUS, 128 x 64 x 64: 54662), "
+              "%lld with the clamped layer; horizon/spacing %g",
+              (long long)(total - (int64_t)clamped), (long long)total, q->solid.horizon_ratio);
+  bw_log_info(log,
+              "groups     Re_b = %g, E* = E/(rho U_b^2) = %g, density ratio %g, Cauchy number %g, "
+              "s0 = %.4e",
+              U * h / q->fluid.viscosity, q->solid.young_modulus / (rho * U * U),
+              q->solid.density / rho, rho * U * U / q->solid.young_modulus,
+              bw_pd_bond_critical_stretch(p->solid));
+  const double fluid_max = bw_ns_channel_dt_max(p->fluid), solid_max = bw_pd_bond_dt_max(p->solid);
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const porous_phase *f = porous_phase_of(q, k);
+    bw_log_info(log,
+                "phase %d    %-11s %d steps of %g s: %.2f of the fluid's limit, %s%d solid "
+                "sub-steps each",
+                k + 1, porous_phase_name[k], f->steps, f->time_step, f->time_step / fluid_max,
+                k == PHASE_FLOW ? "no solid; else " : "",
+                bw_coupler_substeps(p->coupler, f->time_step));
+  }
+  bw_log_info(log, "solid      stable to %.4g s per sub-step", solid_max);
+}

@@ -1,0 +1,121 @@
+/* porous_case.h -- a porous medium that breaks in a channel flow: what its sources share. */
+#pragma once
+#include "bw_case.h"
+#include "bw_coupler.h"
+#include "bw_history.h"
+#include "bw_pd_shape.h"
+
+/* ---- what the YAML file says (tables in porous_config.c) ---- */
+typedef struct {
+  double length[3];
+  int cells[3];
+} porous_domain;
+typedef struct {
+  double density, viscosity, bulk_velocity;
+} porous_fluid;
+typedef struct {
+  double density, young_modulus, fracture_energy, horizon_ratio, damping_pair;
+  int surface_correction, integrator;
+  bool contact;
+} porous_solid;
+typedef struct {
+  int lattice;
+  double front, length, pitch, radius_over_pitch, offset[3];
+  int clamped_layers;
+} porous_medium;
+typedef struct {
+  int kernel, iterations;
+  double retraction, probe_length, solid_safety;
+} porous_coupling;
+typedef struct {
+  double time_step, settled, settling_rate;
+  int steps;
+} porous_phase;
+typedef struct {
+  int sample_every, picture_every, checkpoint_every, keep_every;
+} porous_output;
+
+enum { PHASE_FLOW, PHASE_SOLID, PHASE_BREAKAGE, PHASE_COUNT };
+typedef struct {
+  porous_domain domain;
+  porous_fluid fluid;
+  porous_solid solid;
+  porous_medium medium;
+  porous_coupling coupling;
+  porous_phase flow, deformation, breakage;
+  porous_output output;
+} porous_config;
+
+extern const bw_config_field porous_fields[];
+porous_config porous_config_default(void);
+const porous_phase *porous_phase_of(const porous_config *q, int phase);
+extern const char *const porous_phase_name[PHASE_COUNT];
+
+/* ---- the objects of a run (porous_build.c) ---- */
+typedef struct {
+  const porous_config *config;
+  bw_case *run;
+  const bw_comm *comm;
+  bw_grid *grid;
+  bw_ns_channel *fluid;
+  bw_pd_bond *solid;
+  bw_coupler *coupler;
+  bw_history *history;
+  int phase;                        /* PHASE_... */
+  int64_t step;                     /* steps done in this phase */
+  int64_t total_step;               /* since the start of the flow */
+  double breakage_start;            /* time at which breakage was enabled [s] */
+  double last_drop, last_drop_time; /* pressure drop at the previous settling check */
+  double kept_progress[6];          /* what a checkpoint says of the run, of the last good state */
+  bool stopped;                     /* a signal asked for an end in good order */
+} porous_run;
+
+bw_status porous_build(porous_run *p) BW_MUST_CHECK;
+void porous_destroy(porous_run *p);
+/* Print sizes, dimensionless groups and the step against each of its limits. Collective. */
+void porous_describe(porous_run *p);
+
+/* ---- what is measured (porous_measure.c) ---- */
+enum {
+  COL_TIME,
+  COL_PHASE,
+  COL_DROP,
+  COL_POROSITY,
+  COL_PERMEABILITY,
+  COL_BROKEN,
+  COL_BROKEN_FRACTION,
+  COL_DAMAGE_MEAN,
+  COL_DAMAGE_MAX,
+  COL_FRAGMENTS,
+  COL_DETACHED,
+  COL_LARGEST,
+  COL_FRAGMENT_SPEED,
+  COL_KINETIC,
+  COL_ELASTIC,
+  COL_DAMPING,
+  COL_FRACTURE,
+  COL_EXTERNAL,
+  COL_REACTION,
+  COL_PROBE = COL_REACTION + 3,
+  COL_BOX = COL_PROBE + 3,
+  COL_SLIP = COL_BOX + 3,
+  COL_BLOCKED,
+  COL_DISPLACEMENT,
+  COL_COUNT
+};
+extern const char *const porous_columns[COL_COUNT];
+bw_status porous_measure(porous_run *p, double row[COL_COUNT]) BW_MUST_CHECK;
+double porous_pressure_drop(porous_run *p); /* over rho U_b^2 [-]. Collective. */
+
+/* ---- files (porous_output.c) ---- */
+bw_status porous_open_history(porous_run *p, double restart_time) BW_MUST_CHECK;
+bw_status porous_sample(porous_run *p) BW_MUST_CHECK;
+bw_status porous_picture(porous_run *p) BW_MUST_CHECK;
+/* `kept`: the last good state instead of the present one. */
+bw_status porous_checkpoint(porous_run *p, const char *name, bool kept) BW_MUST_CHECK;
+/* Remember the present state as good. */
+bw_status porous_keep(porous_run *p) BW_MUST_CHECK;
+/* After a divergence: checkpoint-good.h5, and the cause again with its remedy. Returns `cause`. */
+bw_status porous_save_last_good(porous_run *p, bw_status cause) BW_MUST_CHECK;
+bw_status porous_restart(porous_run *p, const char *path) BW_MUST_CHECK;
+bw_status porous_fragments_csv(porous_run *p) BW_MUST_CHECK;

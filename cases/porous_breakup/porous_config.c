@@ -1,0 +1,136 @@
+#include "porous_case.h"
+
+#include <limits.h>
+#include <math.h>
+
+#define V BW_CONFIG_VALUE
+static const bw_config_field domain_fields[] = {
+    V(porous_domain, length, BW_REQUIRED, BW_ABOVE(0), "m", "box: stream, wall-normal, span"),
+    V(porous_domain, cells, BW_REQUIRED, BW_AT_LEAST(4), "", "cells in x, y, z (cubic cells)"),
+    BW_CONFIG_END};
+
+static const bw_config_field fluid_fields[] = {
+    V(porous_fluid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
+    V(porous_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
+    V(porous_fluid, bulk_velocity, BW_REQUIRED, BW_ABOVE(0), "m/s",
+      "mean of the Poiseuille inflow"),
+    BW_CONFIG_END};
+
+static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
+                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
+                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
+                                                  {NULL, 0, NULL}};
+static const bw_config_word integrator_words[] = {
+    {"verlet", BW_PD_VERLET, NULL}, {"rk3", BW_PD_RK3, NULL}, {NULL, 0, NULL}};
+static const bw_config_field solid_fields[] = {
+    V(porous_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
+    V(porous_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
+    V(porous_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
+    V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
+    V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "pairwise damping k_d"),
+    BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, correction_words,
+                   "stiffness of bonds near surfaces"),
+    BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, integrator_words, "of the solid"),
+    V(porous_solid, contact, BW_OPTIONAL, BW_ANY, "", "repulsion between fragments"),
+    BW_CONFIG_END};
+
+static const bw_config_word lattice_words[] = {
+    {"pores_sc", BW_SHAPE_PORES_SC, "simple cubic"},
+    {"pores_bcc", BW_SHAPE_PORES_BCC, "body-centred cubic"},
+    {"pores_fcc", BW_SHAPE_PORES_FCC, "face-centred cubic"},
+    {NULL, 0, NULL}};
+static const bw_config_field medium_fields[] = {
+    V(porous_medium, front, BW_REQUIRED, BW_ABOVE(0), "m", "distance of the front from the inflow"),
+    V(porous_medium, length, BW_REQUIRED, BW_ABOVE(0), "m", "length along the stream"),
+    BW_CONFIG_WORD(porous_medium, lattice, BW_OPTIONAL, lattice_words, "where the pores are"),
+    V(porous_medium, pitch, BW_REQUIRED, BW_ABOVE(0), "m", "of the pore lattice"),
+    V(porous_medium, radius_over_pitch, BW_REQUIRED, BW_BETWEEN(0, 1), "", "of the pores"),
+    V(porous_medium, offset, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "of the pores, in pitches"),
+    V(porous_medium, clamped_layers, BW_OPTIONAL, BW_FROM_TO(0, 16), "",
+      "particles under the lower wall that hold the medium"),
+    BW_CONFIG_END};
+
+static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
+                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
+                                              {"hat2", BW_KERNEL_HAT2, NULL},
+                                              {NULL, 0, NULL}};
+static const bw_config_field coupling_fields[] = {
+    BW_CONFIG_WORD(porous_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
+    V(porous_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
+    V(porous_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
+      "of the markers, inwards from the nominal surface"),
+    V(porous_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
+    V(porous_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "solid sub-step over its stability limit"),
+    BW_CONFIG_END};
+
+static const bw_config_field phase_fields[] = {
+    V(porous_phase, time_step, BW_REQUIRED, BW_ABOVE(0), "s", "of the fluid; the solid sub-cycles"),
+    V(porous_phase, steps, BW_REQUIRED, BW_AT_LEAST(0), "", "at most"),
+    V(porous_phase, settled, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "end early when the pressure drop changes by less than this fraction per h/U_b; 0: never"),
+    V(porous_phase, settling_rate, BW_OPTIONAL, BW_AT_LEAST(0), "1/s",
+      "absolute damping of the solid over its density"),
+    BW_CONFIG_END};
+
+static const bw_config_field output_fields[] = {
+    V(porous_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "rows of history.csv"),
+    V(porous_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+      "VTK files; 0: at the ends"),
+    V(porous_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+      "checkpoint-last.h5; 0: at the ends of phases"),
+    V(porous_output, keep_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+      "remember a good state, written if the run diverges"),
+    BW_CONFIG_END};
+
+const bw_config_field porous_fields[] = {
+    BW_CONFIG_MAP(porous_config, domain, domain_fields, "the channel"),
+    BW_CONFIG_MAP(porous_config, fluid, fluid_fields, "the fluid"),
+    BW_CONFIG_MAP(porous_config, solid, solid_fields, "the material"),
+    BW_CONFIG_MAP(porous_config, medium, medium_fields, "the porous body"),
+    BW_CONFIG_MAP(porous_config, coupling, coupling_fields, "fluid and solid"),
+    BW_CONFIG_MAP(porous_config, flow, phase_fields, "phase 1: rigid medium, the flow settles"),
+    BW_CONFIG_MAP(porous_config, deformation, phase_fields, "phase 2: elastic, nothing breaks"),
+    BW_CONFIG_MAP(porous_config, breakage, phase_fields, "phase 3: bonds may break"),
+    BW_CONFIG_MAP(porous_config, output, output_fields, "files"),
+    BW_CONFIG_END};
+#undef V
+
+porous_config porous_config_default(void)
+{
+  const porous_phase phase = {.time_step = NAN, .steps = INT_MIN};
+  const int unset = INT_MIN;
+  return (porous_config){.domain = {.length = {NAN, NAN, NAN}, .cells = {unset, unset, unset}},
+                         .fluid = {.density = NAN, .viscosity = NAN, .bulk_velocity = NAN},
+                         .solid = {.density = NAN,
+                                   .young_modulus = NAN,
+                                   .fracture_energy = NAN,
+                                   .horizon_ratio = 3.0,
+                                   .surface_correction = BW_PD_SURFACE_VOLUME,
+                                   .integrator = BW_PD_VERLET,
+                                   .contact = true},
+                         .medium = {.lattice = BW_SHAPE_PORES_SC,
+                                    .front = NAN,
+                                    .length = NAN,
+                                    .pitch = NAN,
+                                    .radius_over_pitch = NAN,
+                                    .offset = {0.5, 0.5, 0.5},
+                                    .clamped_layers = 3},
+                         .coupling = {.kernel = BW_KERNEL_ROMA3,
+                                      .iterations = 2,
+                                      .retraction = 0.5,
+                                      .probe_length = 2.0,
+                                      .solid_safety = 0.8},
+                         .flow = phase,
+                         .deformation = phase,
+                         .breakage = phase,
+                         .output = {.sample_every = 10, .keep_every = 50}};
+}
+
+const char *const porous_phase_name[PHASE_COUNT] = {"flow", "deformation", "breakage"};
+
+const porous_phase *porous_phase_of(const porous_config *q, int phase)
+{
+  const porous_phase *const all[PHASE_COUNT] = {&q->flow, &q->deformation, &q->breakage};
+  return all[phase];
+}

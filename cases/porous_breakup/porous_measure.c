@@ -1,0 +1,163 @@
+#include "bw_memory.h"
+#include "porous_case.h"
+
+#include <math.h>
+
+const char *const porous_columns[COL_COUNT] = {
+    [COL_TIME] = "time[s]",
+    [COL_PHASE] = "phase[-]",
+    [COL_DROP] = "pressure_drop_over_p0[-]",
+    [COL_POROSITY] = "porosity[-]",
+    [COL_PERMEABILITY] = "permeability[m2]",
+    [COL_BROKEN] = "broken_bonds[-]",
+    [COL_BROKEN_FRACTION] = "broken_bond_fraction[-]",
+    [COL_DAMAGE_MEAN] = "damage_mean[-]",
+    [COL_DAMAGE_MAX] = "damage_max[-]",
+    [COL_FRAGMENTS] = "fragments[-]",
+    [COL_DETACHED] = "detached_mass_fraction[-]",
+    [COL_LARGEST] = "largest_fragment[particles]",
+    [COL_FRAGMENT_SPEED] = "fragment_speed_max_over_U_b[-]",
+    [COL_KINETIC] = "energy_kinetic[J]",
+    [COL_ELASTIC] = "energy_elastic[J]",
+    [COL_DAMPING] = "dissipated_by_damping[J]",
+    [COL_FRACTURE] = "dissipated_by_fracture[J]",
+    [COL_EXTERNAL] = "work_of_fluid[J]",
+    [COL_REACTION] = "force_reaction_x[N]",
+    [COL_REACTION + 1] = "force_reaction_y[N]",
+    [COL_REACTION + 2] = "force_reaction_z[N]",
+    [COL_PROBE] = "force_probe_x[N]",
+    [COL_PROBE + 1] = "force_probe_y[N]",
+    [COL_PROBE + 2] = "force_probe_z[N]",
+    [COL_BOX] = "force_control_volume_x[N]",
+    [COL_BOX + 1] = "force_control_volume_y[N]",
+    [COL_BOX + 2] = "force_control_volume_z[N]",
+    [COL_SLIP] = "slip_rms_over_U_b[-]",
+    [COL_BLOCKED] = "probes_blocked[-]",
+    [COL_DISPLACEMENT] = "displacement_max_over_h[-]",
+};
+
+/* Mean of p/rho over the plane of cells i. */
+static double plane_mean(porous_run *p, int i)
+{
+  const bw_grid_view *g = bw_grid_look(p->grid);
+  const bw_real *pressure = bw_ns_channel_pressure(p->fluid);
+  double sum = 0.0;
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++)
+      sum += pressure[bw_at(g, i, j, k)];
+  bw_comm_sum(p->comm, 1, &sum);
+  return sum / ((double)g->n[1] * g->n[2]);
+}
+
+/* From the last cells before the front face to the first cells behind the back face. */
+double porous_pressure_drop(porous_run *p)
+{
+  const porous_config *q = p->config;
+  const double h = q->domain.length[0] / q->domain.cells[0], U = q->fluid.bulk_velocity;
+  const int front = (int)floor(q->medium.front / h + 0.5);
+  const int back = (int)floor((q->medium.front + q->medium.length) / h + 0.5) + 1;
+  return (plane_mean(p, front) - plane_mean(p, back)) / (U * U);
+}
+
+/* Void share of the medium's first box: its volume less the particles that are in it now. */
+static void measure_particles(porous_run *p, const double X[], const double X0[],
+                              const double damage[], double row[])
+{
+  const porous_config *q = p->config;
+  const double *L = q->domain.length, volume = bw_pd_bond_volume(p->solid);
+  const double lower = q->medium.front, upper = lower + q->medium.length;
+  double sums[3] = {0, 0, 0}, most[2] = {0, 0};
+  for (size_t i = 0; i < bw_pd_bond_count(p->solid); i++) {
+    const double *x = X + 3 * i;
+    double d2 = 0.0;
+    for (int d = 0; d < 3; d++)
+      d2 += (x[d] - X0[3 * i + d]) * (x[d] - X0[3 * i + d]);
+    most[1] = fmax(most[1], d2);
+    if (X0[3 * i + 1] < 0.0) continue; /* the clamped layer is not part of the medium */
+    sums[0] += x[0] > lower && x[0] < upper && x[1] > 0.0 && x[1] < L[1];
+    sums[1] += damage[i];
+    sums[2] += 1.0;
+    most[0] = fmax(most[0], damage[i]);
+  }
+  bw_comm_sum(p->comm, 3, sums);
+  bw_comm_max(p->comm, 2, most);
+  row[COL_POROSITY] = 1.0 - sums[0] * volume / (q->medium.length * L[1] * L[2]);
+  row[COL_DAMAGE_MEAN] = sums[1] / sums[2];
+  row[COL_DAMAGE_MAX] = most[0];
+  row[COL_DISPLACEMENT] = sqrt(most[1]) / L[1];
+}
+
+/* Pieces other than the one that the clamped layer holds (the largest). */
+static bw_status measure_fragments(porous_run *p, double row[])
+{
+  bw_pd_fragment *piece = NULL;
+  size_t n = 0;
+  BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece));
+  double detached = 0.0, fastest = 0.0;
+  for (size_t q = 1; q < n; q++) {
+    const double *v = piece[q].velocity;
+    detached += (double)piece[q].particles;
+    fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  }
+  row[COL_FRAGMENTS] = n > 0 ? (double)(n - 1) : 0.0;
+  row[COL_DETACHED] = detached / (double)bw_pd_bond_total(p->solid);
+  row[COL_LARGEST] = n > 1 ? (double)piece[1].particles : 0.0;
+  row[COL_FRAGMENT_SPEED] = fastest / p->config->fluid.bulk_velocity;
+  bw_release(&piece);
+  return BW_OK;
+}
+
+static bw_status measure_solid(porous_run *p, double row[])
+{
+  const size_t n = bw_pd_bond_count(p->solid);
+  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  double *X = NULL, *X0 = NULL, *damage = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&damage, n));
+  st = bw_comm_agree(p->comm, st);
+  if (st == BW_OK) {
+    bw_pd_bond_get_position(p->solid, X);
+    bw_pd_bond_get_reference(p->solid, X0);
+    bw_pd_bond_get_damage(p->solid, damage);
+    measure_particles(p, X, X0, damage, row);
+    row[COL_BROKEN] = (double)e.broken;
+    row[COL_BROKEN_FRACTION] = (double)e.broken / (double)e.bonds;
+    row[COL_KINETIC] = e.kinetic;
+    row[COL_ELASTIC] = e.elastic;
+    row[COL_DAMPING] = e.damping;
+    row[COL_FRACTURE] = e.fracture;
+    row[COL_EXTERNAL] = e.external;
+    st = measure_fragments(p, row);
+  }
+  bw_release(&X);
+  bw_release(&X0);
+  bw_release(&damage);
+  return st;
+}
+
+/* Darcy, POROUS 2.4 and 6.2: k = Q L mu / (S dp). */
+static double permeability(const porous_config *q, double drop)
+{
+  const double U = q->fluid.bulk_velocity, p0 = q->fluid.density * U * U;
+  const double mu = q->fluid.density * q->fluid.viscosity;
+  return U * q->medium.length * mu / (drop * p0); /* Q/S = U_b: the medium fills the section */
+}
+
+bw_status porous_measure(porous_run *p, double row[COL_COUNT])
+{
+  bw_coupler_report r;
+  BW_TRY(bw_coupler_measure(p->coupler, &r));
+  row[COL_TIME] = bw_ns_channel_time(p->fluid);
+  row[COL_PHASE] = p->phase + 1;
+  row[COL_DROP] = porous_pressure_drop(p);
+  row[COL_PERMEABILITY] = permeability(p->config, row[COL_DROP]);
+  row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
+  row[COL_BLOCKED] = (double)r.probes_blocked;
+  for (int d = 0; d < 3; d++) {
+    row[COL_REACTION + d] = r.force_reaction[d];
+    row[COL_PROBE + d] = r.force_probe[d];
+    row[COL_BOX + d] = r.force_control_volume[d];
+  }
+  return measure_solid(p, row);
+}

@@ -1,0 +1,187 @@
+#include "bw_memory.h"
+#include "bw_vtk.h"
+#include "porous_case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bw_status porous_open_history(porous_run *p, double restart_time)
+{
+  char *path = NULL;
+  bw_status st = bw_case_path(p->run, "history.csv", &path);
+  BW_THEN(st,
+          bw_history_create(p->comm, path, COL_COUNT, porous_columns, restart_time, &p->history));
+  bw_release(&path);
+  return st;
+}
+
+bw_status porous_sample(porous_run *p)
+{
+  double row[COL_COUNT] = {0};
+  BW_TRY(porous_measure(p, row));
+  bw_history_append(p->history, row);
+  return BW_OK;
+}
+
+static bw_status write_fluid(porous_run *p, const char *path)
+{
+  bw_real *const *u = bw_ns_channel_velocity(p->fluid);
+  const bw_vtk_field fields[] = {
+      {.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
+      {.name = "pressure",
+       .data = {bw_ns_channel_pressure(p->fluid)},
+       .scale = p->config->fluid.density},
+  };
+  return bw_vtk_write_grid(p->grid, path, 2, fields);
+}
+
+static bw_status write_solid(porous_run *p, const char *path)
+{
+  const size_t n = bw_pd_bond_count(p->solid);
+  double *X = NULL, *V = NULL, *U = NULL, *damage = NULL;
+  int64_t *piece = NULL;
+  bw_pd_fragment *fragments = NULL;
+  size_t n_fragments = 0;
+  bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&U, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&damage, n));
+  BW_THEN(st, BW_ALLOCATE(&piece, n));
+  st = bw_comm_agree(p->comm, st);
+  BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), piece, &n_fragments,
+                                        &fragments));
+  if (st == BW_OK) {
+    bw_pd_bond_get_position(p->solid, X);
+    bw_pd_bond_get_velocity(p->solid, V);
+    bw_pd_bond_get_reference(p->solid, U);
+    bw_pd_bond_get_damage(p->solid, damage);
+    for (size_t i = 0; i < 3 * n; i++)
+      U[i] = X[i] - U[i];
+    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
+                                   {"velocity", BW_VTK_FLOAT64, 3, V},
+                                   {"displacement", BW_VTK_FLOAT64, 3, U},
+                                   {"fragment", BW_VTK_INT64, 1, piece},
+                                   {"id", BW_VTK_INT64, 1, bw_pd_bond_id(p->solid)}};
+    st = bw_vtk_write_points(p->comm, path, n, X, 5, arrays);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&U);
+  bw_release(&damage);
+  bw_release(&piece);
+  bw_release(&fragments);
+  return st;
+}
+
+/* One VTK file of a series `what` at the present time, e.g. fluid-00001200.vti in fluid.pvd. */
+static bw_status add_to_series(porous_run *p, const char *what, const char *extension,
+                               bw_status (*write)(porous_run *, const char *))
+{
+  char name[64], series[64], *path = NULL, *series_path = NULL;
+  snprintf(name, sizeof name, "%s-%08lld.%s", what, (long long)p->total_step, extension);
+  snprintf(series, sizeof series, "%s.pvd", what);
+  bw_status st = bw_case_path(p->run, name, &path);
+  BW_THEN(st, bw_case_path(p->run, series, &series_path));
+  BW_THEN(st, write(p, path));
+  BW_THEN(st, bw_vtk_series_add(p->comm, series_path, bw_ns_channel_time(p->fluid), name));
+  bw_release(&path);
+  bw_release(&series_path);
+  return st;
+}
+
+bw_status porous_picture(porous_run *p)
+{
+  BW_TRY(add_to_series(p, "fluid", "vti", write_fluid));
+  return add_to_series(p, "solid", "vtp", write_solid);
+}
+
+enum { N_PROGRESS = 6 };
+
+static void progress_of(const porous_run *p, double progress[N_PROGRESS])
+{
+  const double now[N_PROGRESS] = {p->phase,          (double)p->step, (double)p->total_step,
+                                  p->breakage_start, p->last_drop,    p->last_drop_time};
+  memcpy(progress, now, sizeof now);
+}
+
+bw_status porous_keep(porous_run *p)
+{
+  progress_of(p, p->kept_progress);
+  return bw_coupler_keep(p->coupler);
+}
+
+bw_status porous_save_last_good(porous_run *p, bw_status cause)
+{
+  char what[1024];
+  snprintf(what, sizeof what, "%s", bw_last_message());
+  BW_TRY(porous_checkpoint(p, "checkpoint-good.h5", true));
+  return BW_FAIL(cause,
+                 "step %lld (%s): %s; the last good state, step %lld of that phase, is in "
+                 "checkpoint-good.h5",
+                 (long long)p->step + 1, porous_phase_name[p->phase], what,
+                 (long long)p->kept_progress[1]);
+}
+
+bw_status porous_checkpoint(porous_run *p, const char *name, bool kept)
+{
+  double progress[N_PROGRESS];
+  progress_of(p, progress);
+  char *path = NULL;
+  bw_checkpoint *ck = NULL;
+  bw_status st = bw_case_path(p->run, name, &path);
+  BW_THEN(st, bw_checkpoint_create(p->comm, path, &ck));
+  BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "porous_breakup"));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", N_PROGRESS,
+                                        kept ? p->kept_progress : progress));
+  BW_THEN(st, kept ? bw_coupler_save_kept(p->coupler, ck) : bw_coupler_save(p->coupler, ck));
+  if (st == BW_OK) st = bw_checkpoint_close(&ck);
+  bw_checkpoint_abandon(&ck);
+  bw_release(&path);
+  return st;
+}
+
+bw_status porous_restart(porous_run *p, const char *path)
+{
+  double progress[N_PROGRESS];
+  bw_checkpoint *ck = NULL;
+  BW_TRY(bw_checkpoint_open(p->comm, path, &ck));
+  bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", N_PROGRESS, progress);
+  BW_THEN(st, bw_coupler_load(p->coupler, ck));
+  BW_THEN(st, bw_checkpoint_close(&ck));
+  bw_checkpoint_abandon(&ck);
+  BW_TRY(st);
+  p->phase = (int)progress[0];
+  p->step = (int64_t)progress[1];
+  p->total_step = (int64_t)progress[2];
+  p->breakage_start = progress[3];
+  p->last_drop = progress[4];
+  p->last_drop_time = progress[5];
+  return BW_OK;
+}
+
+/* fragments.csv: the pieces at the end, largest first. */
+bw_status porous_fragments_csv(porous_run *p)
+{
+  bw_pd_fragment *piece = NULL;
+  size_t n = 0;
+  char *path = NULL;
+  bw_status st = bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece);
+  BW_THEN(st, bw_case_path(p->run, "fragments.csv", &path));
+  if (st == BW_OK && bw_comm_rank(p->comm) == 0) {
+    FILE *f = fopen(path, "w");
+    if (f == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
+    if (f != NULL) {
+      fputs("particles[-],mass[kg],x[m],y[m],z[m],u[m/s],v[m/s],w[m/s]\n", f);
+      for (size_t q = 0; q < n; q++) {
+        const double *c = piece[q].centre, *v = piece[q].velocity;
+        fprintf(f, "%lld,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", (long long)piece[q].particles,
+                piece[q].mass, c[0], c[1], c[2], v[0], v[1], v[2]);
+      }
+      if (fclose(f) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
+    }
+  }
+  bw_release(&piece);
+  bw_release(&path);
+  return bw_comm_agree(p->comm, st);
+}

@@ -1,0 +1,145 @@
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "coupler_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+bw_coupler_config bw_coupler_config_default(void)
+{
+  return (bw_coupler_config){.rho = NAN,
+                             .nu = NAN,
+                             .kernel = BW_KERNEL_ROMA3,
+                             .n_iter = 2,
+                             .retraction = 0.5,
+                             .probe_length = 2.0,
+                             .solid_safety = 0.8};
+}
+
+static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
+{
+  BW_REQUIRE(q->rho > 0.0, BW_EINPUT, "coupler: rho = %g: the fluid's density must be > 0", q->rho);
+  BW_REQUIRE(q->nu > 0.0, BW_EINPUT, "coupler: nu = %g: the viscosity must be > 0", q->nu);
+  BW_REQUIRE(q->solid_safety > 0.0 && q->solid_safety <= 1.0, BW_EINPUT,
+             "coupler: solid_safety = %g: must lie in (0, 1]", q->solid_safety);
+  BW_REQUIRE(fabs(q->retraction) <= 2.0, BW_EINPUT,
+             "coupler: retraction = %g grid spacings: must lie in [-2, 2]", q->retraction);
+  BW_REQUIRE(g->uniform_y && g->halo[1] >= 2, BW_EINPUT,
+             "coupler: the grid must be uniform in y and have a halo of 2 (has %d)", g->halo[1]);
+  return BW_OK;
+}
+
+static bw_status create_parts(bw_coupler *c)
+{
+  bw_grid *grid = bw_ns_channel_grid(c->fluid);
+  const bw_grid_view *g = bw_grid_look(grid);
+  bw_ibm_mdf_config ibm = bw_ibm_mdf_config_default();
+  bw_probe_config probe = bw_probe_config_default();
+  bw_pd_interface_config surface = bw_pd_interface_config_default();
+  ibm.kernel = probe.kernel = c->config.kernel;
+  ibm.n_iter = c->config.n_iter;
+  probe.length = c->config.probe_length;
+  probe.rho = c->config.rho;
+  probe.nu = c->config.nu;
+  memcpy(surface.walled, c->config.walled, sizeof surface.walled);
+  memcpy(surface.upper, g->length, sizeof surface.upper);
+  BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->ibm));
+  BW_TRY(bw_probe_create(grid, &probe, &c->probe));
+  return bw_pd_interface_create(c->solid, &surface, &c->interface);
+}
+
+/* The arrays with a row per particle, in one list for creation and release. */
+enum { N_VECTORS = 13 };
+static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
+{
+  double **const all[N_VECTORS] = {&c->F,        &c->V,     &c->V_before, &c->X,      &c->X_inside,
+                                   &c->marker_X, &c->root,  &c->marker_V, &c->normal, &c->marker_dV,
+                                   &c->area,     &c->accel, &c->traction};
+  memcpy(vector, all, sizeof all);
+}
+
+static const bw_timer_part parts[BW_PART_COUNT] = {
+    [BW_PART_MOMENTUM] = {"momentum", "cell and sub-step"},
+    [BW_PART_POISSON] = {"Poisson and correction", "cell and sub-step"},
+    [BW_PART_FORCING] = {"forcing", "marker and iteration"},
+    [BW_PART_PROBES] = {"probes", "probe"},
+    [BW_PART_SOLID] = {"solid", "bond and evaluation"},
+    [BW_PART_SURFACE] = {"surface", "particle"},
+};
+
+bw_timer *bw_coupler_timer(bw_coupler *c)
+{
+  return c->timer;
+}
+
+static bw_status create_arrays(bw_coupler *c)
+{
+  BW_TRY(bw_timer_create(BW_PART_COUNT, parts, &c->timer));
+  const size_t n = c->n = bw_pd_bond_count(c->solid);
+  double **vector[N_VECTORS];
+  list_vectors(c, vector);
+  for (int q = 0; q < N_VECTORS; q++)
+    BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
+  BW_TRY(BW_ALLOCATE(&c->flag, n));
+  BW_TRY(BW_ALLOCATE(&c->particle, n));
+  return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
+}
+
+bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid,
+                            bw_pd_bond *solid, bw_coupler **out)
+{
+  const bw_grid *grid = bw_ns_channel_grid(fluid);
+  const bw_grid_view *g = bw_grid_look(grid);
+  bw_coupler *c = NULL;
+  *out = NULL;
+  BW_TRY(check_config(config, g));
+  bw_status st = BW_ALLOCATE(&c, 1);
+  st = bw_comm_agree(bw_grid_comm(grid), st);
+  if (st != BW_OK) return st;
+  c->config = *config;
+  c->fluid = fluid;
+  c->solid = solid;
+  c->held = true;
+  c->h = g->spacing[0];
+  c->bonds = 2.0 * (double)bw_pd_bond_account(solid).bonds / bw_comm_size(bw_grid_comm(grid));
+  st = create_parts(c);
+  BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
+  BW_THEN(st, bw_coupler__follow_surface(c));
+  if (st != BW_OK) bw_coupler_destroy(&c);
+  *out = c;
+  return st;
+}
+
+void bw_coupler_destroy(bw_coupler **coupler)
+{
+  bw_coupler *c = *coupler;
+  if (c == NULL) return;
+  double **vector[N_VECTORS];
+  list_vectors(c, vector);
+  for (int q = 0; q < N_VECTORS; q++)
+    bw_release(vector[q]);
+  bw_release(&c->particle);
+  bw_timer_destroy(&c->timer);
+  bw_release(&c->flag);
+  bw_release(&c->inside);
+  bw_coupler__state_release(&c->kept);
+  bw_pd_interface_destroy(&c->interface);
+  bw_probe_destroy(&c->probe);
+  bw_ibm_mdf_destroy(&c->ibm);
+  bw_release(coupler);
+}
+
+void bw_coupler_hold_solid(bw_coupler *c, bool held)
+{
+  c->held = held;
+}
+
+const bw_pd_interface *bw_coupler_interface(const bw_coupler *c)
+{
+  return c->interface;
+}
+
+bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c)
+{
+  return c->interface;
+}

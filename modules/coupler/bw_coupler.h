@@ -1,0 +1,89 @@
+/* bw_coupler.h -- the only place where fluid and solid meet: the time loop's recipe.
+ *
+ * One step (POROUS 4.3, ERRATA 7, 10, 18, 19):
+ *   fluid    three sub-steps: predict, force no slip at the markers, project
+ *   load     probes give the traction t on each surface particle; F_h = t A_h/V_h
+ *   solid    K sub-steps of dt/K, K the smallest whole number that keeps the solid stable
+ *   surface  interface, markers, probe points follow the solid
+ * The explicit coupling needs a solid denser than the fluid (POROUS: rho_s/rho_f > 1).
+ *
+ * Where the surface is: a particle is a cube of edge ds, so the nominal surface lies ds/2 outside
+ * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
+ * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
+ *
+ * The solid can be held (rigid): then no solid step, no load, no surface update is computed.
+ * Life: config_default -> create -> { step } -> destroy. All functions are collective unless said
+ * otherwise. */
+#pragma once
+#include "bw_checkpoint.h"
+#include "bw_ibm_mdf.h"
+#include "bw_ns_channel.h"
+#include "bw_pd_bond.h"
+#include "bw_pd_interface.h"
+#include "bw_probe.h"
+#include "bw_timer.h"
+
+typedef struct bw_coupler bw_coupler;
+
+typedef struct {
+  double rho;                /* density of the fluid [M/L^3]                required */
+  double nu;                 /* its kinematic viscosity [L^2/T]             required */
+  bw_kernel_delta_id kernel; /*                                             default Roma 3-point */
+  int n_iter;                /* forcing iterations [-]                      default 2 */
+  double retraction;         /* of the markers, in grid spacings [-]        default 0.5 */
+  double probe_length;       /* in grid spacings [-]                        default 2 */
+  double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
+  bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
+} bw_coupler_config;
+
+bw_coupler_config bw_coupler_config_default(void);
+
+/* `fluid` and `solid` are borrowed until destroy; the fluid's grid must be uniform with a halo of
+ * 2. The solid starts held. Fails with BW_EINPUT (message names the value). */
+bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid,
+                            bw_pd_bond *solid, bw_coupler **out) BW_MUST_CHECK;
+void bw_coupler_destroy(bw_coupler **c); /* NULL is fine */
+
+/* Hold the solid where it is (true) or let it move (false). Local. */
+void bw_coupler_hold_solid(bw_coupler *c, bool held);
+
+/* Advance both by dt [T]. BW_ECFL, BW_EDIVERGED from either phase. */
+bw_status bw_coupler_step(bw_coupler *c, double dt) BW_MUST_CHECK;
+
+/* Solid sub-steps in a step of dt. Local. */
+int bw_coupler_substeps(const bw_coupler *c, double dt);
+
+/* What was seen in the last step. */
+typedef struct {
+  double force_reaction[3];       /* on the solid, from the markers, minus rho sum Q dV [M L/T^2] */
+  double force_probe[3];          /* on the solid, sum t A over unblocked probes */
+  double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
+                                     balance of a box around it; 0 when no box was watched */
+  double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
+  int64_t markers, markers_outside, probes_shortened, probes_blocked;
+  double surface_area; /* [L^2] */
+  double imbalance;    /* most markers on a rank over the mean [-] */
+} bw_coupler_report;
+bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHECK;
+
+/* Where the time went since create, by part (bw_coupler_part). Borrowed. Local. */
+typedef enum {
+  BW_PART_MOMENTUM,
+  BW_PART_POISSON,
+  BW_PART_FORCING,
+  BW_PART_PROBES,
+  BW_PART_SOLID,
+  BW_PART_SURFACE,
+  BW_PART_COUNT
+} bw_coupler_part;
+bw_timer *bw_coupler_timer(bw_coupler *c);
+
+const bw_pd_interface *bw_coupler_interface(const bw_coupler *c); /* borrowed. Local. */
+bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c);
+
+/* State. keep remembers the present state in memory (the last good one); save writes the present
+ * state, save_kept the remembered one (BW_EINPUT when there is none); load replaces the state. */
+bw_status bw_coupler_keep(bw_coupler *c) BW_MUST_CHECK;
+bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status bw_coupler_save_kept(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;

@@ -1,0 +1,43 @@
+/* What a step did: forces by three routes, slip, counts, and its cost by part. */
+#include "bw_coupler.h"
+#include "coupler_internal.h"
+
+#include <math.h>
+
+static void count_probes(const bw_coupler *c, int64_t count[2])
+{
+  count[0] = count[1] = 0;
+  for (size_t q = 0; q < c->n_surface; q++) {
+    count[0] += c->flag[q] == BW_PROBE_SHORTENED;
+    count[1] += c->flag[q] == BW_PROBE_BLOCKED;
+  }
+}
+
+bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
+{
+  const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
+  const bw_ibm_mdf_report ibm = bw_ibm_mdf_measure(c->ibm, bw_ns_channel_velocity(c->fluid));
+  bw_coupler_report r = {.slip_rms = ibm.slip_after,
+                         .markers = ibm.markers,
+                         .markers_outside = ibm.outside,
+                         .imbalance = ibm.imbalance};
+  double box[3];
+  int64_t count[2];
+  if (c->held) BW_TRY(bw_coupler__load(c, 1.0)); /* a moving solid has been loaded by its step */
+  bw_ns_channel_control_volume(c->fluid, box);
+  for (int d = 0; d < 3; d++) {
+    r.force_reaction[d] = -c->config.rho * ibm.total_force[d];
+    r.force_control_volume[d] = -c->config.rho * box[d];
+    r.force_probe[d] = c->force_probe[d];
+  }
+  for (size_t q = 0; q < c->n_surface; q++)
+    r.surface_area += c->area[q];
+  bw_comm_sum(comm, 3, r.force_probe);
+  bw_comm_sum(comm, 1, &r.surface_area);
+  count_probes(c, count);
+  bw_comm_sum_int(comm, 2, count);
+  r.probes_shortened = count[0];
+  r.probes_blocked = count[1];
+  *out = r;
+  return BW_OK;
+}

@@ -1,0 +1,128 @@
+/* The state of a coupled run: remembered in memory, written to and read from checkpoints. */
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "coupler_internal.h"
+
+#include <string.h>
+
+enum { N_FIELDS = 4, ROW = 9 };
+static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
+
+void bw_coupler__state_release(bw_coupler__state *s)
+{
+  for (int q = 0; q < N_FIELDS; q++)
+    bw_release(&s->field[q]);
+  bw_release(&s->rows);
+  bw_release(&s->bits);
+  bw_release(&s->V_before);
+  s->filled = false;
+}
+
+static void list_fields(const bw_coupler *c, bw_real *field[N_FIELDS])
+{
+  bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  for (int d = 0; d < 3; d++)
+    field[d] = u[d];
+  field[3] = bw_ns_channel_pressure(c->fluid);
+}
+
+static bw_status state_create(const bw_coupler *c, bw_coupler__state *s)
+{
+  bw_real *field[N_FIELDS];
+  list_fields(c, field);
+  for (int q = 0; q < N_FIELDS; q++)
+    if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
+  BW_TRY(BW_ALLOCATE(&s->rows, ROW * c->n));
+  BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_pd_bond_bits_bytes(c->solid)));
+  return BW_ALLOCATE(&s->V_before, 3 * c->n);
+}
+
+static void capture(const bw_coupler *c, bw_coupler__state *s)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  bw_real *field[N_FIELDS];
+  list_fields(c, field);
+  for (int q = 0; q < N_FIELDS; q++)
+    if (field[q] != NULL) memcpy(s->field[q], field[q], g->size * sizeof *field[q]);
+  s->fluid_time = bw_ns_channel_time(c->fluid);
+  bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
+  bw_pd_bond_get_bits(c->solid, s->bits);
+  memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
+  s->filled = true;
+}
+
+bw_status bw_coupler_keep(bw_coupler *c)
+{
+  if (c->kept.rows == NULL)
+    BW_TRY(bw_comm_agree(bw_grid_comm(bw_ns_channel_grid(c->fluid)), state_create(c, &c->kept)));
+  capture(c, &c->kept);
+  return BW_OK;
+}
+
+static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw_checkpoint *ck)
+{
+  const bw_grid *grid = bw_ns_channel_grid(c->fluid);
+  const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  for (int q = 0; q < N_FIELDS; q++)
+    if (s->field[q] != NULL)
+      BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time", 1, &s->fluid_time));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", 4, s->sums));
+  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
+  BW_TRY(
+      bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
+  return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
+                                 (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
+}
+
+static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkpoint *ck)
+{
+  const bw_grid *grid = bw_ns_channel_grid(c->fluid);
+  const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  for (int q = 0; q < N_FIELDS; q++)
+    if (s->field[q] != NULL)
+      BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time", 1, &s->fluid_time));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", 4, s->sums));
+  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
+  BW_TRY(
+      bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
+  return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
+                                 (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
+}
+
+static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  bw_real *field[N_FIELDS];
+  list_fields(c, field);
+  for (int q = 0; q < N_FIELDS; q++)
+    if (field[q] != NULL) memcpy(field[q], s->field[q], g->size * sizeof *field[q]);
+  bw_ns_channel_set_time(c->fluid, s->fluid_time);
+  bw_ns_channel_refresh(c->fluid);
+  BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
+  BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
+  memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
+  return bw_coupler__follow_surface(c);
+}
+
+bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck)
+{
+  BW_TRY(bw_coupler_keep(c));
+  return write_state(c, &c->kept, ck);
+}
+
+bw_status bw_coupler_save_kept(bw_coupler *c, bw_checkpoint *ck)
+{
+  BW_REQUIRE(c->kept.filled, BW_EINPUT, "coupler: no state has been kept that could be saved");
+  return write_state(c, &c->kept, ck);
+}
+
+bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
+{
+  const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
+  if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, state_create(c, &c->kept)));
+  BW_TRY(read_state(c, &c->kept, ck));
+  c->kept.filled = true;
+  return restore(c, &c->kept);
+}

@@ -1,0 +1,82 @@
+/* The recipe of POROUS 4.3: what happens in one time step, in this order. */
+#include "bw_coupler.h"
+#include "coupler_internal.h"
+
+#include <math.h>
+
+int bw_coupler_substeps(const bw_coupler *c, double dt)
+{
+  return (int)ceil(dt / (c->config.solid_safety * bw_pd_bond_dt_max(c->solid)));
+}
+
+/* Fluid with no slip at the markers, POROUS 3.70-3.73 and 3.79-3.82. */
+static bw_status advance_fluid(bw_coupler *c, double dt)
+{
+  bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  bw_ibm_mdf_begin_step(c->ibm);
+  for (int r = 0; r < 3; r++) {
+    bw_timer_start(c->timer, BW_PART_MOMENTUM);
+    bw_ns_channel_predict(c->fluid, r, dt); /* u*: convection, diffusion, old pressure */
+    bw_timer_stop(c->timer, BW_PART_MOMENTUM);
+    bw_timer_start(c->timer, BW_PART_FORCING);
+    bw_ibm_mdf_force(c->ibm, u, dt); /* u^: no slip on the moving surface */
+    bw_timer_stop(c->timer, BW_PART_FORCING);
+    bw_timer_start(c->timer, BW_PART_POISSON);
+    bw_ns_channel_project(c->fluid, r, dt); /* div u = 0, pressure updated */
+    bw_timer_stop(c->timer, BW_PART_POISSON);
+  }
+  return bw_ns_channel_check(c->fluid, dt);
+}
+
+static bw_status load_solid(bw_coupler *c, double dt)
+{
+  bw_timer_start(c->timer, BW_PART_PROBES);
+  const bw_status st = bw_coupler__load(c, dt);
+  bw_pd_bond_set_force(c->solid, c->F);
+  bw_timer_stop(c->timer, BW_PART_PROBES);
+  return st;
+}
+
+/* Solid sub-cycled until it has caught up with the fluid, POROUS 3.47-3.49. */
+static bw_status advance_solid(bw_coupler *c, double dt)
+{
+  const int substeps = bw_coupler_substeps(c, dt);
+  bw_status st = BW_OK;
+  bw_timer_start(c->timer, BW_PART_SOLID);
+  bw_pd_bond_get_velocity(c->solid, c->V_before);
+  for (int q = 0; q < substeps; q++)
+    BW_THEN(st, bw_pd_bond_step(c->solid, dt / substeps));
+  bw_timer_stop(c->timer, BW_PART_SOLID);
+  return st;
+}
+
+static bw_status move_surface(bw_coupler *c)
+{
+  bw_timer_start(c->timer, BW_PART_SURFACE);
+  const bw_status st = bw_coupler__follow_surface(c);
+  bw_timer_stop(c->timer, BW_PART_SURFACE);
+  return st;
+}
+
+/* Work of one step of this rank, for the cost per unit. */
+static void count_work(bw_coupler *c, double dt)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  const double cells = 3.0 * g->m[0] * g->m[1] * g->m[2];
+  const bool rk3 = bw_pd_bond_settings(c->solid)->integrator == BW_PD_RK3;
+  bw_timer_work(c->timer, BW_PART_MOMENTUM, cells);
+  bw_timer_work(c->timer, BW_PART_POISSON, cells);
+  bw_timer_work(c->timer, BW_PART_FORCING, 3.0 * c->config.n_iter * (double)c->n_surface);
+  if (!c->held)
+    bw_timer_work(c->timer, BW_PART_SOLID, c->bonds * bw_coupler_substeps(c, dt) * (rk3 ? 3 : 1));
+}
+
+bw_status bw_coupler_step(bw_coupler *c, double dt)
+{
+  count_work(c, dt);
+  BW_TRY(advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */
+  if (c->held) return BW_OK;
+  BW_TRY(load_solid(c, dt));    /* stress of the new flow on the surface */
+  BW_TRY(advance_solid(c, dt)); /* X, V, bonds at t + dt */
+  return move_surface(c);       /* surface and markers at t + dt */
+}

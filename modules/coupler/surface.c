@@ -1,0 +1,146 @@
+/* Where the fluid meets the solid: markers, probe points, and the load they bring. */
+#include "bw_coupler.h"
+#include "bw_exchange.h"
+#include "bw_memory.h"
+#include "coupler_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Particles beyond a side of the box (ghost layers under a wall, fragments that left) do not
+ * meet the fluid. */
+static bool within_box(const bw_grid_view *g, const double x[3])
+{
+  for (int d = 0; d < 3; d++)
+    if (!g->periodic[d] && (g->halo[d] > 0 || g->n[d] > 1) && !(x[d] > 0.0 && x[d] < g->length[d]))
+      return false;
+  return true;
+}
+
+/* Surface particles inside the box: probe roots on the nominal surface, half a particle outside
+ * the centre; markers `retraction` grid spacings inside that (ERRATA 21). */
+static void place(bw_coupler *c)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  const bw_pd_surface s = bw_pd_interface_surface(c->interface);
+  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds;
+  const double in = out - c->config.retraction * c->h;
+  size_t n = 0;
+  for (size_t q = 0; q < s.n; q++) {
+    const double *X = s.X + 3 * q, *V = s.V + 3 * q, *N = s.N + 3 * q;
+    if (!within_box(g, X)) continue;
+    for (int d = 0; d < 3; d++) {
+      c->root[3 * n + d] = X[d] + out * N[d];
+      c->marker_X[3 * n + d] = X[d] + in * N[d];
+      c->marker_V[3 * n + d] = V[d];
+      c->normal[3 * n + d] = N[d];
+    }
+    c->area[n] = s.A[q];
+    c->marker_dV[n] = s.A[q] * c->h; /* ERRATA 17 */
+    c->particle[n++] = s.particle[q];
+  }
+  c->n_surface = n;
+}
+
+/* Does `inside` still describe where the solid is, to a tenth of a cell? The same on all ranks. */
+static bool inside_is_stale(bw_coupler *c)
+{
+  double moved = c->inside_known ? 0.0 : INFINITY;
+  for (size_t i = 0; i < 3 * c->n; i++)
+    moved = fmax(moved, fabs(c->X[i] - c->X_inside[i]));
+  bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 1, &moved);
+  return moved > 0.1 * c->h;
+}
+
+/* Local cell index of a point this rank owns (periodic directions wrapped). */
+static ptrdiff_t cell_of(const bw_grid_view *g, const double x[3])
+{
+  int i[3];
+  for (int d = 0; d < 3; d++) {
+    const int global = (int)floor(x[d] / g->spacing[d]);
+    const int wrapped = g->periodic[d] ? ((global % g->n[d]) + g->n[d]) % g->n[d] : global;
+    i[d] = wrapped + 1 - g->lo[d];
+    i[d] = i[d] < 1 ? 1 : i[d] > g->m[d] ? g->m[d] : i[d]; /* a point on the very side */
+  }
+  return bw_at(g, i[0], i[1], i[2]);
+}
+
+/* Mark the cells that hold particles: probes must not end in them. */
+static bw_status mark_inside(bw_coupler *c)
+{
+  bw_grid *grid = bw_ns_channel_grid(c->fluid);
+  const bw_grid_view *g = bw_grid_look(grid);
+  int *owner = NULL;
+  double *send = NULL, *receive = NULL;
+  bw_exchange *plan = NULL;
+  size_t n = 0;
+  bw_status st = BW_ALLOCATE(&owner, c->n);
+  BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
+  for (size_t p = 0; st == BW_OK && p < c->n; p++) {
+    const int rank = within_box(g, c->X + 3 * p) ? bw_grid_owner(grid, c->X + 3 * p) : -1;
+    if (rank < 0) continue;
+    memcpy(send + 3 * n, c->X + 3 * p, 3 * sizeof *send);
+    owner[n++] = rank;
+  }
+  st = bw_comm_agree(bw_grid_comm(grid), st);
+  BW_THEN(st, bw_exchange_create(bw_grid_comm(grid), n, owner, &plan));
+  BW_THEN(st,
+          bw_comm_agree(bw_grid_comm(grid), BW_ALLOCATE(&receive, 3 * bw_exchange_received(plan))));
+  if (st == BW_OK) {
+    bw_exchange_forward(plan, 3 * sizeof *send, send, receive);
+    memset(c->inside, 0, g->size * sizeof *c->inside);
+    for (size_t q = 0; q < bw_exchange_received(plan); q++)
+      c->inside[cell_of(g, receive + 3 * q)] = 1;
+    bw_halo_update(grid, 1, &c->inside);
+    memcpy(c->X_inside, c->X, 3 * c->n * sizeof *c->X);
+    c->inside_known = true;
+  }
+  bw_exchange_destroy(&plan);
+  bw_release(&owner);
+  bw_release(&send);
+  bw_release(&receive);
+  return st;
+}
+
+bw_status bw_coupler__follow_surface(bw_coupler *c)
+{
+  BW_TRY(bw_pd_interface_update(c->interface));
+  place(c);
+  bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
+  return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
+}
+
+/* Acceleration of the surface over the last step: smoother than that of the last sub-step, which
+ * carries the lattice's acoustics. */
+static void surface_acceleration(bw_coupler *c, double dt)
+{
+  bw_pd_bond_get_velocity(c->solid, c->V);
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const size_t p = (size_t)c->particle[q];
+    for (int d = 0; d < 3; d++)
+      c->accel[3 * q + d] = c->held ? 0.0 : (c->V[3 * p + d] - c->V_before[3 * p + d]) / dt;
+  }
+}
+
+bw_status bw_coupler__load(bw_coupler *c, double dt)
+{
+  bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  bw_pd_bond_get_position(c->solid, c->X);
+  if (inside_is_stale(c)) BW_TRY(mark_inside(c));
+  BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
+  surface_acceleration(c, dt);
+  bw_probe_traction(c->probe, u, bw_ns_channel_pressure(c->fluid), c->accel, c->traction, c->flag);
+  bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
+
+  /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10 */
+  const double volume = bw_pd_bond_volume(c->solid);
+  memset(c->F, 0, 3 * c->n * sizeof *c->F);
+  memset(c->force_probe, 0, sizeof c->force_probe);
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++) {
+      const double force = c->traction[3 * q + d] * c->area[q];
+      c->F[3 * (size_t)c->particle[q] + d] = force / volume;
+      c->force_probe[d] += force;
+    }
+  return BW_OK;
+}

@@ -8,13 +8,13 @@ enum { TAG_FORWARD = 71, TAG_BACKWARD = 72 };
 struct bw_exchange {
   const bw_comm *comm;
   size_t sent, received;
-  size_t *order;           /* (sent) item that is q-th in the send buffer (sorted by rank) */
-  int n_to, n_from;        /* partners, this rank itself excluded */
-  int *to, *from;          /* partner ranks, rising */
+  size_t *order;                 /* (sent) item that is q-th in the send buffer (sorted by rank) */
+  int n_to, n_from;              /* partners, this rank itself excluded */
+  int *to, *from;                /* partner ranks, rising */
   size_t *to_start, *from_start; /* (n+1) first item of each partner in its buffer */
   size_t self_send, self_receive, self_count; /* items that stay: offsets in the two buffers */
   size_t *to_offset, *from_offset;
-  unsigned char *buffer;   /* grows to the largest message set ever packed */
+  unsigned char *buffer; /* grows to the largest message set ever packed */
   size_t buffer_bytes;
   MPI_Request *requests;
 };
@@ -146,8 +146,10 @@ static void post(bw_exchange *e, bool receive, int n, const int rank[], const si
   for (int p = 0; p < n; p++) {
     unsigned char *at = data + offset[p] * bytes;
     const int length = (int)((start[p + 1] - start[p]) * bytes);
-    if (receive) MPI_Irecv(at, length, MPI_BYTE, rank[p], tag, comm, &q[p]);
-    else MPI_Isend(at, length, MPI_BYTE, rank[p], tag, comm, &q[p]);
+    if (receive)
+      MPI_Irecv(at, length, MPI_BYTE, rank[p], tag, comm, &q[p]);
+    else
+      MPI_Isend(at, length, MPI_BYTE, rank[p], tag, comm, &q[p]);
   }
 }
 

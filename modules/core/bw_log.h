@@ -12,7 +12,8 @@ typedef struct bw_log bw_log;
 typedef struct {
   bool quiet;            /* no info lines and no progress; warnings stay. Default false. */
   FILE *out, *err;       /* default stdout, stderr; borrowed until destroy */
-  int terminal;          /* is `out` a terminal: 1 yes, 0 no, -1 ask the system (default) */
+  int terminal;          /* columns of the terminal that `out` is (1: unknown); 0 not a terminal;
+                            -1 ask the system (default) */
   double plain_seconds;  /* between plain progress lines [s]; default 10 */
   double redraw_seconds; /* between redraws on a terminal [s]; default 0.2 */
 } bw_log_config;

@@ -2,9 +2,9 @@
  *
  *   bw_stop_install();
  *   while (...) { step; if (bw_stop_requested(comm)) { write a checkpoint; break; } }
- * Signals: SIGTERM, SIGINT, and SIGUSR1, the one that mpirun passes on to its ranks without
- * killing them (kill -USR1 PID_OF_MPIRUN; batch systems: --signal=USR1@300). A second signal of
- * the same kind has its usual effect. */
+ * Signals: SIGUSR1, SIGTERM, SIGINT. Under mpirun use SIGUSR1, which Open MPI passes on to its
+ * ranks (kill -USR1 PID_OF_MPIRUN; batch systems: --signal=B:USR1@300); a SIGTERM or SIGINT to
+ * mpirun makes it kill them at once. A second signal of the same kind has its usual effect. */
 #pragma once
 #include "bw_comm.h"
 

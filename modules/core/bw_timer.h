@@ -35,6 +35,9 @@ void bw_timer_work(bw_timer *timer, int part, double units);
 /* Seconds of this rank in `part` so far. Local. */
 double bw_timer_seconds(const bw_timer *timer, int part);
 
+/* n of create; 0 for NULL. Local. */
+int bw_timer_parts(const bw_timer *timer);
+
 /* rows[n+1]: the parts, then "other" (the wall time in no part); shares sum to 1. *total [s] is
  * the largest wall time over ranks. The same on all ranks. Collective. */
 void bw_timer_summary(const bw_timer *timer, const bw_comm *comm, bw_timer_row rows[],

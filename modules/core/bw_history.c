@@ -1,0 +1,149 @@
+#include "bw_history.h"
+#include "bw_file.h"
+#include "bw_folder.h"
+#include "bw_memory.h"
+#include "core_internal.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct bw_history {
+  int n;
+  char *path;
+  FILE *out; /* rank 0 only */
+  int64_t rows;
+  double last_kept; /* time of the last row an old file gave; NaN: none */
+  int reason;       /* errno of the first failed write; 0: none */
+};
+
+/* Letters and a unit, nothing that would break a CSV reader. */
+static bw_status check_names(const char *path, int n, const char *const names[])
+{
+  BW_REQUIRE(n >= 1, BW_EINPUT, "%s: no columns", path);
+  for (int q = 0; q < n; q++) {
+    const char *open = strchr(names[q], '['), *close = open != NULL ? strchr(open, ']') : NULL;
+    BW_REQUIRE(close != NULL && close > open + 1 && close[1] == '\0' && open != names[q], BW_EINPUT,
+               "%s: column '%s' has no unit: write it as 'name[unit]', '[-]' for a pure number",
+               path, names[q]);
+    BW_REQUIRE(strpbrk(names[q], ",\"\n\r") == NULL, BW_EINPUT,
+               "%s: column '%s' contains a comma, quote or newline", path, names[q]);
+  }
+  return BW_OK;
+}
+
+static bw_status make_header(int n, const char *const names[], char **header)
+{
+  size_t length = 1;
+  for (int q = 0; q < n; q++)
+    length += strlen(names[q]) + 1;
+  BW_TRY(BW_ALLOCATE(header, length));
+  for (int q = 0, at = 0; q < n; q++)
+    at += snprintf(*header + at, length - (size_t)at, "%s%s", q == 0 ? "" : ",", names[q]);
+  return BW_OK;
+}
+
+/* Cut `text` behind the last complete row not later than `restart`; count the rows kept. */
+static bw_status keep_rows(bw_history *h, const char *header, double restart, char *text)
+{
+  char *line = text, *end = strchr(line, '\n');
+  const size_t length = strlen(header);
+  const bool same =
+      end != NULL && (size_t)(end - line) == length && strncmp(line, header, length) == 0;
+  if (end != NULL) *end = '\0';
+  BW_REQUIRE(same, BW_EINPUT,
+             "%s holds other columns (%.300s) than this run writes (%.300s): give another --out",
+             h->path, line, header);
+  *end = '\n';
+  for (line = end + 1; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+    const double time = strtod(line, NULL);
+    if (!(time <= restart)) break;
+    h->last_kept = time;
+    h->rows++;
+  }
+  *line = '\0';
+  return BW_OK;
+}
+
+static bw_status open_file(bw_history *h, const char *header, char *old)
+{
+  h->out = fopen(h->path, old != NULL ? "a" : "w");
+  BW_REQUIRE(h->out != NULL, BW_EIO, "cannot write %s: %s", h->path, strerror(errno));
+  if (old == NULL) {
+    const bool ok = fprintf(h->out, "%s\n", header) > 0 && fflush(h->out) == 0;
+    BW_REQUIRE(ok, BW_EIO, "cannot write %s: %s", h->path, strerror(errno));
+  }
+  return BW_OK;
+}
+
+bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const char *const names[],
+                            double restart_time, bw_history **out)
+{
+  bw_history *h = NULL;
+  char *header = NULL, *old = NULL;
+  size_t bytes = 0;
+  *out = NULL;
+  bw_status st = BW_ALLOCATE(&h, 1);
+  BW_THEN(st, check_names(path, n, names));
+  BW_THEN(st, bw_path_join("", path, &h->path));
+  BW_THEN(st, make_header(n, names, &header));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK) {
+    h->n = n;
+    h->last_kept = NAN;
+    if (!isnan(restart_time) && bw_path_exists(comm, path))
+      st = bw_file_read_text(comm, path, &bytes, &old);
+    if (bytes == 0) bw_release(&old); /* killed before its first line */
+    if (old != NULL) BW_THEN(st, bw_comm_agree(comm, keep_rows(h, header, restart_time, old)));
+    if (old != NULL) BW_THEN(st, bw_file_write_text(comm, path, old));
+    if (st == BW_OK && bw_comm_rank(comm) == 0) st = open_file(h, header, old);
+    st = bw_comm_agree(comm, st);
+  }
+  bw_release(&header);
+  bw_release(&old);
+  if (st != BW_OK && h != NULL) {
+    if (h->out != NULL) fclose(h->out);
+    bw_release(&h->path);
+    bw_release(&h);
+  }
+  *out = h;
+  return st;
+}
+
+void bw_history_append(bw_history *h, const double values[])
+{
+  if (h == NULL || h->out == NULL) return;
+  if (values[0] == h->last_kept) return;
+  bool ok = true;
+  for (int q = 0; q < h->n; q++) {
+    char number[BW_NUMBER_SIZE];
+    bw_core__format_double(values[q], number);
+    ok = fprintf(h->out, "%s%s", q == 0 ? "" : ",", number) > 0 && ok;
+  }
+  ok = fputc('\n', h->out) != EOF && ok;
+  ok = fflush(h->out) == 0 && ok;
+  if (!ok && h->reason == 0) h->reason = errno != 0 ? errno : EIO;
+  h->rows++;
+}
+
+int64_t bw_history_rows(const bw_history *h)
+{
+  return h->out != NULL ? h->rows : 0;
+}
+
+bw_status bw_history_close(const bw_comm *comm, bw_history **history)
+{
+  bw_history *h = *history;
+  bw_status st = BW_OK;
+  if (h != NULL && h->out != NULL) {
+    errno = 0;
+    if (fclose(h->out) != 0 && h->reason == 0) h->reason = errno;
+    if (h->reason != 0) st = BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
+  }
+  st = bw_comm_agree(comm, st);
+  if (h != NULL) bw_release(&h->path);
+  bw_release(history);
+  return st;
+}

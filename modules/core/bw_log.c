@@ -1,0 +1,208 @@
+#include "bw_log.h"
+#include "bw_memory.h"
+#include "core_internal.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum { LINE = 512 };
+
+struct bw_log {
+  bw_log_config config;
+  bool speaks;    /* rank 0 */
+  bool line_open; /* a progress line without its newline is on the terminal */
+};
+
+struct bw_progress {
+  bw_log *log;
+  bw_progress_config config;
+  double wall_start;                        /* [s] */
+  double wall_shown, time_shown;            /* at the last line */
+  double steps_per_second, time_per_second; /* smoothed; 0 before the first line */
+  int64_t step_shown, step;
+  double time;
+  char watched[LINE / 2];
+};
+
+bw_log_config bw_log_config_default(void)
+{
+  return (bw_log_config){.quiet = false,
+                         .out = stdout,
+                         .err = stderr,
+                         .terminal = -1,
+                         .plain_seconds = 10.0,
+                         .redraw_seconds = 0.2};
+}
+
+bw_status bw_log_create(const bw_comm *comm, const bw_log_config *config, bw_log **out)
+{
+  bw_log *log = NULL;
+  BW_TRY(BW_ALLOCATE(&log, 1));
+  log->config = config != NULL ? *config : bw_log_config_default();
+  log->speaks = bw_comm_rank(comm) == 0;
+  if (log->config.terminal < 0) log->config.terminal = bw_core__terminal_width(log->config.out);
+  *out = log;
+  return BW_OK;
+}
+
+/* The progress line goes away so that another line can take its place. */
+static void clear_line(bw_log *log)
+{
+  if (log->line_open) fputs("\r\033[K", log->config.out);
+  log->line_open = false;
+}
+
+void bw_log_destroy(bw_log **log)
+{
+  if (*log == NULL) return;
+  clear_line(*log);
+  fflush((*log)->config.out);
+  bw_release(log);
+}
+
+void bw_log_info(bw_log *log, const char *fmt, ...)
+{
+  if (log == NULL || !log->speaks || log->config.quiet) return;
+  va_list args;
+  clear_line(log);
+  va_start(args, fmt);
+  vfprintf(log->config.out, fmt, args);
+  va_end(args);
+  fputc('\n', log->config.out);
+  fflush(log->config.out);
+}
+
+void bw_log_warn(bw_log *log, const char *fmt, ...)
+{
+  if (log == NULL || !log->speaks) return;
+  va_list args;
+  clear_line(log);
+  fflush(log->config.out);
+  fputs("breakwater: warning: ", log->config.err);
+  va_start(args, fmt);
+  vfprintf(log->config.err, fmt, args);
+  va_end(args);
+  fputc('\n', log->config.err);
+  fflush(log->config.err);
+}
+
+bw_progress_config bw_progress_config_default(void)
+{
+  return (bw_progress_config){
+      .time_start = 0.0, .time_end = NAN, .step_start = 0, .step_end = 0, .time_unit = "s"};
+}
+
+bw_status bw_progress_create(bw_log *log, const bw_progress_config *config, bw_progress **out)
+{
+  bw_progress *p = NULL;
+  BW_TRY(BW_ALLOCATE(&p, 1));
+  p->log = log;
+  p->config = config != NULL ? *config : bw_progress_config_default();
+  p->wall_start = p->wall_shown = bw_wall_time();
+  p->time = p->time_shown = p->config.time_start;
+  p->step = p->step_shown = p->config.step_start;
+  *out = p;
+  return BW_OK;
+}
+
+/* Half of the new speed, half of the old: steady to read, soon right after a change. */
+static void measure_speed(bw_progress *p, double now)
+{
+  const double seconds = now - p->wall_shown;
+  if (seconds <= 0.0) return;
+  const double steps = (double)(p->step - p->step_shown) / seconds;
+  const double time = (p->time - p->time_shown) / seconds;
+  const bool first = p->steps_per_second == 0.0;
+  p->steps_per_second = first ? steps : 0.5 * (p->steps_per_second + steps);
+  p->time_per_second = first ? time : 0.5 * (p->time_per_second + time);
+  p->wall_shown = now;
+  p->step_shown = p->step;
+  p->time_shown = p->time;
+}
+
+/* Seconds still to go; NaN when nothing says so. */
+static double remaining(const bw_progress *p)
+{
+  if (isfinite(p->config.time_end))
+    return p->time_per_second > 0.0 ? fmax(0.0, (p->config.time_end - p->time) / p->time_per_second)
+                                    : NAN;
+  if (p->config.step_end > 0 && p->steps_per_second > 0.0)
+    return fmax(0.0, (double)(p->config.step_end - p->step) / p->steps_per_second);
+  return NAN;
+}
+
+/* "1 d 02:03:04", "2:03:04" or "3:04"; "?" for NaN. */
+static void format_duration(char *text, size_t size, double seconds)
+{
+  if (!(seconds < 1e10)) {
+    snprintf(text, size, "?");
+    return;
+  }
+  const long long s = (long long)(seconds + 0.5);
+  const int day = (int)(s / 86400), h = (int)(s / 3600 % 24), m = (int)(s / 60 % 60);
+  if (day > 0)
+    snprintf(text, size, "%d d %02d:%02d:%02d", day, h, m, (int)(s % 60));
+  else if (h > 0)
+    snprintf(text, size, "%d:%02d:%02d", h, m, (int)(s % 60));
+  else
+    snprintf(text, size, "%d:%02d", m, (int)(s % 60));
+}
+
+/* Cut to the terminal's width: a line that wraps could not be redrawn in place. */
+static void show(bw_progress *p, const char *speed_word, double steps_per_second, const char *tail)
+{
+  const bw_progress_config *c = &p->config;
+  const int columns = p->log->config.terminal;
+  char line[LINE];
+  char goal[64] = "", step_goal[32] = "";
+  if (isfinite(c->time_end)) snprintf(goal, sizeof goal, "/%.4g", c->time_end);
+  if (c->step_end > 0) snprintf(step_goal, sizeof step_goal, "/%lld", (long long)c->step_end);
+  snprintf(line, sizeof line, "step %lld%s  t %.5g%s %s  %s%.4g steps/s  %s%s%s",
+           (long long)p->step, step_goal, p->time, goal, c->time_unit, speed_word, steps_per_second,
+           tail, p->watched[0] != '\0' ? "  " : "", p->watched);
+  if (columns > 1 && strlen(line) >= (size_t)columns) line[columns - 1] = '\0';
+  fputs(line, p->log->config.out);
+}
+
+void bw_progress_update(bw_progress *p, int64_t step, double time, const char *fmt, ...)
+{
+  if (p == NULL || p->log == NULL || !p->log->speaks || p->log->config.quiet) return;
+  const bw_log_config *c = &p->log->config;
+  const double now = bw_wall_time();
+  p->step = step;
+  p->time = time;
+  if (now - p->wall_shown < (c->terminal ? c->redraw_seconds : c->plain_seconds)) return;
+  char left[32], tail[48];
+  va_list args;
+  measure_speed(p, now);
+  format_duration(left, sizeof left, remaining(p));
+  snprintf(tail, sizeof tail, "ETA %s", left);
+  va_start(args, fmt);
+  vsnprintf(p->watched, sizeof p->watched, fmt, args);
+  va_end(args);
+  clear_line(p->log);
+  show(p, "", p->steps_per_second, tail);
+  if (!c->terminal) fputc('\n', c->out);
+  p->log->line_open = c->terminal != 0;
+  fflush(c->out);
+}
+
+void bw_progress_finish(bw_progress **progress)
+{
+  bw_progress *p = *progress;
+  if (p == NULL) return;
+  if (p->log != NULL && p->log->speaks && !p->log->config.quiet) {
+    char spent[32], tail[48];
+    const double seconds = bw_wall_time() - p->wall_start;
+    format_duration(spent, sizeof spent, seconds);
+    snprintf(tail, sizeof tail, "took %s", spent);
+    p->watched[0] = '\0'; /* may be older than the last step */
+    clear_line(p->log);
+    show(p, "mean ", seconds > 0.0 ? (double)(p->step - p->config.step_start) / seconds : 0.0,
+         tail);
+    fputc('\n', p->log->config.out);
+    fflush(p->log->config.out);
+  }
+  bw_release(progress);
+}

@@ -2,26 +2,32 @@
  *
  * A file holds named numbers, texts, fields of a grid (global arrays without halo, in double or
  * float as built) and tables of items that carry a global id 0..total-1 (rows stored in id
- * order). Every data set has a checksum that does not depend on the partition (a sum over
+ * order). Every data set has a checksum that does not depend on the partition (exclusive or over
  * elements of a hash of index and bits), checked on reading; the file has a format version, the
- * name of the precision and a mark that it is complete. Written as PATH.part, renamed to PATH on
+ * name of the precision and a mark that it is complete. HDF5's own structures carry checksums
+ * too (its newest format). Written as PATH.part, synchronised to the disk and renamed to PATH on
  * a successful close: an interrupted write never replaces a good file.
- * Errors: BW_EIO naming path, data set and what was found; agreed by all ranks.
+ * Names may have folders ("solid/position"). Each name is written once.
+ * Errors: BW_EIO naming path, data set and what was found; BW_EINPUT for arguments that cannot
+ * be stored; agreed by all ranks. HDF5's own messages are turned off from create or open on.
+ * After a failed put, close does not rename but fails too.
  * All functions are collective. */
 #pragma once
 #include "bw_grid.h"
 
 typedef struct bw_checkpoint bw_checkpoint;
 
+/* `comm` is borrowed until close. On failure *out is NULL. Opening checks format, precision (of
+ * bw_real), completeness and HDF5's structures, not yet the data. */
 bw_status bw_checkpoint_create(const bw_comm *comm, const char *path,
                                bw_checkpoint **out) BW_MUST_CHECK;
 bw_status bw_checkpoint_open(const bw_comm *comm, const char *path,
                              bw_checkpoint **out) BW_MUST_CHECK;
 
 /* Finish. For a file being written this marks it complete and renames it; check the result.
- * *ck becomes NULL. */
+ * *ck becomes NULL, also on failure (then nothing is renamed and PATH.part is removed). */
 bw_status bw_checkpoint_close(bw_checkpoint **ck) BW_MUST_CHECK;
-/* Give up after an error: nothing is renamed; NULL is fine. */
+/* Give up after an error: nothing is renamed, PATH.part is removed; NULL is fine. */
 void bw_checkpoint_abandon(bw_checkpoint **ck);
 
 bw_status bw_checkpoint_put_numbers(bw_checkpoint *ck, const char *name, int n,
@@ -38,7 +44,7 @@ bool bw_checkpoint_has(bw_checkpoint *ck, const char *name);
 
 /* Interior of a field. `first_face` = true also stores the layer of index 0 in direction
  * `direction` (the lower boundary face of a staggered component): size n+1 there. The grid on
- * reading must have the same n. */
+ * reading must have the same n; halos are not touched (bw_halo_update follows). */
 bw_status bw_checkpoint_put_field(bw_checkpoint *ck, const char *name, const bw_grid *grid,
                                   int direction, bool first_face,
                                   const bw_real *field) BW_MUST_CHECK;

@@ -5,9 +5,16 @@
  * 2x2x2 stencil of spacing h interpolated with the delta kernel (POROUS 3.83-3.96; ERRATA 10, 19):
  *   p_wall = p_e - dl/2 (dp/dn|wall + dp/dn|e),  dp/dn|wall = -rho DU/Dt.n,
  *   t = -p_wall n + mu (grad u + grad u^T).n        (traction of the fluid on the solid).
- * A probe whose stencil leaves the box through a side that is not periodic, or that meets
- * `solid` cells given by the caller, is shortened once to dl = h and flagged; when that does not
- * help either its traction is zero and it is flagged blocked. Never silently wrong.
+ * Where the velocity gradient of t is taken:
+ *   BW_PROBE_LINEAR     at the tip, as the documents do: first order in dl;
+ *   BW_PROBE_QUADRATIC  at the wall, from the parabola through the velocity V of the surface and
+ *                       the velocity and its slope at the tip: du/dn = 2 (u_e - V)/dl - du/dn|e,
+ *                       second order; the same parabola adds mu d2u_n/dn2 to dp/dn|wall.
+ * A probe whose stencil leaves the box through a side that is not periodic, or whose tip lies in
+ * another solid (bw_probe_set_obstacles), is shortened once to dl = h and flagged; when that does
+ * not help either its traction is zero and it is flagged blocked. Never silently wrong.
+ * h is the largest spacing. Grid: uniform, halo 2. Kernels whose differences reach beyond the
+ * halo (more than three nodes) are refused.
  * Shapes: vectors (n,3) row-major. Points are sent to the ranks that own their tips' cells. */
 #pragma once
 #include "bw_grid.h"
@@ -15,23 +22,39 @@
 
 typedef struct bw_probe bw_probe;
 
+typedef enum { BW_PROBE_LINEAR, BW_PROBE_QUADRATIC, BW_PROBE_PROFILES } bw_probe_profile;
+
 typedef struct {
   bw_kernel_delta_id kernel; /*                                   default BW_KERNEL_ROMA3 */
   double length;             /* dl in grid spacings [-], 1 .. 4   default 2 */
+  bw_probe_profile profile;  /*                                   default BW_PROBE_LINEAR */
   double rho, nu;            /* of the fluid [M/L^3], [L^2/T]     required */
 } bw_probe_config;
 
 bw_probe_config bw_probe_config_default(void);
+/* BW_EINPUT names the value that is missing or out of range. grid borrowed. Collective. */
 bw_status bw_probe_create(bw_grid *grid, const bw_probe_config *config,
-                          bw_probe **out) BW_MUST_CHECK; /* grid borrowed. Collective. */
-void bw_probe_destroy(bw_probe **probe);                 /* Collective. */
+                          bw_probe **out) BW_MUST_CHECK;
+void bw_probe_destroy(bw_probe **probe); /* NULL is fine. Collective. */
 
 typedef enum { BW_PROBE_FREE, BW_PROBE_SHORTENED, BW_PROBE_BLOCKED } bw_probe_flag;
 
-/* Replace the surface points: position X, unit normal N into the fluid (n,3); copied.
- * Collective. */
-bw_status bw_probe_set_points(bw_probe *probe, size_t n, const double X[], const double N[])
-    BW_MUST_CHECK;
+/* Where the next bw_probe_set_points may not put a tip: a cell-centred field with valid halos,
+ * 1 in cells of a solid and 0 in the fluid; a tip where its interpolated value exceeds 1/2 is in
+ * the way. NULL: nothing is in the way. Borrowed until replaced; read by bw_probe_set_points
+ * only. All ranks give a field or none does. Local. */
+void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid);
+
+/* Replace the surface points: position X [L], unit normal N into the fluid (n,3); copied.
+ * Decides which probes are shortened or blocked. BW_EINPUT for normals that are not of length 1
+ * and for positions that are not finite, on all ranks. Collective. */
+bw_status bw_probe_set_points(bw_probe *probe, size_t n, const double X[],
+                              const double N[]) BW_MUST_CHECK;
+
+/* Velocity V (n,3) [L/T] of the surface at the points of the last set_points, for
+ * BW_PROBE_QUADRATIC (the linear profile does not use it). Borrowed until the next
+ * set_points, which forgets it; NULL: at rest. Local. */
+void bw_probe_set_velocity(bw_probe *probe, const double V[]);
 
 /* traction (n,3) [M/(L T^2)] at the points, from u[3] [L/T] and p/rho (valid halos) and the
  * acceleration A (n,3) [L/T^2] of the surface (NULL: zero). flag (n) may be NULL. Collective. */

@@ -1,0 +1,62 @@
+/* probe_internal.h -- shared by the sources of probe only. */
+#pragma once
+#include "bw_exchange.h"
+#include "bw_probe.h"
+
+enum { PROBE_CENTRE, PROBE_FACE, PROBE_PLACES }; /* where nodes sit in one direction */
+enum { PROBE_WIDTH = 4 };                        /* nodes per direction, padded with zeros */
+
+/* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2). */
+typedef struct {
+  double at[PROBE_WIDTH], mean[PROBE_WIDTH], slope[PROBE_WIDTH]; /* slope [1/L] */
+} bw_probe__weights;
+
+/* A field and its gradient at a tip. */
+typedef struct {
+  double value, grad[3];
+} bw_probe__sample;
+
+/* What travels to the tip's rank, and what comes back. */
+typedef struct {
+  double tip[3], normal[3];
+} bw_probe__item;
+
+typedef struct {
+  double p, dpdn;               /* over rho [L^2/T^2], [L/T^2] */
+  double u[3], dudn[3], gtn[3]; /* velocity, (grad u).n, (grad u)^T.n */
+} bw_probe__reply;
+
+struct bw_probe {
+  bw_grid *grid; /* borrowed */
+  const bw_grid_view *g;
+  const bw_kernel_delta *kernel;
+  double h, full, rho, nu; /* full: dl of a free probe [L] */
+  bw_probe_profile profile;
+  const bw_real *obstacles; /* borrowed, NULL: none */
+  const double *V;          /* borrowed, NULL: at rest */
+
+  size_t n, room;        /* points of this rank */
+  bw_probe__item *point; /* (n) tip and normal */
+  double *length;        /* (n) dl; 0 when blocked */
+  unsigned char *flag;   /* (n) */
+
+  size_t n_sent;        /* points with a tip */
+  size_t *sent_from;    /* (2 room) index of the point; two tips per point while they are tried */
+  int *destination;     /* (2 room) */
+  bw_probe__item *item; /* (2 room) */
+  bw_probe__reply *answer; /* (2 room) */
+  bw_exchange *plan;
+
+  size_t held, held_room;
+  bw_probe__item *received; /* (held) */
+  bw_probe__reply *reply;   /* (held) */
+};
+
+/* f and grad f at the tip x, which lies in a cell of this rank. component 0..2: a velocity;
+ * 3: a scalar. Pure. */
+bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int component,
+                                    const double x[3]);
+
+/* Everything the surface needs from one tip. Pure. */
+bw_probe__reply bw_probe__at_tip(const bw_probe *probe, bw_real *const u[3], const bw_real *p,
+                                 const bw_probe__item *item);

@@ -26,6 +26,12 @@ target_compile_definitions(bw_flags INTERFACE _POSIX_C_SOURCE=200809L
 target_link_options(bw_flags INTERFACE $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>)
 target_link_libraries(bw_flags INTERFACE MPI::MPI_C m)
 
+# The commit goes into the one source that writes run.yaml.
+set(BW_VERSION_HEADER ${CMAKE_BINARY_DIR}/generated/bw_version.h)
+add_custom_target(bw_version BYPRODUCTS ${BW_VERSION_HEADER}
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
+          -DOUT=${BW_VERSION_HEADER} -P ${PROJECT_SOURCE_DIR}/cmake/commit.cmake)
+
 # External libraries by short name; looked for only where one is named.
 function(_bw_external name)
   if(TARGET bw_ext_${name})
@@ -67,6 +73,15 @@ function(bw_module name)
   target_include_directories(bw_${name} ${kind} ${PROJECT_SOURCE_DIR}/modules/${name})
   target_link_libraries(bw_${name} ${kind} ${A_DEPENDS} MPI::MPI_C)
   add_library(bw::${name} ALIAS bw_${name})
+endfunction()
+
+# bw_stamp(name source): compile this source of a module with the version and commit.
+function(bw_stamp name source)
+  add_dependencies(bw_${name} bw_version)
+  set_property(SOURCE modules/${name}/${source} APPEND PROPERTY COMPILE_OPTIONS
+               -include ${BW_VERSION_HEADER})
+  set_property(SOURCE modules/${name}/${source} APPEND PROPERTY OBJECT_DEPENDS
+               ${BW_VERSION_HEADER})
 endfunction()
 
 # The words of a head line: _bw_head(file BUILD modules out)
@@ -188,9 +203,9 @@ function(bw_examples)
   endforeach()
 endfunction()
 
-# tests/{restart,robustness,lint}/*.sh: one test per script; arguments: source and build folder.
+# tests/{mpi,restart,robustness,lint}/*.sh: one test per script; arguments: source and build folder.
 function(bw_scripted_tests)
-  file(GLOB scripts CONFIGURE_DEPENDS tests/restart/*.sh tests/robustness/*.sh tests/lint/*.sh)
+  file(GLOB scripts CONFIGURE_DEPENDS tests/mpi/*.sh tests/restart/*.sh tests/robustness/*.sh tests/lint/*.sh)
   foreach(script ${scripts})
     get_filename_component(name ${script} NAME_WE)
     get_filename_component(folder ${script} DIRECTORY)

@@ -1,0 +1,75 @@
+#!/bin/sh
+# Bad input gets one clear line that says what, where and what would be right; exit code not 0.
+# usage: bad_input.sh SOURCE BUILD
+set -u
+source=$1 build=$2
+case=$source/tests/support/porous_small.yaml
+out=$build/test_bad_input
+program=$build/bin/porous_breakup
+failed=0
+rm -rf "$out" && mkdir -p "$out"
+
+# refused NAME PATTERN COMMAND...: exit code not 0 and not a signal, PATTERN in the one error line
+refused() {
+  name=$1 pattern=$2
+  shift 2
+  "$@" > "$out/$name.txt" 2>&1
+  code=$?
+  lines=$(grep -c 'error:' "$out/$name.txt")
+  if [ $code -eq 0 ] || [ $code -ge 128 ] || [ "$lines" -lt 1 ] ||
+    ! grep -qE "$pattern" "$out/$name.txt"; then
+    echo "FAIL $name: exit $code, expected a line with: $pattern"
+    sed 's/^/     | /' "$out/$name.txt" | tail -n 8
+    failed=1
+  else
+    echo "ok   $name: $(grep -m 1 'error:' "$out/$name.txt")"
+  fi
+}
+run() { "$program" "$@" --quiet; }
+with() { name=$1; pattern=$2; shift 2; refused "$name" "$pattern" run "$case" --out "$out/$name" "$@"; }
+
+sed '/viscosity/d' "$case" > "$out/missing.yaml"
+sed 's/viscosity/viscocity/' "$case" > "$out/misspelt.yaml"
+sed 's/viscosity: .*/viscosity: thick/' "$case" > "$out/mistyped.yaml"
+sed 's/cells: .*/cells: [32, 16/' "$case" > "$out/broken.yaml"
+refused no_file "absent.yaml" run "$out/absent.yaml"
+refused missing "fluid.viscosity" run "$out/missing.yaml" --out "$out/m1"
+refused misspelt "viscocity.*did you mean.*viscosity" run "$out/misspelt.yaml" --out "$out/m2"
+refused mistyped "fluid.viscosity.*thick" run "$out/mistyped.yaml" --out "$out/m3"
+refused broken "broken.yaml:[0-9]+" run "$out/broken.yaml" --out "$out/m4"
+refused no_argument "CASE.yaml" run
+refused unknown_option "--sett" run "$case" --sett a=b
+with negative "fluid.viscosity.*-1" --set fluid.viscosity=-1
+with unknown_key "solid.youngs_modulus.*did you mean.*young_modulus" --set solid.youngs_modulus=1
+with word "solid.integrator.*euler" --set solid.integrator=euler
+with not_cubes "cubes" --set "domain.cells=[32, 16, 20]"
+with beyond_outflow "medium.length.*outflow" --set medium.length=0.19
+with pitch "pitch" --set medium.pitch=0.03
+with too_large_step "limit" --set flow.time_step=0.5
+with no_restart "absent.h5" --restart "$out/absent.h5"
+refused too_many_ranks "ranks" mpirun -n 4 "$program" "$case" --out "$out/ranks" --quiet \
+  --set "domain.cells=[8, 4, 4]" --set medium.length=0.025 --set medium.pitch=0.1
+
+# Checkpoints that are not what they should be. A good one first.
+"$program" "$case" --out "$out/good" --quiet --set flow.steps=2 --set deformation.steps=0 \
+  --set breakage.steps=0 || { echo "FAIL the good run"; exit 1; }
+good=$out/good/checkpoint-flow.h5
+head -c 20000 "$good" > "$out/truncated.h5"
+cp "$case" "$out/foreign.h5"
+cp "$good" "$out/flipped.h5"
+size=$(wc -c < "$good")
+printf '\377\377\377\377\377\377\377\377' |
+  dd of="$out/flipped.h5" bs=1 seek=$((size / 2)) conv=notrunc 2> /dev/null
+with truncated "truncated.h5" --restart "$out/truncated.h5"
+with foreign "foreign.h5" --restart "$out/foreign.h5"
+with flipped "flipped.h5" --restart "$out/flipped.h5"
+with other_size "checkpoint-flow.h5" --restart "$good" --set "domain.cells=[64, 32, 32]"
+
+# A folder that cannot be written, and one that holds another run: nothing in it changes.
+touch "$out/a_file"
+refused unwritable "a_file" run "$case" --out "$out/a_file/below"
+before=$(ls -l --time-style=full-iso "$out/good" | cksum)
+refused overwrite "good" run "$case" --out "$out/good"
+after=$(ls -l --time-style=full-iso "$out/good" | cksum)
+[ "$before" = "$after" ] || { echo "FAIL overwrite: files of the other run changed"; failed=1; }
+exit $failed

@@ -1,0 +1,243 @@
+/* The coupler: where markers and probes are, the load of a known pressure, sub-steps, state.
+ * BUILD modules=coupler
+ * TEST ranks=1,2,3 timeout=240 */
+#include "bw_check.h"
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "bw_pd_shape.h"
+#include "coupler_internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { N = 24, BLOCK = 8, FIRST = 8 };
+static const double H = 1.0 / N, RHO = 10.0;
+
+typedef struct {
+  bw_grid *grid;
+  bw_ns_channel *fluid;
+  bw_pd_bond *solid;
+  bw_coupler *coupler;
+} scene;
+
+static void stream(const double x[3], double t, void *context, double u[3])
+{
+  (void)t, (void)context;
+  u[0] = 6.0 * x[1] * (1.0 - x[1]);
+  u[1] = u[2] = 0.0;
+}
+
+/* A cube of 8 particles a side in the middle of a box of 24 cells a side, in a channel flow. */
+static scene build(double retraction)
+{
+  scene s = {0};
+  const bw_comm *comm = bw_check_world();
+  bw_grid_config grid = bw_grid_config_default();
+  bw_ns_channel_config flow = bw_ns_channel_config_default();
+  bw_pd_bond_config solid = bw_pd_bond_config_default();
+  bw_coupler_config config = bw_coupler_config_default();
+  for (int d = 0; d < 3; d++)
+    grid.n[d] = N, grid.length[d] = 1.0;
+  grid.periodic[2] = true;
+  grid.halo = 2;
+  flow.nu = 0.05;
+  flow.side[0][0] =
+      (bw_ns_side){.kind = BW_SIDE_INFLOW, .profile = BW_PROFILE_POISEUILLE, .bulk_velocity = 1.0};
+  flow.side[0][1].kind = BW_SIDE_OUTFLOW;
+  flow.side[2][0].kind = flow.side[2][1].kind = BW_SIDE_PERIODIC;
+  solid.ds = H;
+  solid.rho = 50.0;
+  solid.E = 1.0e4;
+  config.rho = RHO;
+  config.nu = flow.nu;
+  config.retraction = retraction;
+
+  const double lower = FIRST * H, upper = (FIRST + BLOCK) * H;
+  const bw_shape cube = {
+      .kind = BW_SHAPE_BOX, .lower = {lower, lower, lower}, .upper = {upper, upper, upper}};
+  int64_t n = 0;
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  bw_check_ok(bw_grid_create(comm, &grid, &s.grid));
+  bw_check_ok(bw_ns_channel_create(s.grid, &flow, &s.fluid));
+  bw_check_ok(bw_pd_shape_fill(1, &cube, H, solid.origin, false, &n, &site, &kind));
+  ck_assert_int_eq(n, BLOCK * BLOCK * BLOCK);
+  bw_check_ok(bw_pd_bond_create(comm, &solid, n, site, kind, &s.solid));
+  bw_check_ok(bw_coupler_create(&config, s.fluid, s.solid, &s.coupler));
+  bw_check_ok(bw_ns_channel_set_velocity(s.fluid, stream, NULL, 0.0));
+  bw_release(&site);
+  bw_release(&kind);
+  return s;
+}
+
+static void destroy(scene *s)
+{
+  bw_coupler_destroy(&s->coupler);
+  bw_pd_bond_destroy(&s->solid);
+  bw_ns_channel_destroy(&s->fluid);
+  bw_grid_destroy(&s->grid);
+}
+
+/* With ds = h a retraction of 0.5 puts markers at the particles' centres, 0 on the nominal
+ * surface: half a spacing further out along the normal. */
+START_TEST(markers_sit_where_the_retraction_says)
+{
+  for (int q = 0; q < 2; q++) {
+    const double retraction = 0.5 * q;
+    scene s = build(retraction);
+    const bw_coupler *c = s.coupler;
+    double *X = NULL;
+    bw_check_ok(BW_ALLOCATE(&X, 3 * bw_pd_bond_count(s.solid)));
+    bw_pd_bond_get_position(s.solid, X);
+    for (size_t m = 0; m < c->n_surface; m++)
+      for (int d = 0; d < 3; d++) {
+        const double centre = X[3 * (size_t)c->particle[m] + d];
+        const double out = (0.5 - retraction) * H * c->normal[3 * m + d];
+        bw_check_near(c->marker_X[3 * m + d], centre + out, 1e-12);
+        bw_check_near(c->root[3 * m + d], centre + 0.5 * H * c->normal[3 * m + d], 1e-12);
+      }
+    bw_release(&X);
+    destroy(&s);
+  }
+}
+END_TEST
+
+/* p/rho = -G x pushes a closed body along +x with rho G V. The bound is what the discrete surface
+ * allows: normals at edges lean over 45 degrees, and the probes' roots enclose (8 h)^3. */
+START_TEST(linear_pressure_lifts_the_body)
+{
+  scene s = build(0.5);
+  const bw_grid_view *g = bw_grid_look(s.grid);
+  bw_real *p = bw_ns_channel_pressure(s.fluid), *const *u = bw_ns_channel_velocity(s.fluid);
+  for (int k = 1 - g->halo[2]; k <= g->m[2] + g->halo[2]; k++)
+    for (int j = 1 - g->halo[1]; j <= g->m[1] + g->halo[1]; j++)
+      for (int i = 1 - g->halo[0]; i <= g->m[0] + g->halo[0]; i++)
+        p[bw_at(g, i, j, k)] = (bw_real)(-3.0 * (i - 0.5) * H);
+  for (int d = 0; d < 3; d++)
+    memset(u[d], 0, g->size * sizeof *u[d]);
+  bw_check_ok(bw_coupler__load(s.coupler, 1.0));
+  double force[3];
+  memcpy(force, s.coupler->force_probe, sizeof force);
+  bw_comm_sum(bw_check_world(), 3, force);
+  const double expected = RHO * 3.0 * pow(BLOCK * H, 3);
+  ck_assert_double_gt(force[0], 0.85 * expected);
+  ck_assert_double_lt(force[0], 1.15 * expected);
+  ck_assert_double_lt(fabs(force[1]), 1e-9 * expected);
+  ck_assert_double_lt(fabs(force[2]), 1e-9 * expected);
+  double total = 0.0; /* the load on the particles is that force */
+  for (size_t i = 0; i < bw_pd_bond_count(s.solid); i++)
+    total += s.coupler->F[3 * i] * bw_pd_bond_volume(s.solid);
+  bw_comm_sum(bw_check_world(), 1, &total);
+  bw_check_near(total, force[0], 1e-12);
+  destroy(&s);
+}
+END_TEST
+
+START_TEST(substeps_keep_the_solid_within_its_limit)
+{
+  scene s = build(0.5);
+  const double limit = 0.8 * bw_pd_bond_dt_max(s.solid);
+  ck_assert_int_eq(bw_coupler_substeps(s.coupler, 0.5 * limit), 1);
+  ck_assert_int_eq(bw_coupler_substeps(s.coupler, 3.5 * limit), 4);
+  destroy(&s);
+}
+END_TEST
+
+static double max_difference(const double a[], const double b[], size_t n)
+{
+  double most = 0.0;
+  for (size_t i = 0; i < n; i++)
+    most = fmax(most, fabs(a[i] - b[i]));
+  bw_comm_max(bw_check_world(), 1, &most);
+  return most;
+}
+
+/* A held solid stays; a free one is moved by the stream, and not against it. */
+START_TEST(held_solid_stays_free_one_is_carried)
+{
+  scene s = build(0.5);
+  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  double *before = NULL, *after = NULL;
+  bw_check_ok(BW_ALLOCATE(&before, n));
+  bw_check_ok(BW_ALLOCATE(&after, n));
+  bw_pd_bond_get_position(s.solid, before);
+  for (int q = 0; q < 2; q++)
+    bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
+  bw_pd_bond_get_position(s.solid, after);
+  ck_assert_double_eq(max_difference(before, after, n), 0.0);
+  bw_coupler_hold_solid(s.coupler, false);
+  for (int q = 0; q < 3; q++)
+    bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
+  const bw_pd_bond_ledger e = bw_pd_bond_account(s.solid);
+  ck_assert_double_gt(e.momentum[0], 0.0);
+  bw_release(&before);
+  bw_release(&after);
+  destroy(&s);
+}
+END_TEST
+
+/* Saved, gone on, loaded, gone on again: the same state. */
+START_TEST(loaded_state_goes_on_as_the_saved_one)
+{
+  scene s = build(0.5);
+  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  double *first = NULL, *second = NULL;
+  bw_checkpoint *ck = NULL;
+  const char *path = "test_coupler.h5";
+  bw_check_ok(BW_ALLOCATE(&first, n));
+  bw_check_ok(BW_ALLOCATE(&second, n));
+  bw_coupler_hold_solid(s.coupler, false);
+  for (int q = 0; q < 2; q++)
+    bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
+  bw_check_ok(bw_checkpoint_create(bw_check_world(), path, &ck));
+  bw_check_ok(bw_coupler_save(s.coupler, ck));
+  bw_check_ok(bw_checkpoint_close(&ck));
+  for (int round = 0; round < 2; round++) {
+    for (int q = 0; q < 3; q++)
+      bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
+    bw_pd_bond_get_velocity(s.solid, round == 0 ? first : second);
+    if (round > 0) break;
+    bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
+    bw_check_ok(bw_coupler_load(s.coupler, ck));
+    bw_check_ok(bw_checkpoint_close(&ck));
+  }
+  double scale = max_difference(first, (double *)memset(s.coupler->X, 0, n * sizeof(double)), n);
+  ck_assert_double_gt(scale, 0.0);
+  ck_assert_double_lt(max_difference(first, second, n), 1e-11 * scale);
+  bw_release(&first);
+  bw_release(&second);
+  destroy(&s);
+  if (bw_comm_rank(bw_check_world()) == 0) remove(path);
+}
+END_TEST
+
+START_TEST(bad_configurations_are_refused_by_name)
+{
+  scene s = build(0.5);
+  bw_coupler *c = NULL;
+  bw_coupler_config config = bw_coupler_config_default();
+  bw_check_status(bw_coupler_create(&config, s.fluid, s.solid, &c), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "rho"));
+  config.rho = 1.0;
+  bw_check_status(bw_coupler_create(&config, s.fluid, s.solid, &c), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "nu"));
+  config.nu = 1.0;
+  config.solid_safety = 1.5;
+  bw_check_status(bw_coupler_create(&config, s.fluid, s.solid, &c), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "solid_safety"));
+  ck_assert_ptr_null(c);
+  bw_checkpoint *ck = NULL;
+  bw_check_ok(bw_checkpoint_create(bw_check_world(), "test_coupler_none.h5", &ck));
+  bw_check_status(bw_coupler_save_kept(s.coupler, ck), BW_EINPUT);
+  bw_checkpoint_abandon(&ck);
+  destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(markers_sit_where_the_retraction_says),
+                                      BW_TEST(linear_pressure_lifts_the_body),
+                                      BW_TEST(substeps_keep_the_solid_within_its_limit),
+                                      BW_TEST(held_solid_stays_free_one_is_carried),
+                                      BW_TEST(loaded_state_goes_on_as_the_saved_one),
+                                      BW_TEST(bad_configurations_are_refused_by_name)};
+BW_CHECK_MAIN("coupler", tests)

@@ -5,7 +5,7 @@
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
   bool filled;
-  double fluid_time;
+  double fluid_numbers[2]; /* time, gradient of the forcing */
   bw_real *field[4]; /* u, v, w, p; NULL where the fluid has none */
   double *rows;      /* (n,9) of bw_pd_bond_get_restart */
   double sums[4];

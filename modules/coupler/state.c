@@ -44,7 +44,8 @@ static void capture(const bw_coupler *c, bw_coupler__state *s)
   list_fields(c, field);
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) memcpy(s->field[q], field[q], g->size * sizeof *field[q]);
-  s->fluid_time = bw_ns_channel_time(c->fluid);
+  s->fluid_numbers[0] = bw_ns_channel_time(c->fluid);
+  s->fluid_numbers[1] = bw_ns_channel_gradient(c->fluid);
   bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
   bw_pd_bond_get_bits(c->solid, s->bits);
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
@@ -66,7 +67,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
-  BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time", 1, &s->fluid_time));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", 4, s->sums));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
   BW_TRY(
@@ -82,7 +83,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time", 1, &s->fluid_time));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", 4, s->sums));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
   BW_TRY(
@@ -98,7 +99,8 @@ static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
   list_fields(c, field);
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) memcpy(field[q], s->field[q], g->size * sizeof *field[q]);
-  bw_ns_channel_set_time(c->fluid, s->fluid_time);
+  bw_ns_channel_set_time(c->fluid, s->fluid_numbers[0]);
+  bw_ns_channel_set_gradient(c->fluid, s->fluid_numbers[1]);
   bw_ns_channel_refresh(c->fluid);
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));

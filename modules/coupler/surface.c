@@ -127,6 +127,7 @@ bw_status bw_coupler__load(bw_coupler *c, double dt)
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   bw_pd_bond_get_position(c->solid, c->X);
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
+  bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
   surface_acceleration(c, dt);
   bw_probe_traction(c->probe, u, bw_ns_channel_pressure(c->fluid), c->accel, c->traction, c->flag);

@@ -1,25 +1,34 @@
 /* bw_pd_interface.h -- which particles are surface, their normals and areas; fragments.
  *
- * POROUS 3.3.7: the sphere of radius horizon around a particle is divided into sectors (2D: 8 of
- * equal angle; 3D: solid angles, see README). A sector is empty when no intact bond points into
- * it and the mean distance 3.42 to the partners of its broken bonds exceeds the threshold (the
- * horizon by default). A particle is surface when `n_empty` neighbouring sectors are empty. Normals by
- * 3.45-3.46 (outward: into the fluid). Area per particle: A_h = sum over particles that were
- * surface at the start of their exact exposed area / their number; new crack faces get ds^2
- * (ERRATA 10; 2D: ds x thickness).
+ * POROUS 3.3.7: the sphere of radius horizon around a particle is divided into sectors: 2D, 8 of
+ * equal angle centred on the lattice's sides and diagonals; 3D, 24 of equal solid angle, the
+ * octants cut in three by the largest component (README says why). A bond belongs to the sectors
+ * of its reference direction, so that turning as a rigid body changes nothing. A sector is empty
+ * when no intact bond points into it and the mean distance 3.42 to the partners of its broken
+ * bonds, if it has any, exceeds the threshold (the horizon by default). A particle is surface
+ * when `n_empty` neighbouring sectors are empty; in a body that never broke these are the
+ * particles with an open side on the lattice. Normals by 3.45-3.46 (outward: into the fluid);
+ * where the neighbours balance (thin sheets, single particles) the normal is the last one that
+ * could be told, at the start the direction of the empty sectors.
+ * Areas: particles that were surface in the reference shape share its area
+ *   ds^2 sum over open lattice faces f of |n.e_f|   (exact for planes of any orientation)
+ * in equal parts; new crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in both).
  * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
- * them as planes in the config.
- * MPI: results are of the rank's own particles. Updates cost nothing when no bond broke and no
- * gap opened. */
+ * them as planes in the config. There partners are taken as mirrored in the plane, until the
+ * particle has moved from the wall by more than the threshold or its bonds across it broke.
+ * Particles beyond such a plane (ghost layers) are never surface.
+ * MPI: results are of the rank's own particles. Updates cost only the copying of positions and
+ * the normals when no bond broke. */
 #pragma once
 #include "bw_pd_bond.h"
 
 typedef struct bw_pd_interface bw_pd_interface;
 
 typedef struct {
-  double threshold;     /* mean distance over horizon that opens a sector [-]   default 1 */
-  int n_empty;          /* neighbouring empty sectors that make a surface       default 2 */
-  bool walled[3][2];    /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
+  double threshold;  /* mean distance over horizon that opens a sector [-]   default 1 */
+  int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
+                        POROUS), 1 in 3D                                     default 0 */
+  bool walled[3][2]; /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
   double lower[3], upper[3];
 } bw_pd_interface_config;
 
@@ -36,22 +45,28 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi) BW_MUST_CHECK;
 /* The surface of this rank, borrowed until the next update. Local. */
 typedef struct {
   size_t n;
-  const int32_t *particle; /* (n) index into pd's own particles */
+  const int32_t *particle; /* (n) index into pd's own particles, rising */
   const double *X, *V, *N; /* (n,3) position [L], velocity [L/T], unit outward normal */
   const double *A;         /* (n) area [L^2] */
 } bw_pd_surface;
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
 
+/* Area of the reference shape [L^2], all ranks. Local. */
+double bw_pd_interface_reference_area(const bw_pd_interface *pi);
+
 typedef struct {
-  int64_t label;       /* smallest global id in it */
+  int64_t label; /* smallest global id in it */
   int64_t particles;
-  double mass;         /* [M] */
-  double centre[3], velocity[3], spin[3]; /* [L], [L/T], [1/T] */
+  double mass;        /* [M] */
+  double centre[3];   /* [L]; of the image its particle `label` is in (periodic directions) */
+  double velocity[3]; /* of the centre [L/T] */
+  double spin[3];     /* I^-1 L [1/T]; 0 about axes without inertia (single particles, rods) */
 } bw_pd_fragment;
 
-/* Pieces connected by intact bonds, largest first. label (count of pd) of each own particle, may
- * be NULL. *fragment allocated on every rank (the same list), owned by the caller (bw_release).
- * Collective. */
+/* Pieces connected by intact bonds, largest first, then by label. label (count of pd) of each own
+ * particle, may be NULL. *fragment (*n) is allocated on every rank (the same list), owned by the
+ * caller (bw_release). The centre of a piece that meets itself through a periodic direction
+ * depends on where it is cut there. Collective. */
 bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t *n,
                                     bw_pd_fragment **fragment) BW_MUST_CHECK;

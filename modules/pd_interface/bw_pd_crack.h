@@ -1,0 +1,48 @@
+/* bw_pd_crack.h -- where a crack is: its tip, how many branches it has, where it forked.
+ *
+ * A particle belongs to the crack when its damage exceeds `level`; 0.35 as in ADAPT section 6.1
+ * and Ha & Bobaru 2010. (A straight crack leaves about 0.4 in the two rows beside it at m = 3 and
+ * about 0.2 in the next ones.) Positions are those of the reference shape, in two directions:
+ * s along the crack's way, t across it; both unit vectors.
+ * Lengths in [L]. Everything is the same on all ranks. */
+#pragma once
+#include "bw_comm.h"
+
+#define BW_PD_CRACK_LEVEL 0.35
+
+typedef struct {
+  double level;               /* damage of a cracked particle [-]   default 0.35 */
+  double along[3], across[3]; /*                                  default x and y */
+} bw_pd_crack_config;
+
+bw_pd_crack_config bw_pd_crack_config_default(void);
+
+/* Largest s of a cracked particle; -INFINITY when there is none. X0 (n,3) reference positions and
+ * damage (n) of this rank's particles, as bw_pd_bond gives them. Collective. */
+double bw_pd_crack_tip(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
+                       const double X0[], const double damage[]);
+
+typedef struct {
+  size_t n;
+  double *s, *t; /* (n) cracked particles of all ranks, by rising s, then t */
+} bw_pd_crack;
+
+/* The whole crack on every rank; free with bw_pd_crack_release. Collective. */
+bw_status bw_pd_crack_collect(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
+                              const double X0[], const double damage[],
+                              bw_pd_crack *out) BW_MUST_CHECK;
+void bw_pd_crack_release(bw_pd_crack *crack); /* Local. */
+
+/* Connected parts of the crack in the section |s - station| <= half: those whose t differ by more
+ * than `gap` (1.5 ds: a sound row lies between) are two. On a lattice along s take half = ds/2.
+ * `middle` (room for `most`, may be NULL) gets their mean t, rising. Local. */
+int bw_pd_crack_branches(const bw_pd_crack *crack, double station, double half, double gap,
+                         int most, double middle[]);
+
+/* Where the crack forks: the first section from s = `from` on, `step` apart, that begins `run`
+ * sections of two branches or more each; NAN when there is none. Local. */
+double bw_pd_crack_fork(const bw_pd_crack *crack, double from, double step, int run, double gap);
+
+/* Angle [rad] between the outermost branches from s = a to s = b (least-squares lines through
+ * their middles, sections `step` apart); NAN with fewer than three forked sections. Local. */
+double bw_pd_crack_angle(const bw_pd_crack *crack, double a, double b, double step, double gap);

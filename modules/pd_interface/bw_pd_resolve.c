@@ -1,0 +1,140 @@
+/* What surrounds one particle, direction by direction, and what follows from it. */
+#include "pd_interface_internal.h"
+#include <math.h>
+#include <string.h>
+
+/* Reflect xi (from h, in the reference shape) in the walls it crosses: `crossed` tells in which
+ * directions, plane[d] where. False when it crosses none. */
+static bool reflect(const bw_pd_interface *pi, const double X0[3], const double xi[3],
+                    double image[3], bool crossed[3], double plane[3])
+{
+  const bw_pd_interface_config *c = &pi->config;
+  const double tie = 1e-6 * pi->stencil.ds; /* a partner on the plane itself is inside */
+  bool any = false;
+  for (int d = 0; d < 3; d++) {
+    const double x = X0[d] + xi[d];
+    const bool low = c->walled[d][0] && x < c->lower[d] - tie;
+    const bool high = c->walled[d][1] && x > c->upper[d] + tie;
+    crossed[d] = low || high;
+    plane[d] = low ? c->lower[d] : c->upper[d];
+    image[d] = crossed[d] ? 2.0 * (plane[d] - X0[d]) - xi[d] : xi[d];
+    any = any || crossed[d];
+  }
+  return any;
+}
+
+/* Directions across a wall: what the wall mirrors is there, at the mirrored place; only a broken
+ * bond across it counts as it is. Images read directions inside, which stay as they are. */
+static void fill_images(bw_pd_interface *pi, const double X0[3], const double Xh[3])
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  for (int q = 0; q < s->slots; q++) {
+    double image[3], plane[3], nothing[3], more[3];
+    bool crossed[3], again[3];
+    const double *xi = &s->xi[3 * q];
+    if (pi->state[q] == BW_PD_INTERFACE__BROKEN) continue;
+    if (!reflect(pi, X0, xi, image, crossed, plane)) continue;
+    const double still = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
+    const bool itself = still < 0.25 * s->ds;
+    const int m = itself ? -2 : bw_pd_interface__slot_of(s, image);
+    const bool trapped = reflect(pi, X0, image, nothing, again, more);
+    double *place = &pi->place[3 * q];
+    if (itself || (m >= 0 && !trapped)) {
+      pi->state[q] = itself ? BW_PD_INTERFACE__INTACT : pi->state[m];
+      for (int d = 0; d < 3; d++) {
+        const double there = itself ? 0.0 : pi->place[3 * m + d];
+        place[d] = crossed[d] ? 2.0 * (plane[d] - Xh[d]) - there : there;
+      }
+    } else if (m == -1 && !trapped) {
+      pi->state[q] = BW_PD_INTERFACE__ABSENT;
+    } else { /* no mirror on this lattice (or between two walls): the wall counts as solid */
+      pi->state[q] = BW_PD_INTERFACE__INTACT;
+      memcpy(place, xi, 3 * sizeof *place);
+    }
+  }
+}
+
+bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X)
+{
+  const bw_pd_interface_config *c = &pi->config;
+  bool off = false;
+  for (size_t d = 0; d < 3; d++) {
+    const double moved = (double)X[3 * h + d] - pi->X0[3 * h + d];
+    off = off || (c->walled[d][0] && moved > pi->opening);
+    off = off || (c->walled[d][1] && moved < -pi->opening);
+  }
+  return off;
+}
+
+void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, const bw_real *X)
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  const double *X0 = &pi->X0[3 * h];
+  double Xh[3];
+  for (int d = 0; d < 3; d++)
+    Xh[d] = X == NULL ? X0[d] : (double)X[3 * h + (size_t)d];
+  memset(pi->state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
+  const int family = bw_pd_bond_links(pi->pd, h, pi->link);
+  for (int q = 0; q < family; q++) {
+    const bw_pd_bond_link *l = &pi->link[q];
+    const size_t at = 3 * (size_t)l->neighbour;
+    double *place = &pi->place[3 * l->slot];
+    pi->state[l->slot] = l->intact || X == NULL ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
+    for (int d = 0; d < 3; d++)
+      place[d] = X == NULL ? s->xi[3 * l->slot + d] : (double)X[at + (size_t)d] - Xh[d];
+  }
+  if (pi->leans[h] && (X == NULL || !bw_pd_interface__moved_off(pi, h, X))) fill_images(pi, X0, Xh);
+}
+
+uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  double sum[BW_PD_INTERFACE__SECTORS] = {0.0}, broken[BW_PD_INTERFACE__SECTORS] = {0.0};
+  uint32_t held = 0, empty = 0;
+  for (int q = 0; q < s->slots; q++) {
+    if (pi->state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
+    if (pi->state[q] != BW_PD_INTERFACE__BROKEN) continue;
+    const double *x = &pi->place[3 * q];
+    const double distance = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    for (int k = 0; k < s->sectors; k++)
+      if (s->sector_of[q] >> (unsigned)k & 1u) sum[k] += distance, broken[k] += 1.0;
+  }
+  for (int k = 0; k < s->sectors; k++) /* 3.42; nothing broken there: nothing ever was there */
+    if (!(held >> (unsigned)k & 1u) && (broken[k] == 0.0 || sum[k] > pi->opening * broken[k]))
+      empty |= 1u << (unsigned)k;
+  return empty;
+}
+
+bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3])
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
+  for (int q = 0; q < s->slots; q++) {
+    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+    for (int d = 0; d < 3; d++)
+      mean[d] += s->fraction[q] * pi->place[3 * q + d];
+    weight += s->fraction[q];
+  }
+  const double length = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+  /* A face has about ds here, a sheet of two layers ds/2; below ds/50 it is chance. */
+  if (!(length > 0.02 * s->ds * weight)) return false;
+  for (int d = 0; d < 3; d++)
+    n[d] = -mean[d] / length;
+  return true;
+}
+
+double bw_pd_interface__open_area(const bw_pd_interface *pi, const double n[3])
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  double area = 0.0;
+  for (int r = 0; r < s->dims; r++) {
+    const double *e = s->axes[r];
+    const double projected = fabs(n[0] * e[0] + n[1] * e[1] + n[2] * e[2]);
+    for (int side = -1; side <= 1; side += 2) {
+      const double xi[3] = {side * s->ds * e[0], side * s->ds * e[1], side * s->ds * e[2]};
+      const int q = bw_pd_interface__slot_of(s, xi);
+      if (q >= 0 && pi->state[q] == BW_PD_INTERFACE__ABSENT) area += projected;
+    }
+  }
+  return area * pi->area_new;
+}

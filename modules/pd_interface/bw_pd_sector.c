@@ -1,0 +1,168 @@
+/* The sectors of a particle's surroundings, and which directions of the stencil lie in them. */
+#include "bw_memory.h"
+#include "pd_interface_internal.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* 2D: sector s reaches 22.5 degrees to both sides of 45 s. No lattice direction lies on a border
+ * (tan 22.5 is irrational), so each belongs to one sector, as POROUS asks. */
+static uint32_t sectors_in_plane(const int o[3])
+{
+  const double pi = acos(-1.0);
+  const int s = (int)lround(atan2((double)o[1], (double)o[0]) / (pi / 4.0));
+  return 1u << (unsigned)((s + 8) % 8);
+}
+
+/* 3D: sector 3 octant + axis holds the directions of the octant (bit d set: component d >= 0, else
+ * <= 0) whose largest component is along the axis. Closed: a direction on a border belongs to
+ * all sectors that meet there, so that a sector can only be empty when its side's own neighbour
+ * is missing. */
+static uint32_t sectors_in_space(const int o[3])
+{
+  int largest = 0;
+  for (int d = 0; d < 3; d++)
+    if (abs(o[d]) > largest) largest = abs(o[d]);
+  uint32_t bits = 0;
+  for (int octant = 0; octant < 8; octant++)
+    for (int axis = 0; axis < 3; axis++) {
+      bool in = abs(o[axis]) == largest;
+      for (int d = 0; d < 3; d++)
+        in = in && ((octant >> d & 1) ? o[d] >= 0 : o[d] <= 0);
+      if (in) bits |= 1u << (unsigned)(3 * octant + axis);
+    }
+  return bits;
+}
+
+static void unit_direction(const bw_pd_interface__stencil *s, const double lattice[3],
+                           double out[3])
+{
+  double x[3] = {0.0, 0.0, 0.0}, squared = 0.0;
+  for (int r = 0; r < 3; r++)
+    for (int d = 0; d < 3; d++)
+      x[d] += lattice[r] * s->axes[r][d];
+  for (int d = 0; d < 3; d++)
+    squared += x[d] * x[d];
+  for (int d = 0; d < 3; d++)
+    out[d] = x[d] / sqrt(squared);
+}
+
+/* Neighbours share a border: in space the other two largest components of the octant, and the
+ * same largest component with one of the other signs turned. */
+static void lay_out_sectors(bw_pd_interface__stencil *s)
+{
+  s->sectors = s->dims == 2 ? 8 : 24;
+  for (int k = 0; k < s->sectors; k++) {
+    double middle[3] = {0.0, 0.0, 0.0};
+    if (s->dims == 2) {
+      s->adjacent[k] = 1u << (unsigned)((k + 1) % 8) | 1u << (unsigned)((k + 7) % 8);
+      middle[0] = cos(k * acos(-1.0) / 4.0), middle[1] = sin(k * acos(-1.0) / 4.0);
+    } else {
+      const int octant = k / 3, axis = k % 3;
+      s->adjacent[k] = 0;
+      for (int d = 0; d < 3; d++) {
+        middle[d] = ((octant >> d & 1) ? 1.0 : -1.0) * (d == axis ? 2.0 : 1.0);
+        if (d == axis) continue;
+        s->adjacent[k] |= 1u << (unsigned)(3 * octant + d);
+        s->adjacent[k] |= 1u << (unsigned)(3 * (octant ^ (1 << d)) + axis);
+      }
+    }
+    unit_direction(s, middle, s->direction[k]);
+  }
+}
+
+static bool lattice_offset(const bw_pd_interface__stencil *s, const double xi[3], int o[3])
+{
+  bool on = true;
+  for (int r = 0; r < 3; r++) {
+    const double *a = s->axes[r];
+    const double q = (xi[0] * a[0] + xi[1] * a[1] + xi[2] * a[2]) / s->ds;
+    o[r] = (int)lround(q);
+    on = on && fabs(q - o[r]) < 0.25;
+  }
+  return on;
+}
+
+static size_t slot_index(const bw_pd_interface__stencil *s, const int o[3])
+{
+  const size_t w = (size_t)(2 * s->reach + 1);
+  return ((size_t)(o[2] + s->reach) * w + (size_t)(o[1] + s->reach)) * w +
+         (size_t)(o[0] + s->reach);
+}
+
+int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3])
+{
+  int o[3];
+  if (!lattice_offset(s, xi, o)) return -2;
+  for (int d = 0; d < 3; d++)
+    if (abs(o[d]) > s->reach) return -1;
+  return s->slot_at[slot_index(s, o)];
+}
+
+bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface__stencil *s)
+{
+  const bw_pd_bond_config *c = bw_pd_bond_settings(pd);
+  memset(s, 0, sizeof *s);
+  s->dims = c->geometry == BW_PD_3D ? 3 : 2;
+  s->ds = c->ds;
+  memcpy(s->axes, c->axes, sizeof s->axes);
+  s->slots = bw_pd_bond_max_family(pd);
+  s->reach = (int)floor(c->horizon_ratio + 0.5);
+  const size_t n = (size_t)s->slots, w = (size_t)(2 * s->reach + 1);
+  BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
+  BW_TRY(BW_ALLOCATE(&s->fraction, n));
+  BW_TRY(BW_ALLOCATE(&s->sector_of, n));
+  BW_TRY(BW_ALLOCATE(&s->slot_at, w * w * w));
+  for (size_t q = 0; q < w * w * w; q++)
+    s->slot_at[q] = -1;
+  lay_out_sectors(s);
+  for (int q = 0; q < s->slots; q++) {
+    int o[3];
+    memcpy(&s->xi[3 * q], bw_pd_bond_stencil_offset(pd, q), 3 * sizeof(double));
+    s->fraction[q] = bw_pd_bond_stencil_fraction(pd, q);
+    const bool on = lattice_offset(s, &s->xi[3 * q], o);
+    BW_ASSERT(on);
+    (void)on;
+    s->slot_at[slot_index(s, o)] = (int16_t)q;
+    s->sector_of[q] = s->dims == 2 ? sectors_in_plane(o) : sectors_in_space(o);
+  }
+  return BW_OK;
+}
+
+void bw_pd_interface__stencil_release(bw_pd_interface__stencil *s)
+{
+  bw_release(&s->xi);
+  bw_release(&s->fraction);
+  bw_release(&s->sector_of);
+  bw_release(&s->slot_at);
+}
+
+static int bits_set(uint32_t x)
+{
+  int n = 0;
+  for (; x != 0; x &= x - 1)
+    n++;
+  return n;
+}
+
+uint32_t bw_pd_interface__group(const bw_pd_interface__stencil *s, uint32_t empty)
+{
+  uint32_t group = empty & (~empty + 1), before = 0;
+  while (group != before) {
+    before = group;
+    for (int k = 0; k < s->sectors; k++)
+      if (before >> (unsigned)k & 1u) group |= s->adjacent[k] & empty;
+  }
+  return group;
+}
+
+bool bw_pd_interface__is_open(const bw_pd_interface__stencil *s, uint32_t empty, int n_empty)
+{
+  bool open = false;
+  while (empty != 0) {
+    const uint32_t group = bw_pd_interface__group(s, empty);
+    open = open || bits_set(group) >= n_empty;
+    empty &= ~group;
+  }
+  return open;
+}

@@ -19,18 +19,23 @@
 
 typedef struct bw_ns_channel bw_ns_channel;
 
-typedef enum { BW_SIDE_PERIODIC, BW_SIDE_WALL, BW_SIDE_FREE_SLIP, BW_SIDE_INFLOW, BW_SIDE_OUTFLOW }
-    bw_ns_side_kind;
+typedef enum {
+  BW_SIDE_PERIODIC,
+  BW_SIDE_WALL,
+  BW_SIDE_FREE_SLIP,
+  BW_SIDE_INFLOW,
+  BW_SIDE_OUTFLOW
+} bw_ns_side_kind;
 typedef enum { BW_PROFILE_UNIFORM, BW_PROFILE_POISEUILLE, BW_PROFILE_CALLBACK } bw_ns_profile;
 
 /* u[3] [L/T] at the point x[3] [L] and time t [T]. Pure; called for any point, in any order. */
 typedef void (*bw_ns_velocity_fn)(const double x[3], double t, void *context, double u[3]);
 
 typedef struct {
-  bw_ns_side_kind kind;    /*                                          default wall */
-  double velocity[3];      /* of the wall; of a uniform inflow [L/T]   default 0 */
-  bw_ns_profile profile;   /* inflow only                              default uniform */
-  double bulk_velocity;    /* of a Poiseuille inflow (plane, in y) [L/T] */
+  bw_ns_side_kind kind;       /*                                          default wall */
+  double velocity[3];         /* of the wall; of a uniform inflow [L/T]   default 0 */
+  bw_ns_profile profile;      /* inflow only                              default uniform */
+  double bulk_velocity;       /* of a Poiseuille inflow (plane, in y) [L/T] */
   bw_ns_velocity_fn function; /* of a callback inflow */
   void *context;              /* borrowed for the life of the solver */
 } bw_ns_side;
@@ -39,11 +44,11 @@ typedef enum { BW_FORCING_NONE, BW_FORCING_FLOW_RATE, BW_FORCING_GRADIENT } bw_n
 typedef enum { BW_VISCOUS_EXPLICIT, BW_VISCOUS_IMPLICIT_Y } bw_ns_viscous;
 
 typedef struct {
-  bw_ns_side side[3][2];    /* lower, upper */
-  double nu;                /* kinematic viscosity [L^2/T]             required */
-  bw_ns_forcing forcing;    /* in x                                    default none */
-  double forcing_value;     /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
-  bw_ns_viscous viscous;    /*                                         default explicit */
+  bw_ns_side side[3][2]; /* lower, upper */
+  double nu;             /* kinematic viscosity [L^2/T]             required */
+  bw_ns_forcing forcing; /* in x                                    default none */
+  double forcing_value;  /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
+  bw_ns_viscous viscous; /*                                         default explicit */
 } bw_ns_channel_config;
 
 bw_ns_channel_config bw_ns_channel_config_default(void);
@@ -59,8 +64,11 @@ void bw_ns_channel_destroy(bw_ns_channel **ns); /* NULL is fine. Collective. */
 bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
                                      double t) BW_MUST_CHECK;
 
-/* Largest stable dt of the present field: 1.65/(12 nu sum..) explicit viscous limit of RK3 and
- * CFL sqrt(3) [T]; see README. Collective. */
+/* Largest stable dt of the present field [T]: with c = max sum_i |u_i|/dx_i and
+ * a = 4 nu sum_i 1/dx_i^2 (without y when that is implicit; without z in 2D),
+ *   dt = 1 / sqrt((c/sqrt(3))^2 + (a/2.5127)^2),
+ * an ellipse inside the stability region of this RK3 (README). ERRATA 22 has the viscous part
+ * with 1.65 instead of 2.5127. Collective. */
 double bw_ns_channel_dt_max(bw_ns_channel *ns);
 
 /* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,
@@ -69,7 +77,9 @@ bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
 
 /* The parts, for the coupler; r = 0, 1, 2 in order, the same dt. After predict the velocity of
  * bw_ns_channel_velocity holds u*; a body may change its interior; project then updates halos
- * itself. project with r = 2 advances the time. Collective. */
+ * itself. project with r = 2 advances the time. A constant flow rate is met exactly after every
+ * project, whatever the body took: predict applies the gradient of the sub-step before, project
+ * the rest. Collective. */
 void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt);
 void bw_ns_channel_project(bw_ns_channel *ns, int r, double dt);
 
@@ -89,17 +99,39 @@ void bw_ns_channel_refresh(bw_ns_channel *ns);
 double bw_ns_channel_divergence(bw_ns_channel *ns); /* max |div u| dx/U [-]. Collective. */
 
 typedef struct {
-  double bulk_velocity;      /* mean u over the box [L/T] */
-  double kinetic_energy;     /* integral u.u/2 [L^5/T^2] */
-  double pressure_gradient;  /* mean forcing applied in the last step [L/T^2] */
-  double inflow, outflow;    /* volume flux through x sides [L^3/T] */
+  double bulk_velocity;     /* mean u over the box [L/T] */
+  double kinetic_energy;    /* integral u.u/2 [L^5/T^2] */
+  double pressure_gradient; /* mean forcing -dp/dx/rho applied in the last step [L/T^2] */
+  double inflow, outflow;   /* volume flux through x sides [L^3/T] */
 } bw_ns_summary;
 bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns); /* Collective. */
 
-/* Force per density of everything inside the cells lo[d] < i <= hi[d] (global) on the fluid,
- * from the momentum balance of that box over the last step:
- *   F = d/dt int u dV + oint (u u.n + p n - nu (grad u + grad u^T).n) dS - int g dV  [L^4/T^2].
- * Discrete fluxes are those of the scheme; time derivative by the difference over the last step
- * (zero before the first). What a fixed body feels is -rho F. Collective. */
-void bw_ns_channel_control_volume(bw_ns_channel *ns, const int lo[3], const int hi[3],
-                                  double force[3]);
+/* Watch the momentum of the cells lo[d] < i <= hi[d] (global; per velocity component those of
+ * its points with these indices). Before a step; replaces an earlier box; costs the faces of the
+ * box per sub-step and its volume per step. BW_EINPUT when the box is empty or leaves the grid.
+ * Collective. */
+bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3],
+                                  const int hi[3]) BW_MUST_CHECK;
+
+/* Force per density of everything inside the watched box on the fluid, mean over the last step
+ * [L^4/T^2], from the momentum balance of the box:
+ *   F = d/dt int u dV + oint (u u.n + p n - nu grad u.n) dS - int g dV
+ * with the scheme's own fluxes weighted as RK3 weights them, so that F is the mean body force of
+ * the step to round-off (oint grad u^T.n dS vanishes where div u = 0). Zero before the first
+ * step. What a fixed body feels is -rho F. Collective. */
+void bw_ns_channel_control_volume(bw_ns_channel *ns, double force[3]);
+
+/* The gradient that the constant flow rate starts the next step from [L/T^2]: with u, v, w, p and
+ * the time the whole state of the solver (a checkpoint saves it). Local. */
+double bw_ns_channel_gradient(const bw_ns_channel *ns);
+void bw_ns_channel_set_gradient(bw_ns_channel *ns, double gradient);
+
+/* Seconds this rank spent since create or the last reset, and the memory of its own fields
+ * (without poisson's). Local. */
+typedef struct {
+  double momentum, poisson, correct, halo, boundary; /* [s]; correct includes the divergence */
+  long substeps;
+  size_t bytes;
+} bw_ns_cost;
+bw_ns_cost bw_ns_channel_cost(const bw_ns_channel *ns);
+void bw_ns_channel_cost_reset(bw_ns_channel *ns);

@@ -1,0 +1,126 @@
+/* ns_channel_internal.h -- shared by the sources of ns_channel only. */
+#pragma once
+#include "bw_ns_channel.h"
+#include "bw_poisson.h"
+
+enum { BW_NS_STAGES = 3 };
+
+/* Geometry as kernels want it: reciprocals, indexed by local j (valid 1-2 .. m1+2). */
+typedef struct {
+  bw_real rdx, rdz;
+  bw_real *rdyf;          /* 1/height of cell j                                       [1/L] */
+  bw_real *rdyc;          /* 1/(y_centre[j+1] - y_centre[j]), at face j               [1/L] */
+  bw_real *below, *above; /* shares of cells j, j+1 in the v-cell at face j [-]: what carries
+                             momentum through its x and z faces */
+  double *dyf, *dyc;      /* the heights themselves [L] */
+  double *heights;        /* what to release */
+  bw_real *reals;
+} bw_ns_metrics;
+
+/* What the momentum kernels work on. Rows and planes of fluxes stay in cache. */
+typedef struct {
+  const bw_grid_view *g;
+  const bw_ns_metrics *metrics;
+  bw_real *const *u, *const *R;
+  const bw_real *p;
+  bw_real *fx[4]; /* rows 0..n0: x fluxes of u, v, w; the new y flux of w */
+  bw_real *fy[3]; /* [k][i]: y flux below the row that is next, per plane */
+  bw_real *fz[3]; /* [j in tile][i]: z flux below the plane that is next */
+  bw_real *dy[3]; /* split_y: like fy, the difference quotients */
+  int tile;       /* rows in y per tile */
+  bw_real nu;
+  bool split_y; /* y diffusion: half here with weight kappa, half in the implicit solver */
+  bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = gamma dt nu/2 */
+  bw_real source;                             /* dt gamma g */
+} bw_ns_sweep;
+
+/* Boundary planes of one side: normal velocity on the face, Dirichlet values of the others.
+ * [b][a] over the two tangential directions, halos included. */
+typedef struct {
+  bool here;             /* does this rank touch the side (and is there one)? */
+  bw_real *value[3];     /* NULL: constant */
+  int extent[2], low[2]; /* indices low .. low+extent-1 in the tangential directions */
+} bw_ns_plane;
+
+/* Momentum balance of a box, see bw_ns_channel_control_volume. */
+typedef struct {
+  bool on, known; /* known: `momentum` is that of the present field */
+  int lo[3], hi[3];
+  double momentum[3]; /* this rank's share, at the end of the last step */
+  double flux[3];     /* N of the last sub-step, this rank's share */
+  double impulse[3];  /* of all fluxes and forces over the step, this rank's share */
+  double force[3];    /* of the last step, this rank's share */
+} bw_ns_box;
+
+struct bw_ns_channel {
+  bw_grid *grid; /* borrowed */
+  const bw_grid_view *g;
+  const bw_comm *comm;
+  bw_poisson *poisson;
+  bw_ns_channel_config config;
+  bw_ns_metrics metrics;
+  int components; /* 2 or 3 */
+  bw_real *u[3], *p, *phi, *R[3], *scratch;
+  size_t scratch_size;
+  bw_ns_sweep sweep;
+  bw_ns_plane plane[3][2];
+  bool has_outflow;
+  double outflow_area;
+  bw_real *implicit; /* coefficients of ns_implicit.c */
+  double time;
+  double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
+  double applied;     /* mean gradient of the last finished step */
+  double applying;    /* the same of the step in progress */
+  bool impulsive;     /* velocity was just set: its bulk need not be the wanted one */
+  double courant;     /* this rank's max sum |u_i|/dx_i [1/T]; NaN when not finite */
+  bool courant_known; /* courant_all is that of the present field */
+  double courant_all;
+  double viscous_rate; /* largest eigenvalue of the explicit viscous operator [1/T] */
+  bw_ns_box box;
+  bw_ns_cost cost;
+};
+
+extern const double bw_ns__alpha[BW_NS_STAGES], bw_ns__beta[BW_NS_STAGES],
+    bw_ns__gamma[BW_NS_STAGES], bw_ns__end[BW_NS_STAGES]; /* end: time after the sub-step / dt */
+
+/* ns_config.c */
+bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config *c);
+
+/* ns_momentum.c: u <- u + alpha_dt R(u) + beta_dt R_prev - gamma_dt grad p + source, R_prev <- R,
+ * in all cells of the rank; boundary-normal faces get values that the caller replaces. Local. */
+void bw_ns__momentum_sweep(const bw_ns_sweep *s, int stage);
+int bw_ns__momentum_tile(const bw_grid_view *g);
+size_t bw_ns__momentum_scratch(const bw_ns_sweep *s); /* reals */
+void bw_ns__momentum_place(bw_ns_sweep *s, bw_real *scratch);
+
+/* ns_project.c. Local. */
+/* f <- scale div u; returns this rank's sum u dy (per cell of dx = dz = 1) when asked. */
+double bw_ns__divergence(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
+                         double scale, bool sum, bw_real *f);
+/* u <- u - scale grad phi (+ shift in x), p <- p + phi; with `courant` the largest
+ * sum |u_i|/dx_i, NaN when something is not finite (else 0). */
+double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
+                      bw_real *p, const bw_real *phi, double scale, double shift, bool courant);
+double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3]);
+
+/* ns_boundary.c */
+bw_status bw_ns__planes_create(bw_ns_channel *ns);
+void bw_ns__planes_destroy(bw_ns_channel *ns);
+double bw_ns__inflow(bw_ns_channel *ns, double t); /* set planes; net influx. Collective. */
+void bw_ns__outflow_capture(bw_ns_channel *ns);    /* planes <- field. Local. */
+void bw_ns__outflow_advance(bw_ns_channel *ns, double dt, double influx); /* Collective. */
+void bw_ns__outflow_balance(bw_ns_channel *ns, double influx);            /* Collective. */
+void bw_ns__faces(bw_ns_channel *ns);           /* planes -> normal velocity on the faces. Local. */
+void bw_ns__ghosts_velocity(bw_ns_channel *ns); /* beyond physical boundaries. Local. */
+void bw_ns__ghosts_scalar(bw_ns_channel *ns, bw_real *p);
+double bw_ns__side_flux(const bw_ns_channel *ns, int d, int s); /* out of the box, local share */
+
+/* ns_box.c. All local; nothing where no box is watched. */
+void bw_ns__box_fluxes(bw_ns_channel *ns, int r, double dt, double gradient); /* before the sweep */
+void bw_ns__box_diffusion(bw_ns_channel *ns, double weight); /* in y, where it is split */
+void bw_ns__box_projection(bw_ns_channel *ns, double gamma_dt, double shift);
+void bw_ns__box_finish(bw_ns_channel *ns, double dt);
+
+/* ns_implicit.c */
+bw_status bw_ns__implicit_create(bw_ns_channel *ns);
+void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt);

@@ -1,0 +1,129 @@
+/* ns_config.c -- defaults, and every contradiction that a configuration can hold. */
+#include "ns_channel_internal.h"
+
+#include <math.h>
+
+static const char *const direction_name[] = {"x", "y", "z"};
+static const char *const end_name[] = {"lower", "upper"};
+
+bw_ns_channel_config bw_ns_channel_config_default(void)
+{
+  bw_ns_channel_config c = {
+      .nu = (double)NAN, .forcing = BW_FORCING_NONE, .viscous = BW_VISCOUS_EXPLICIT};
+  for (int d = 0; d < 3; d++)
+    for (int s = 0; s < 2; s++)
+      c.side[d][s] = (bw_ns_side){
+          .kind = BW_SIDE_WALL, .profile = BW_PROFILE_UNIFORM, .bulk_velocity = (double)NAN};
+  return c;
+}
+
+static bw_status inflow_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
+{
+  const bw_ns_side *side = &c->side[d][s];
+  const char *dn = direction_name[d], *sn = end_name[s];
+  if (side->profile == BW_PROFILE_CALLBACK)
+    BW_REQUIRE(side->function != NULL, BW_EINPUT,
+               "ns_channel: %s %s side: a callback inflow needs side.function", sn, dn);
+  if (side->profile != BW_PROFILE_POISEUILLE) return BW_OK;
+  BW_REQUIRE(d == 0, BW_EINPUT,
+             "ns_channel: %s %s side: a Poiseuille inflow is plane in y and "
+             "enters through an x side; use a callback",
+             sn, dn);
+  BW_REQUIRE(isfinite(side->bulk_velocity), BW_EINPUT,
+             "ns_channel: %s %s side: side.bulk_velocity of the Poiseuille inflow is %g; "
+             "give a finite velocity",
+             sn, dn, side->bulk_velocity);
+  for (int q = 0; q < 2; q++) {
+    const double *v = c->side[1][q].velocity;
+    BW_REQUIRE(!g->periodic[1] && c->side[1][q].kind == BW_SIDE_WALL && v[0] == 0.0 && v[2] == 0.0,
+               BW_EINPUT,
+               "ns_channel: %s %s side: a Poiseuille inflow needs walls at rest at both "
+               "y sides; the %s one is not",
+               sn, dn, end_name[q]);
+  }
+  return BW_OK;
+}
+
+static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
+{
+  const bw_ns_side *side = &c->side[d][s];
+  const char *dn = direction_name[d], *sn = end_name[s];
+  BW_REQUIRE((side->kind == BW_SIDE_PERIODIC) == g->periodic[d], BW_EINPUT,
+             "ns_channel: %s %s side is %speriodic but the grid is %speriodic in %s; make both "
+             "the same",
+             sn, dn, side->kind == BW_SIDE_PERIODIC ? "" : "not ", g->periodic[d] ? "" : "not ",
+             dn);
+  for (int q = 0; q < 3; q++)
+    BW_REQUIRE(isfinite(side->velocity[q]), BW_EINPUT,
+               "ns_channel: %s %s side: velocity[%d] is %g; give a finite velocity", sn, dn, q,
+               side->velocity[q]);
+  if (side->kind == BW_SIDE_WALL)
+    BW_REQUIRE(side->velocity[d] == 0.0, BW_EINPUT,
+               "ns_channel: %s %s side: a wall moves tangentially only, but velocity[%d] is %g; "
+               "use an inflow for blowing",
+               sn, dn, d, side->velocity[d]);
+  if (side->kind == BW_SIDE_OUTFLOW)
+    BW_REQUIRE(s == 1, BW_EINPUT,
+               "ns_channel: %s %s side: an outflow must be an upper side; let "
+               "the flow go along +%s",
+               sn, dn, dn);
+  if (side->kind == BW_SIDE_INFLOW) BW_TRY(inflow_check(g, c, d, s));
+  return BW_OK;
+}
+
+/* Net volume that uniform and Poiseuille inflows bring per area must leave. */
+static bw_status balance_check(const bw_grid_view *g, const bw_ns_channel_config *c)
+{
+  bool inflow = false, outflow = false, callback = false;
+  double net = 0.0, gross = 0.0;
+  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++)
+    for (int s = 0; s < 2; s++) {
+      const bw_ns_side *side = &c->side[d][s];
+      outflow |= side->kind == BW_SIDE_OUTFLOW;
+      if (side->kind != BW_SIDE_INFLOW) continue;
+      inflow = true;
+      callback |= side->profile == BW_PROFILE_CALLBACK;
+      const double area = g->length[(d + 1) % 3] * g->length[(d + 2) % 3];
+      const double normal =
+          side->profile == BW_PROFILE_POISEUILLE ? side->bulk_velocity : side->velocity[d];
+      net += (s == 0 ? area : -area) * normal;
+      gross += area * fabs(normal);
+    }
+  BW_REQUIRE(inflow || !outflow, BW_EINPUT,
+             "ns_channel: there is an outflow but no inflow; name the side that feeds it");
+  BW_REQUIRE(!callback || outflow, BW_EINPUT,
+             "ns_channel: a callback inflow needs an outflow side that takes what enters");
+  BW_REQUIRE(outflow || fabs(net) <= 1e-12 * gross, BW_EINPUT,
+             "ns_channel: %g more volume enters than leaves; add an outflow side", net);
+  BW_REQUIRE(!outflow || net > 0.0 || callback, BW_EINPUT,
+             "ns_channel: net inflow is %g; an outflow needs a positive one", net);
+  return BW_OK;
+}
+
+bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config *c)
+{
+  BW_REQUIRE(isfinite(c->nu) && c->nu > 0.0, BW_EINPUT,
+             "ns_channel: nu is %g; give a kinematic viscosity > 0", c->nu);
+  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++) {
+    BW_REQUIRE(g->n[d] >= 2, BW_EINPUT, "ns_channel: %d cell in %s; at least 2 are needed", g->n[d],
+               direction_name[d]);
+    for (int s = 0; s < 2; s++)
+      BW_TRY(side_check(g, c, d, s));
+  }
+  if (c->forcing != BW_FORCING_NONE) {
+    BW_REQUIRE(g->periodic[0], BW_EINPUT,
+               "ns_channel: forcing needs periodic x; between inflow and outflow the pressure "
+               "drives the flow");
+    BW_REQUIRE(isfinite(c->forcing_value), BW_EINPUT,
+               "ns_channel: forcing_value is %g; give a bulk velocity or a gradient",
+               c->forcing_value);
+  }
+  BW_REQUIRE(c->viscous == BW_VISCOUS_EXPLICIT || g->ranks[1] == 1, BW_EINPUT,
+             "ns_channel: implicit viscosity in y needs all of y on each rank, but y is divided "
+             "over %d; create the grid with ranks = {1, number of ranks}",
+             g->ranks[1]);
+  BW_REQUIRE(c->viscous == BW_VISCOUS_EXPLICIT || !g->periodic[1], BW_EINPUT,
+             "ns_channel: implicit viscosity in y is for walls; y is periodic, use the explicit "
+             "term");
+  return balance_check(g, c);
+}

@@ -1,0 +1,253 @@
+/* ns_step.c -- the recipe: predict, project, and the checks around a step. */
+#include "ns_channel_internal.h"
+
+#include <math.h>
+
+/* Low-storage RK3 (ERRATA 5): gamma = alpha + beta. */
+const double bw_ns__alpha[BW_NS_STAGES] = {8.0 / 15.0, 5.0 / 12.0, 3.0 / 4.0};
+const double bw_ns__beta[BW_NS_STAGES] = {0.0, -17.0 / 60.0, -5.0 / 12.0};
+const double bw_ns__gamma[BW_NS_STAGES] = {8.0 / 15.0, 2.0 / 15.0, 1.0 / 3.0};
+const double bw_ns__end[BW_NS_STAGES] = {8.0 / 15.0, 2.0 / 3.0, 1.0};
+
+/* Real and imaginary axis limits of every three-stage third-order Runge-Kutta method:
+ * |1 + z + z^2/2 + z^3/6| <= 1. The ellipse through both lies inside the stability region. */
+static const double real_limit = 2.5127453, imaginary_limit = 1.7320508;
+
+/* Seconds since *mark are added to *sum; *mark moves on. */
+static void lap(double *mark, double *sum)
+{
+  const double now = bw_wall_time();
+  *sum += now - *mark;
+  *mark = now;
+}
+
+static void velocity_halos(bw_ns_channel *ns)
+{
+  bw_halo_update(ns->grid, ns->components, ns->u);
+  bw_ns__ghosts_velocity(ns);
+}
+
+static void all_halos(bw_ns_channel *ns)
+{
+  bw_real *field[4] = {ns->p, ns->u[0], ns->u[1], ns->u[2]};
+  bw_halo_update(ns->grid, 1 + ns->components, field);
+  bw_ns__ghosts_velocity(ns);
+  bw_ns__ghosts_scalar(ns, ns->p);
+}
+
+void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt)
+{
+  const double gamma_dt = bw_ns__gamma[r] * dt;
+  const bw_ns_forcing forcing = ns->config.forcing;
+  const double gradient = forcing == BW_FORCING_GRADIENT    ? ns->config.forcing_value
+                          : forcing == BW_FORCING_FLOW_RATE ? ns->gradient
+                                                            : 0.0;
+  double mark = bw_wall_time();
+  bw_ns_sweep *s = &ns->sweep;
+  s->alpha_dt = (bw_real)(bw_ns__alpha[r] * dt);
+  s->beta_dt = (bw_real)(bw_ns__beta[r] * dt);
+  s->gamma_dt = (bw_real)gamma_dt;
+  s->kappa = (bw_real)(0.5 * gamma_dt * ns->config.nu);
+  s->source = (bw_real)(gamma_dt * gradient);
+  if (r == 0) ns->applying = 0.0;
+  ns->applying += bw_ns__gamma[r] * gradient;
+
+  const double influx = bw_ns__inflow(ns, ns->time + bw_ns__end[r] * dt);
+  bw_ns__outflow_advance(ns, gamma_dt, influx);
+  bw_ns__box_fluxes(ns, r, dt, gradient);
+  if (s->split_y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
+  lap(&mark, &ns->cost.boundary);
+  bw_ns__momentum_sweep(s, r);
+  bw_ns__faces(ns);
+  if (s->split_y) {
+    bw_ns__implicit_solve(ns, gamma_dt);
+    bw_ns__faces(ns);
+  }
+  lap(&mark, &ns->cost.momentum);
+  velocity_halos(ns);
+  if (s->split_y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
+  lap(&mark, &ns->cost.halo);
+}
+
+/* Uniform change of u that the constant flow rate still needs; sum: this rank's sum u dy. */
+static double flow_rate_shift(bw_ns_channel *ns, double sum)
+{
+  const bw_grid_view *g = ns->g;
+  bw_comm_sum(ns->comm, 1, &sum);
+  const double bulk = sum / ((double)g->n[0] * g->n[2] * g->length[1]);
+  return ns->config.forcing_value - bulk;
+}
+
+/* phi: divergence -> p^ ; then u, p. `fresh`: halos and faces of u* are those of predict. */
+static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
+{
+  const double gamma_dt = bw_ns__gamma[r] * dt;
+  const bool flow_rate = ns->config.forcing == BW_FORCING_FLOW_RATE;
+  double mark = bw_wall_time(), shift = 0.0;
+  if (!fresh) {
+    bw_ns__faces(ns); /* a body may have spread onto them */
+    velocity_halos(ns);
+    lap(&mark, &ns->cost.halo);
+  }
+  const double sum =
+      bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0 / gamma_dt, flow_rate, ns->phi);
+  if (flow_rate) {
+    shift = flow_rate_shift(ns, sum);
+    ns->applying += shift / dt;
+    if (!ns->impulsive) ns->gradient += shift / gamma_dt;
+    ns->impulsive = false;
+  }
+  lap(&mark, &ns->cost.correct);
+  bw_poisson_solve(ns->poisson, ns->phi);
+  lap(&mark, &ns->cost.poisson);
+  bw_halo_update(ns->grid, 1, &ns->phi);
+  bw_ns__ghosts_scalar(ns, ns->phi);
+  lap(&mark, &ns->cost.halo);
+  bw_ns__box_projection(ns, gamma_dt, shift);
+  ns->courant = bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, gamma_dt, shift,
+                               r == BW_NS_STAGES - 1);
+  ns->courant_known = false;
+  lap(&mark, &ns->cost.correct);
+  all_halos(ns);
+  lap(&mark, &ns->cost.halo);
+  ns->cost.substeps++;
+  if (r < BW_NS_STAGES - 1) return;
+  bw_ns__box_finish(ns, dt);
+  ns->applied = ns->applying;
+  ns->time += dt;
+}
+
+void bw_ns_channel_project(bw_ns_channel *ns, int r, double dt)
+{
+  project(ns, r, dt, false);
+}
+
+bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt)
+{
+  BW_REQUIRE(dt > 0.0, BW_EINPUT, "ns_channel: dt = %g; give a step > 0", dt);
+  BW_TRY(bw_ns_channel_check(ns, dt));
+  for (int r = 0; r < BW_NS_STAGES; r++) {
+    bw_ns_channel_predict(ns, r, dt);
+    project(ns, r, dt, true);
+  }
+  return bw_ns_channel_check(ns, 0.0);
+}
+
+/* All ranks: largest sum |u_i|/dx_i, NaN when a value anywhere is not finite. */
+static double courant_everywhere(bw_ns_channel *ns)
+{
+  if (ns->courant_known) return ns->courant_all;
+  const bool finite = isfinite(ns->courant);
+  double worst[2] = {finite ? ns->courant : 0.0, finite ? 0.0 : 1.0};
+  bw_comm_max(ns->comm, 2, worst);
+  ns->courant_all = worst[1] > 0.0 ? (double)NAN : worst[0];
+  ns->courant_known = true;
+  return ns->courant_all;
+}
+
+double bw_ns_channel_dt_max(bw_ns_channel *ns)
+{
+  const double c = courant_everywhere(ns) / imaginary_limit, v = ns->viscous_rate / real_limit;
+  return 1.0 / sqrt(c * c + v * v);
+}
+
+/* First point (component, then k, j, i) that is not finite. */
+static bw_status not_finite(bw_ns_channel *ns)
+{
+  const bw_grid_view *g = ns->g;
+  const double n0 = g->n[0] + 1, n1 = g->n[1] + 1, n2 = g->n[2] + 1;
+  double first = INFINITY;
+  for (int c = 0; c < ns->components; c++)
+    for (int k = 1; k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++)
+        for (int i = 1; i <= g->m[0]; i++)
+          if (!isfinite(ns->u[c][bw_at(g, i, j, k)]))
+            first = fmin(first, ((c * n2 + k + g->lo[2]) * n1 + j + g->lo[1]) * n0 + i);
+  bw_comm_min(ns->comm, 1, &first);
+  if (!isfinite(first))
+    return BW_FAIL(BW_EDIVERGED,
+                   "ns_channel: sum |u_i|/dx_i overflows at "
+                   "t = %g; the step was too long",
+                   ns->time);
+  const int i = (int)fmod(first, n0), j = (int)fmod(floor(first / n0), n1);
+  const int k = (int)fmod(floor(first / (n0 * n1)), n2), c = (int)floor(first / (n0 * n1 * n2));
+  return BW_FAIL(BW_EDIVERGED,
+                 "ns_channel: velocity component %c is not finite at cell (%d, %d, %d), "
+                 "t = %g; look at what was forced there, or shorten the step",
+                 "uvw"[c], i, j, k, ns -> time);
+}
+
+bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt)
+{
+  const double c = courant_everywhere(ns);
+  if (!isfinite(c)) return not_finite(ns);
+  const double limit = bw_ns_channel_dt_max(ns);
+  BW_REQUIRE(isfinite(dt) && dt >= 0.0, BW_EINPUT, "ns_channel: dt = %g; give a step > 0", dt);
+  BW_REQUIRE(dt <= limit * (1.0 + 1e-12), BW_ECFL,
+             "ns_channel: dt = %g at t = %g is over the limit %g (convective %g, viscous %g); use "
+             "a step below it%s",
+             dt, ns->time, limit, imaginary_limit / c, real_limit / ns->viscous_rate,
+             ns->viscous_rate / real_limit > c / imaginary_limit &&
+                     ns->config.viscous == BW_VISCOUS_EXPLICIT
+                 ? " or the implicit viscous term in y"
+                 : "");
+  return BW_OK;
+}
+
+void bw_ns_channel_refresh(bw_ns_channel *ns)
+{
+  bw_ns__inflow(ns, ns->time);
+  bw_ns__outflow_capture(ns);
+  bw_ns__faces(ns);
+  all_halos(ns);
+  ns->courant = bw_ns__courant(ns->g, &ns->metrics, ns->u);
+  ns->courant_known = false;
+  ns->box.known = false;
+}
+
+static void sample(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context, double t)
+{
+  const bw_grid_view *g = ns->g;
+  for (int c = 0; c < ns->components; c++)
+    for (int k = 1; k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++)
+        for (int i = 1; i <= g->m[0]; i++) {
+          const int y = j + g->lo[1];
+          double u[3] = {0, 0, 0};
+          const double x[3] = {(c == 0 ? i : i - 0.5) * g->spacing[0],
+                               c == 1 ? g->y_face[y] : g->y_centre[y],
+                               (k + g->lo[2] - (c == 2 ? 0.0 : 0.5)) * g->spacing[2]};
+          if (function != NULL) function(x, t, context, u);
+          ns->u[c][bw_at(g, i, j, k)] = (bw_real)u[c];
+        }
+}
+
+static void zero(const bw_grid_view *g, bw_real *field)
+{
+  for (size_t q = 0; q < g->size; q++)
+    field[q] = 0;
+}
+
+bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
+                                     double t)
+{
+  ns->time = t;
+  ns->gradient = ns->applied = 0.0;
+  ns->impulsive = true;
+  sample(ns, function, context, t);
+  const double influx = bw_ns__inflow(ns, t);
+  bw_ns__outflow_capture(ns);
+  bw_ns__outflow_balance(ns, influx);
+  bw_ns__faces(ns);
+  velocity_halos(ns);
+  bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0, false, ns->phi);
+  bw_poisson_solve(ns->poisson, ns->phi);
+  bw_halo_update(ns->grid, 1, &ns->phi);
+  bw_ns__ghosts_scalar(ns, ns->phi);
+  bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, 1.0, 0.0, false);
+  zero(ns->g, ns->p);
+  bw_ns_channel_refresh(ns);
+  for (int d = 0; d < 3; d++)
+    ns->box.force[d] = 0.0;
+  return bw_ns_channel_check(ns, 0.0);
+}

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-enum { BW_MESSAGE_SIZE = 1024, BW_NUMBER_SIZE = 32 };
+enum { BW_MESSAGE_SIZE = 4096, BW_NUMBER_SIZE = 32 };
 
 /* Replace the last message (bw_comm_agree spreads the failing rank's). Local. */
 void bw_core__set_message(const char *text);
@@ -15,6 +15,9 @@ bw_status bw_core__part_path(const char *path, char **part) BW_MUST_CHECK;
 
 /* The shortest of %.15g, %.16g, %.17g that reads back to x. Local. */
 void bw_core__format_double(double x, char text[BW_NUMBER_SIZE]);
+
+/* A YAML text in double quotes. Local. */
+void bw_core__put_quoted(FILE *out, const char *text);
 
 /* Letters to insert, delete, replace or swap to get from a to b (63 when longer than that). */
 int bw_core__edit_distance(const char *a, const char *b);

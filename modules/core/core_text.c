@@ -12,6 +12,20 @@ void bw_core__format_double(double x, char text[BW_NUMBER_SIZE])
   }
 }
 
+void bw_core__put_quoted(FILE *out, const char *text)
+{
+  fputc('"', out);
+  for (const char *c = text; *c != '\0'; c++) {
+    if (*c == '"' || *c == '\\')
+      fprintf(out, "\\%c", *c);
+    else if ((unsigned char)*c < 32)
+      fprintf(out, "\\x%02x", (unsigned)*c);
+    else
+      fputc(*c, out);
+  }
+  fputc('"', out);
+}
+
 /* Optimal string alignment distance: insert, delete, replace, swap neighbours (the usual slips). */
 int bw_core__edit_distance(const char *a, const char *b)
 {

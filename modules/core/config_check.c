@@ -1,0 +1,312 @@
+/* The document against the table: one line per problem, and the accepted values as plain YAML. */
+#include "config_internal.h"
+
+#include "bw_memory.h"
+#include <stdarg.h>
+#include <string.h>
+
+typedef struct {
+  const bw_core__config_source *source;
+  const bw_config_field *all; /* the table of the top level, to look for misplaced keys */
+  FILE *problems, *accepted;
+  int n_problems;
+} walk;
+
+enum { FOUND = 64, EXPECTED = 320, MEANING = 320 };
+
+/* "WHERE: text", one line. */
+BW_PRINTF(3, 4) static void problem(walk *w, int id, const char *fmt, ...)
+{
+  char where[BW_CONFIG_PATH];
+  va_list args;
+  bw_core__config_where(w->source, id, sizeof where, where);
+  fprintf(w->problems, "%s%s: ", w->n_problems > 0 ? "\n" : "", where);
+  va_start(args, fmt);
+  vfprintf(w->problems, fmt, args);
+  va_end(args);
+  w->n_problems++;
+}
+
+/* A value for a message; long ones are cut. */
+static void found(const walk *w, int id, char text[FOUND])
+{
+  const yaml_node_t *node = bw_core__config_node(w->source, id);
+  if (node->type == YAML_MAPPING_NODE)
+    snprintf(text, FOUND, "a block");
+  else if (node->type == YAML_SEQUENCE_NODE)
+    snprintf(text, FOUND, "a list of %d", bw_core__config_count(w->source, id));
+  else if (node->data.scalar.length == 0)
+    snprintf(text, FOUND, "nothing");
+  else
+    snprintf(text, FOUND, "%.60s", (const char *)node->data.scalar.value);
+}
+
+static void wrong(walk *w, const bw_config_field *f, int id, const char *path)
+{
+  char value[FOUND], expected[EXPECTED], meaning[MEANING];
+  found(w, id, value);
+  bw_core__config_expected(f, sizeof expected, expected);
+  bw_core__config_meaning(f, sizeof meaning, meaning);
+  problem(w, id, "%s = %s: must be %s%s", path, value, expected, meaning);
+}
+
+/* Why a value that looks right was refused. */
+static void refuse(walk *w, const bw_config_field *f, int id, const char *path, const char *text)
+{
+  char expected[EXPECTED], meaning[MEANING];
+  const char *nearest = NULL;
+  int best = 64;
+  bw_core__config_expected(f, sizeof expected, expected);
+  bw_core__config_meaning(f, sizeof meaning, meaning);
+  if (f->words != NULL)
+    for (const bw_config_word *word = f->words; word->word != NULL; word++)
+      if (bw_core__near_miss(text, word->word, &best)) nearest = word->word;
+  double x = 0.0;
+  const bool number = f->type == BW_CONFIG_TYPE_DOUBLE || f->type == BW_CONFIG_TYPE_INT;
+  if (number && bw_core__config_number(text, &x) && !bw_core__config_in_range(&f->range, x)) {
+    const char *relation = strpbrk(expected, "<>");
+    problem(w, id, "%s = %s: must be %s%s", path, text, relation, meaning);
+  } else if (f->type == BW_CONFIG_TYPE_TEXT) {
+    problem(w, id, "%s: must be a text of at most %d bytes, %d are given%s", path, (int)f->size - 1,
+            (int)strlen(text), meaning);
+  } else if (nearest != NULL) {
+    problem(w, id, "%s = %s: must be %s; did you mean %s?%s", path, text, expected, nearest,
+            meaning);
+  } else {
+    wrong(w, f, id, path);
+  }
+}
+
+static void check_scalar(walk *w, const bw_config_field *f, int id, const char *path)
+{
+  const yaml_node_t *node = bw_core__config_node(w->source, id);
+  const bool text = f->type == BW_CONFIG_TYPE_TEXT;
+  if (node->type != YAML_SCALAR_NODE ||
+      (text && node->data.scalar.length == 0 && bw_core__config_is_null(w->source, id))) {
+    wrong(w, f, id, path);
+    return;
+  }
+  const char *value = (const char *)node->data.scalar.value;
+  if (strlen(value) != node->data.scalar.length)
+    wrong(w, f, id, path); /* a 0 byte inside */
+  else if (!bw_core__config_accept(f, value, w->accepted))
+    refuse(w, f, id, path, value);
+  else if (text && value[0] == '\0' && f->need == BW_REQUIRED)
+    wrong(w, f, id, path);
+}
+
+/* A scalar, or a list of exactly as many as the array has. */
+static void check_value(walk *w, const bw_config_field *f, int id, const char *path)
+{
+  const int length = bw_core__config_length(f);
+  char item_path[BW_CONFIG_PATH], index[16];
+  if (length == 1) {
+    check_scalar(w, f, id, path);
+    return;
+  }
+  if (bw_core__config_count(w->source, id) != length) {
+    wrong(w, f, id, path);
+    return;
+  }
+  fputc('[', w->accepted);
+  for (int q = 0; q < length; q++) {
+    snprintf(index, sizeof index, "%d", q);
+    bw_core__config_join(path, index, item_path);
+    check_scalar(w, f, bw_core__config_item(w->source, id, q), item_path);
+    fputs(", ", w->accepted);
+  }
+  fputc(']', w->accepted);
+}
+
+/* Path of the field of that key anywhere in the table; false when there is none. */
+static bool search_key(const bw_config_field fields[], const char *prefix, const char *key,
+                       char path[BW_CONFIG_PATH])
+{
+  for (const bw_config_field *f = fields; f->key != NULL; f++) {
+    char here[BW_CONFIG_PATH], item[BW_CONFIG_PATH];
+    bw_core__config_join(prefix, f->key, here);
+    if (strcmp(f->key, key) == 0) {
+      memcpy(path, here, sizeof here);
+      return true;
+    }
+    bw_core__config_join(here, "0", item);
+    if (f->fields != NULL &&
+        search_key(f->fields, f->type == BW_CONFIG_TYPE_LIST ? item : here, key, path))
+      return true;
+  }
+  return false;
+}
+
+static void unknown_key(walk *w, const bw_config_field fields[], int id, const char *prefix,
+                        const char *key)
+{
+  char path[BW_CONFIG_PATH], meant[BW_CONFIG_PATH];
+  const char *nearest = NULL;
+  int best = 64;
+  bw_core__config_join(prefix, key, path);
+  for (const bw_config_field *f = fields; f->key != NULL; f++)
+    if (bw_core__near_miss(key, f->key, &best)) nearest = f->key;
+  if (nearest != NULL) bw_core__config_join(prefix, nearest, meant);
+  if (nearest != NULL || search_key(w->all, "", key, meant)) {
+    problem(w, id, "%s: unknown key; did you mean %s?", path, meant);
+    return;
+  }
+  char known[EXPECTED] = "";
+  for (const bw_config_field *f = fields; f->key != NULL; f++) {
+    const size_t used = strlen(known);
+    snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "", f->key);
+  }
+  problem(w, id, "%s: unknown key; known here: %s", path, known);
+}
+
+/* Keys that the table does not have, and keys given twice. */
+static void check_keys(walk *w, const bw_config_field fields[], int id, const char *prefix)
+{
+  const yaml_node_t *node = bw_core__config_node(w->source, id);
+  if (node == NULL || node->type != YAML_MAPPING_NODE) return;
+  for (const yaml_node_pair_t *p = node->data.mapping.pairs.start; p < node->data.mapping.pairs.top;
+       p++) {
+    const yaml_node_t *name = bw_core__config_node(w->source, p->key);
+    if (name->type != YAML_SCALAR_NODE) {
+      problem(w, p->key, "%s%sa key must be a word", prefix, prefix[0] != '\0' ? ": " : "");
+      continue;
+    }
+    const char *key = (const char *)name->data.scalar.value;
+    const bw_config_field *f = fields;
+    int first = 0;
+    while (f->key != NULL && strcmp(f->key, key) != 0)
+      f++;
+    if (f->key == NULL && !(prefix[0] == '\0' && strcmp(key, "run") == 0))
+      unknown_key(w, fields, p->key, prefix, key);
+    if (bw_core__config_find(w->source, id, key, &first) != 0 && first != p->key) {
+      char path[BW_CONFIG_PATH], where[BW_CONFIG_PATH];
+      bw_core__config_join(prefix, key, path);
+      bw_core__config_where(w->source, first, sizeof where, where);
+      problem(w, p->key, "%s: given twice, first at %s", path, where);
+    }
+  }
+}
+
+static void check_table(walk *w, const bw_config_field fields[], int id, int place,
+                        const char *prefix, const char *defaults);
+
+/* `id` 0: not given; `place` is the node to name then. */
+static void check_map(walk *w, const bw_config_field *f, int id, int place, const char *path,
+                      const char *defaults)
+{
+  const bool optional = f->flag != BW_CONFIG_NO_FLAG;
+  bool given = true;
+  if (optional && id == 0) memcpy(&given, defaults + f->flag, sizeof given);
+  if (!given || (optional && id != 0 && bw_core__config_is_none(w->source, id))) {
+    if (id != 0) fputs("{}", w->accepted);
+    return;
+  }
+  if (id != 0 && !bw_core__config_is_null(w->source, id) &&
+      bw_core__config_node(w->source, id)->type != YAML_MAPPING_NODE) {
+    wrong(w, f, id, path);
+    return;
+  }
+  check_table(w, f->fields, id, place, path, defaults + f->offset);
+}
+
+static void check_list(walk *w, const bw_config_field *f, int id, const char *path,
+                       const char *defaults)
+{
+  const int count = bw_core__config_count(w->source, id), most = (int)(f->size / f->item_size);
+  char meaning[MEANING], item_path[BW_CONFIG_PATH], index[16];
+  bw_core__config_meaning(f, sizeof meaning, meaning);
+  if (bw_core__config_node(w->source, id)->type != YAML_SEQUENCE_NODE &&
+      !bw_core__config_is_null(w->source, id))
+    wrong(w, f, id, path);
+  else if (count == 0 && f->need == BW_REQUIRED)
+    problem(w, id, "%s: at least one item is needed%s", path, meaning);
+  else if (count > most)
+    problem(w, id, "%s: at most %d items, %d are given%s", path, most, count, meaning);
+  else {
+    fputc('[', w->accepted);
+    for (int q = 0; q < count; q++) {
+      const int item = bw_core__config_item(w->source, id, q);
+      const yaml_node_t *node = bw_core__config_node(w->source, item);
+      snprintf(index, sizeof index, "%d", q);
+      bw_core__config_join(path, index, item_path);
+      if (node->type == YAML_MAPPING_NODE)
+        check_table(w, f->fields, item, item, item_path, defaults + f->offset);
+      else
+        problem(w, item, "%s: must be a block of keys%s", item_path, meaning);
+      fputs(", ", w->accepted);
+    }
+    fputc(']', w->accepted);
+  }
+}
+
+static void missing(walk *w, const bw_config_field *f, int place, const char *path)
+{
+  char expected[EXPECTED], meaning[MEANING];
+  bw_core__config_expected(f, sizeof expected, expected);
+  bw_core__config_meaning(f, sizeof meaning, meaning);
+  problem(w, place, "%s is missing: give %s%s", path, expected, meaning);
+}
+
+static void check_table(walk *w, const bw_config_field fields[], int id, int place,
+                        const char *prefix, const char *defaults)
+{
+  check_keys(w, fields, id, prefix);
+  if (id != 0) fputc('{', w->accepted);
+  for (const bw_config_field *f = fields; f->key != NULL; f++) {
+    char path[BW_CONFIG_PATH];
+    int key = place;
+    const int value = bw_core__config_find(w->source, id, f->key, &key);
+    bw_core__config_join(prefix, f->key, path);
+    if (value != 0) fprintf(w->accepted, "\"%s\": ", f->key);
+    if (f->type == BW_CONFIG_TYPE_MAP)
+      check_map(w, f, value, key, path, defaults);
+    else if (value == 0 && f->need == BW_REQUIRED && bw_core__config_unset(f, defaults))
+      missing(w, f, place, path);
+    else if (value != 0 && f->type == BW_CONFIG_TYPE_LIST)
+      check_list(w, f, value, path, defaults);
+    else if (value != 0)
+      check_value(w, f, value, path);
+    if (value != 0) fputs(", ", w->accepted);
+  }
+  if (id != 0) fputc('}', w->accepted);
+}
+
+/* The lines that fit into a message, and how many more there are. */
+static bw_status report(const walk *w, char *lines)
+{
+  enum { ROOM = BW_MESSAGE_SIZE - 64 };
+  int shown = 0;
+  char more[48] = "";
+  if (strlen(lines) > ROOM) {
+    lines[ROOM] = '\0';
+    char *last = strrchr(lines, '\n');
+    if (last != NULL) *last = '\0';
+    for (const char *c = lines; c != NULL; c = strchr(c + 1, '\n'))
+      shown++;
+    snprintf(more, sizeof more, "\n(and %d more)", w->n_problems - shown);
+  }
+  return BW_FAIL(BW_EINPUT, "%s%s", lines, more);
+}
+
+bw_status bw_core__config_check(const bw_core__config_source *s, const bw_config_field fields[],
+                                const void *defaults, char **accepted)
+{
+  walk w = {.source = s, .all = fields};
+  char *lines = NULL;
+  size_t n_lines = 0, n_accepted = 0;
+  bw_status st = BW_OK;
+  *accepted = NULL;
+  w.problems = open_memstream(&lines, &n_lines);
+  w.accepted = open_memstream(accepted, &n_accepted);
+  const bool ok = w.problems != NULL && w.accepted != NULL;
+  if (ok) check_table(&w, fields, s->root, 0, "", defaults);
+  if (w.problems != NULL) fclose(w.problems);
+  if (w.accepted != NULL) fclose(w.accepted);
+  if (!ok)
+    st = BW_FAIL(BW_EMEM, "no memory to check %s", s->name);
+  else if (w.n_problems > 0)
+    st = report(&w, lines);
+  bw_release(&lines);
+  if (st != BW_OK) bw_release(accepted);
+  return st;
+}

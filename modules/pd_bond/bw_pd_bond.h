@@ -22,8 +22,13 @@ typedef struct bw_pd_bond bw_pd_bond;
 typedef enum { BW_PD_3D, BW_PD_PLANE_STRESS, BW_PD_PLANE_STRAIN } bw_pd_geometry;
 typedef enum { BW_PD_SURFACE_NONE, BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_ENERGY }
     bw_pd_surface_correction;
-typedef enum { BW_PD_FRACTION_LINEAR, BW_PD_FRACTION_EXACT, BW_PD_FRACTION_NONE }
-    bw_pd_volume_fraction; /* 3D: linear is refused */
+typedef enum {
+  BW_PD_FRACTION_LINEAR, /* 3.33 with ERRATA 2; refused in 3D */
+  BW_PD_FRACTION_EXACT,
+  BW_PD_FRACTION_NONE,
+  BW_PD_FRACTION_DEFAULT /* exact in 3D, linear in 2D */
+} bw_pd_volume_fraction;
+typedef enum { BW_PD_REACH_HALF_CELL, BW_PD_REACH_HORIZON } bw_pd_family_reach;
 typedef enum { BW_PD_VERLET, BW_PD_RK3 } bw_pd_integrator;
 
 typedef struct {
@@ -37,6 +42,7 @@ typedef struct {
   double G0;                /* fracture energy [M/T^2]              default INFINITY */
   bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* default volume */
+  bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
   bw_pd_integrator integrator;                 /* default Verlet */
   double damping_pair;      /* k_d of 3.41 [M/(L^6 T)]              default 0 */
   double damping_mean;      /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
@@ -89,6 +95,7 @@ int64_t bw_pd_bond_total(const bw_pd_bond *pd);             /* of all ranks */
 const int64_t *bw_pd_bond_id(const bw_pd_bond *pd);         /* (n) global ids */
 const uint8_t *bw_pd_bond_kind(const bw_pd_bond *pd);       /* (n) */
 const bw_pd_bond_config *bw_pd_bond_settings(const bw_pd_bond *pd);
+const bw_comm *bw_pd_bond_comm(const bw_pd_bond *pd);       /* of create, borrowed */
 double bw_pd_bond_horizon(const bw_pd_bond *pd);
 double bw_pd_bond_micromodulus(const bw_pd_bond *pd);       /* c0 [M/(L^7 T^2)] */
 double bw_pd_bond_critical_stretch(const bw_pd_bond *pd);   /* s0 [-] */

@@ -1,0 +1,187 @@
+/* Short-range repulsion (3.40 with ERRATA 3): on h, for r = |X_l - X_h| < r_c,
+ *   C_h = - k_c (r_c/r - 1) e dV_l,  e from h to l,  n_c = 1, k_c = 15 c0, r_c = ds,
+ * which derives from the energy k_c (r_c ln(r_c/r) - r_c + r) dV dV of a pair. */
+#include "pd_bond_contact.h"
+#include "bw_memory.h"
+#include "pd_bond_vector.h"
+
+#include <math.h>
+
+static const double K_CONTACT = 15; /* k_c/c0: Macek & Silling 2007 */
+static const double SKIN = 0.5;     /* of the search, in ds: a new one after a move of ds/4 */
+
+bw_status bw_pd_bond__contact_create(bw_pd_bond *pd)
+{
+  BW_TRY(BW_ALLOCATE(&pd->contact, 1));
+  bw_pd_contact *c = pd->contact;
+  c->reach = pd->config.ds;
+  c->skin = SKIN * pd->config.ds;
+  c->events_seen = -1;
+  for (int k = 0; k < 3; k++)
+    BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
+  return BW_ALLOCATE(&c->block, pd->n_block);
+}
+
+void bw_pd_bond__contact_destroy(bw_pd_bond *pd)
+{
+  bw_pd_contact *c = pd->contact;
+  if (c == NULL) return;
+  bw_pd_contact__forget(c);
+  for (int k = 0; k < 3; k++)
+    bw_release(&c->u_built[k]);
+  bw_release(&c->block);
+  bw_release(&pd->contact);
+}
+
+/* Whether an own particle moved by half the skin since the last search (NaN counts). */
+static bool moved(const bw_pd_bond *pd, const bw_pd_contact *c)
+{
+  const bw_real limit2 = (bw_real)(0.25 * c->skin * c->skin);
+  int far = 0;
+  for (size_t r = 0; r < pd->n_run; r++) {
+    const bw_pd_run run = pd->run[r];
+    for (int32_t i = 0; i < run.n; i++) {
+      bw_real d2 = 0;
+      for (int k = 0; k < 3; k++) {
+        const bw_real d = pd->u[k][run.place + i] - c->u_built[k][run.own + i];
+        d2 += d * d;
+      }
+      far += !(d2 <= limit2);
+    }
+  }
+  return far > 0;
+}
+
+static void remember(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  for (size_t i = 0; i < pd->n; i++)
+    for (int k = 0; k < 3; k++)
+      c->u_built[k][i] = pd->u[k][pd->place[i]];
+  c->built = true;
+}
+
+static void list_blocks(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  c->n_block = 0;
+  for (size_t b = 0; b < pd->n_block; b++) {
+    unsigned broken = 0;
+    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++)
+      broken |= (unsigned)(pd->slot[q].family & ~pd->slot[q].mask);
+    if (broken != 0) c->block[c->n_block++] = (uint32_t)b;
+  }
+  c->events_seen = pd->events;
+}
+
+/* Present positions of the particles at surfaces, other ranks' too. */
+static void positions(bw_pd_bond *pd, bw_pd_contact *c)
+{
+  for (size_t q = 0; q < c->n_sent; q++)
+    bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
+  for (size_t q = 0; q < c->n_mine; q++)
+    bw_pd_contact__position(pd, (size_t)c->mine[q], c->y + 3 * q);
+  bw_exchange_forward(c->plan, 3 * sizeof(double), c->send, c->y + 3 * c->n_mine);
+}
+
+bw_status bw_pd_bond__contact_update(bw_pd_bond *pd)
+{
+  bw_pd_contact *c = pd->contact;
+  int64_t needed = !c->built || moved(pd, c);
+  bw_comm_max_int(pd->comm, 1, &needed);
+  if (c->events_seen != pd->events) list_blocks(pd, c);
+  if (needed) {
+    BW_TRY(bw_pd_contact__search(pd));
+    remember(pd, c);
+  }
+  positions(pd, c);
+  return BW_OK;
+}
+
+/* What a pair at distance r and difference d (from h to l) does to h: force adds to sum[], or
+ * the half of its energy is returned. */
+typedef struct {
+  double reach, k; /* k_c dV/rho */
+} law;
+
+static double repel(const law *w, const double d[3], double r2, double sum[3])
+{
+  const double r = sqrt(r2);
+  if (!(r2 < w->reach * w->reach) || r == 0) return 0;
+  const double f = w->k * (w->reach / r - 1) / r;
+  for (int k = 0; k < 3; k++)
+    sum[k] -= f * d[k];
+  return 0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r);
+}
+
+/* One slot's broken bonds that are short. */
+static double slot_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *block,
+                           const bw_pd_slot *slot, bool force)
+{
+  const unsigned broken = (unsigned)(slot->family & ~slot->mask);
+  const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
+  vec z[3], r2 = vec_all(0);
+  for (int k = 0; k < 3; k++) {
+    z[k] = (vec_load(pd->u[k] + slot->base) - vec_load(pd->u[k] + block->first)) +
+           vec_all(row[BW_PD_XI + k]);
+    r2 = vec_fma(z[k], z[k], r2);
+  }
+  const unsigned near = broken & vec_above(vec_all((bw_real)(w->reach * w->reach)), r2);
+  double energy = 0;
+  for (int lane = 0; near != 0 && lane < BW_PD_LANES; lane++) {
+    if (!(near >> lane & 1)) continue;
+    double sum[3] = {0};
+    const double d[3] = {(double)z[0][lane], (double)z[1][lane], (double)z[2][lane]};
+    energy += repel(w, d, (double)r2[lane], sum);
+    const int32_t h = bw_pd_bond__owner(block, lane);
+    for (int k = 0; force && k < 3; k++)
+      pd->extra[k][h] += (bw_real)sum[k];
+  }
+  return energy;
+}
+
+static double family_contact(bw_pd_bond *pd, const law *w, bool force)
+{
+  const bw_pd_contact *c = pd->contact;
+  double energy = 0;
+  for (size_t q = 0; q < c->n_block; q++) {
+    const bw_pd_block *block = &pd->block[c->block[q]];
+    for (uint32_t s = block->slot; s < block[1].slot; s++)
+      if (pd->slot[s].family != pd->slot[s].mask)
+        energy += slot_contact(pd, w, block, &pd->slot[s], force);
+  }
+  return energy;
+}
+
+static double other_contact(bw_pd_bond *pd, const law *w, bool force)
+{
+  const bw_pd_contact *c = pd->contact;
+  double energy = 0;
+  for (size_t q = 0; q < c->n_mine; q++) {
+    double sum[3] = {0}, d[3];
+    for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
+      bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * (size_t)c->pair[p], d);
+      energy += repel(w, d, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], sum);
+    }
+    for (int k = 0; force && k < 3; k++)
+      for (int a = 0; a < 3; a++) /* back from lattice axes */
+        pd->extra[k][c->mine[q]] += (bw_real)(pd->config.axes[a][k] * sum[a]);
+  }
+  return energy;
+}
+
+static law law_of(const bw_pd_bond *pd)
+{
+  return (law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho};
+}
+
+void bw_pd_bond__contact_force(bw_pd_bond *pd)
+{
+  const law w = law_of(pd);
+  family_contact(pd, &w, true);
+  other_contact(pd, &w, true);
+}
+
+double bw_pd_bond__contact_energy(bw_pd_bond *pd)
+{
+  const law w = law_of(pd);
+  return (family_contact(pd, &w, false) + other_contact(pd, &w, false)) * pd->config.rho * pd->dv;
+}

@@ -1,0 +1,42 @@
+/* pd_bond_contact.h -- state of the contact between particles that no bond joins.
+ *
+ * Two kinds of pairs. Family pairs whose bond broke are found where their slots are: no search.
+ * All others start further apart than the horizon; among the particles at a surface (family
+ * incomplete or a bond broken) a cell search lists those nearer than reach + skin, anew when
+ * something moved by half the skin since. Positions are in lattice axes, where periods act. */
+#pragma once
+#include "pd_bond_internal.h"
+
+struct bw_pd_contact {
+  double reach, skin; /* r_c = ds [L] */
+  bool built;
+  bw_real *u_built[3]; /* (n) displacement at the last search */
+  int64_t events_seen; /* of the list of blocks */
+  size_t n_block;
+  uint32_t *block; /* (n_block) blocks with a broken bond */
+
+  size_t n_mine, n_theirs, n_sent;
+  int32_t *mine; /* (n_mine) own particles at a surface */
+  int32_t *sent; /* (n_sent) own particle of each item of the plan */
+  bw_exchange *plan;
+  double *send, *y;   /* (n_sent,3); (n_mine + n_theirs,3) present positions */
+  int32_t *site;      /* (n_mine + n_theirs,3) */
+  size_t *pair_start; /* (n_mine + 1) */
+  int32_t *pair;      /* index into y */
+};
+
+void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3]);
+bw_status bw_pd_contact__search(bw_pd_bond *pd); /* Collective. */
+void bw_pd_contact__forget(bw_pd_contact *c);
+
+/* y_l - y_h with the nearest image. */
+static inline void bw_pd_contact__difference(const bw_pd_bond *pd, const double h[3],
+                                             const double l[3], double d[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const double p = pd->config.period[k];
+    d[k] = l[k] - h[k];
+    if (p > 0 && d[k] > 0.5 * p) d[k] -= p * (double)(int64_t)(d[k] / p + 0.5);
+    if (p > 0 && d[k] < -0.5 * p) d[k] += p * (double)(int64_t)(-d[k] / p + 0.5);
+  }
+}

@@ -1,0 +1,71 @@
+/* Damping of three kinds (ERRATA 4), as accelerations:
+ *   pair      + k/rho sum_l [(V_l - V_h).e] e Gamma dV     over bonds that hold, e present
+ * direction mean      - k/rho (V_h - mean of V_l over the family)  family members by bonds that
+ * hold absolute  - k/rho V_h */
+#include "pd_bond_vector.h"
+
+bool bw_pd_bond__damped(const bw_pd_bond *pd)
+{
+  return pd->damping_pair > 0 || pd->damping_mean > 0 || pd->damping_absolute > 0;
+}
+
+typedef struct {
+  vec pair[3], difference[3], count;
+} damping_sums;
+
+static inline void add_slot(const bw_pd_bond *pd, const bw_pd_slot *slot, const vec uh[3],
+                            const vec vh[3], damping_sums *s)
+{
+  const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
+  vec z[3], dv[3], along = vec_all(0), r2 = vec_all(0);
+  for (int k = 0; k < 3; k++) {
+    z[k] = (vec_load(pd->u[k] + slot->base) - uh[k]) + vec_all(row[BW_PD_XI + k]);
+    dv[k] = vec_load(pd->vs[k] + slot->base) - vh[k];
+    r2 = vec_fma(z[k], z[k], r2);
+    along = vec_fma(dv[k], z[k], along);
+  }
+  const vec q = vec_rsqrt(r2);
+  const vec c = vec_keep(slot->mask, vec_all(row[BW_PD_WEIGHT]) * along * q * q);
+  s->count += vec_keep(slot->mask, vec_all(1));
+  for (int k = 0; k < 3; k++) {
+    s->pair[k] = vec_fma(c, z[k], s->pair[k]);
+    s->difference[k] += vec_keep(slot->mask, dv[k]);
+  }
+}
+
+static void block_damping(const bw_pd_bond *pd, const bw_pd_block *block)
+{
+  const bw_real pair = (bw_real)(pd->damping_pair / pd->config.rho);
+  const bw_real mean = (bw_real)(pd->damping_mean / pd->config.rho);
+  vec uh[3], vh[3];
+  damping_sums s = {0};
+  for (int k = 0; k < 3; k++) {
+    uh[k] = vec_load(pd->u[k] + block->first);
+    vh[k] = vec_load(pd->vs[k] + block->first);
+  }
+  for (uint32_t q = block->slot; q < block[1].slot; q++)
+    if (pd->slot[q].mask != 0) add_slot(pd, &pd->slot[q], uh, vh, &s);
+  vec some; /* a particle without bonds has no mean */
+  for (int k = 0; k < BW_PD_LANES; k++)
+    some[k] = s.count[k] > 1 ? s.count[k] : 1;
+  for (int k = 0; k < 3; k++)
+    vec_put_owners(block, vec_all(pair) * s.pair[k] + vec_all(mean) * (s.difference[k] / some),
+                   pd->damp[k]);
+}
+
+/* Own velocities and, for the bond sums, the copies' have to be current. */
+void bw_pd_bond__damping(bw_pd_bond *pd, size_t n, const uint32_t list[])
+{
+  const bool by_bonds = pd->damping_pair > 0 || pd->damping_mean > 0;
+  const bw_real absolute = (bw_real)(pd->damping_absolute / pd->config.rho);
+  if (!by_bonds && list != NULL) return;
+  const size_t blocks = list == NULL ? pd->n_block : n;
+  for (size_t q = 0; q < blocks; q++) {
+    const bw_pd_block *block = &pd->block[list == NULL ? q : list[q]];
+    const int32_t end = block->own + __builtin_popcount(block->mask);
+    if (by_bonds) block_damping(pd, block);
+    for (int k = 0; k < 3; k++)
+      for (int32_t i = block->own; i < end; i++)
+        pd->damp[k][i] = (by_bonds ? pd->damp[k][i] : 0) - absolute * pd->v[k][i];
+  }
+}

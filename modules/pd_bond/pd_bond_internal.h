@@ -1,0 +1,199 @@
+/* pd_bond_internal.h -- shared by the sources of pd_bond only.
+ *
+ * Storage. Own particles and copies of others' (halo and periodic images) lie in one numbering,
+ * the storage, in lattice order (x fastest): the bounding box of their sites with holes where it is
+ * well filled, without holes otherwise. Displacements are stored there, so the neighbours of
+ * eight successive owners in one lattice direction are contiguous nearly always.
+ * Bonds. A block is eight successive storage places, some of them own particles. A slot is one
+ * direction of a block: where the eight neighbours start and which of the bonds exist (family) and
+ * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
+ * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
+ * a family runs in the same order on any number of ranks. */
+#pragma once
+#include "bw_exchange.h"
+#include "bw_pd_bond.h"
+
+enum {
+  BW_PD_LANES = 8, /* owners per block */
+  BW_PD_PAD = 16,  /* unused places before and after a storage array: loads may overrun */
+  BW_PD_ROW = 8    /* constants of one direction in the kernels, see bw_pd_bond__constants */
+};
+
+/* Column of a kernel row. */
+enum {
+  BW_PD_XI = 0,        /* 0..2: xi */
+  BW_PD_R0 = 3,        /* |xi| */
+  BW_PD_STIFFNESS = 4, /* c0 Gamma dV / (rho |xi|), times 2 (volume) or 1/2 (energy correction) */
+  BW_PD_LIMIT2 = 5,    /* (|xi| (1 + s0))^2 */
+  BW_PD_WEIGHT = 6     /* Gamma dV */
+};
+
+typedef struct {
+  int n;            /* directions */
+  int reach;        /* largest component of an offset */
+  int32_t *offset;  /* (n,3) lattice steps */
+  double *xi;       /* (n,3) [L] */
+  double *r0;       /* (n) |xi| [L] */
+  double *fraction; /* (n) Gamma */
+  bw_real *row;     /* (n, BW_PD_ROW) */
+  int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
+} bw_pd_stencil;
+
+/* Lattice site -> number. Dense over a box, or a hash table when the box is too empty. */
+typedef struct {
+  bool dense;
+  int64_t lower[3], size[3];
+  int32_t *value; /* (cells) or (capacity); -1: none */
+  uint64_t *key;  /* hash only */
+  size_t capacity, used;
+} bw_pd_map;
+
+typedef struct {
+  int32_t first; /* storage place of lane 0 */
+  int32_t own;   /* own particle of the first lane set in mask; the others follow */
+  uint32_t slot; /* first slot; the block's last one is before the next block's first */
+  uint8_t mask;  /* lanes that are own particles */
+} bw_pd_block;
+
+typedef struct {
+  int32_t base; /* storage place of lane 0's neighbour */
+  uint16_t direction;
+  uint8_t mask;   /* bonds that hold */
+  uint8_t family; /* bonds that existed at the start */
+} bw_pd_slot;
+
+typedef struct {
+  int32_t place, own, n; /* own particles own.. own+n-1 lie at storage place.. place+n-1 */
+} bw_pd_run;
+
+typedef struct bw_pd_contact bw_pd_contact;
+
+struct bw_pd_bond {
+  const bw_comm *comm;
+  bw_pd_bond_config config;
+  int dimension;              /* 2 or 3 */
+  double horizon, c0, s0, dv; /* dv: volume of one particle */
+  double sum_stiffness;       /* max over particles of sum_l c0 alpha Gamma V/|xi| (ERRATA 6) */
+  double sum_weight;          /* max of sum_l Gamma V */
+  double damping_pair, damping_mean, damping_absolute;
+  bool breakage;
+  bw_pd_stencil stencil;
+
+  size_t n, n_extended; /* own; own and copies */
+  int64_t total;
+  int32_t *site;  /* (n_extended,3), images shifted */
+  int64_t *id;    /* (n_extended) */
+  uint8_t *kind;  /* (n_extended) */
+  int32_t *place; /* (n_extended) storage place */
+  size_t n_storage;
+  int32_t *occupant; /* (n_storage) extended index, -1: hole */
+
+  bw_exchange *halo; /* copies ask, owners answer: used backward */
+  size_t n_asked;
+  int32_t *asked;          /* (n_asked) own particle of each answer */
+  bw_real *reply, *answer; /* (n_asked,6), (copies,6) */
+  bw_real *extended_X;     /* (n_extended,3), made on demand */
+
+  size_t n_block, n_slot, n_run;
+  bw_pd_block *block; /* (n_block + 1) */
+  bw_pd_slot *slot;   /* (n_slot) */
+  bw_pd_run *run;     /* (n_run) */
+  uint32_t *hit;      /* (n_block) blocks where a bond is beyond s0 */
+  size_t n_hit;
+
+  bw_real *u[3], *vs[3], *w;          /* storage: displacement, velocity, surface factor */
+  bw_real *v[3], *a[3];               /* own: velocity, bond force / rho */
+  bw_real *extra[3], *damp[3];        /* own: (contact + damping)/rho, damping/rho */
+  bw_real *f[3];                      /* own: external force / rho */
+  bw_real *v_before[3], *a_before[3]; /* own: RK3's previous stage */
+  bw_real *mobile;                    /* own: 1, or 0 when prescribed */
+  size_t n_prescribed;
+  int32_t *prescribed;  /* (n_prescribed) own particles */
+  double *prescribed_v; /* (n_prescribed,3) */
+  bool current;         /* copies and a are those of u, v */
+  bool restored;        /* a was given by set_restart */
+  bw_pd_contact *contact;
+
+  double done_damping, done_fracture, done_external; /* of this rank */
+  int64_t events, bonds_directed, precracked;        /* precracked: directed, of this rank */
+};
+
+/* pd_bond_config.c */
+bw_status bw_pd_bond__check_config(const bw_pd_bond_config *config);
+void bw_pd_bond__material(bw_pd_bond *pd);
+void bw_pd_bond__constants(bw_pd_bond *pd);
+
+/* pd_bond_fraction.c: part of the cell at `offset` (in ds) within the distance m of the origin */
+double bw_pd_bond__fraction_area(double m, const int32_t offset[3]);
+bw_status bw_pd_bond__fraction_volume(double m, const int32_t offset[3], double *fraction);
+
+/* pd_bond_stencil.c */
+bw_status bw_pd_bond__stencil(bw_pd_bond *pd);
+int bw_pd_bond__direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
+
+/* pd_bond_map.c */
+bw_status bw_pd_map_create(size_t n, const int32_t lower[3], const int32_t upper[3],
+                           bw_pd_map *map);
+void bw_pd_map_destroy(bw_pd_map *map);
+int32_t bw_pd_map_get(const bw_pd_map *map, const int32_t site[3]);
+/* Returns in *found what was there (then nothing changes) or -1 (then value is stored). */
+bw_status bw_pd_map_put(bw_pd_map *map, const int32_t site[3], int32_t value, int32_t *found);
+void bw_pd_map_replace(bw_pd_map *map, const int32_t site[3], int32_t value);
+
+/* pd_bond_partition.c: part[n] of `parts` compact blocks of equal counts */
+bw_status bw_pd_bond__partition(int parts, size_t n, const int32_t site[], int32_t part[]);
+bw_status bw_pd_bond__lattice_order(size_t n, const int32_t site[], int32_t order[]);
+
+/* pd_bond_halo.c */
+bw_status bw_pd_bond__distribute(bw_pd_bond *pd, size_t n, const int32_t site[],
+                                 const uint8_t kind[], bw_pd_map *near);
+void bw_pd_bond__refresh(bw_pd_bond *pd, bool velocity);
+void bw_pd_bond__fill_places(bw_pd_bond *pd, bw_real *places);
+
+/* pd_bond_slots.c */
+bw_status bw_pd_bond__slots(bw_pd_bond *pd, const bw_pd_map *near);
+void bw_pd_bond__bounds(bw_pd_bond *pd);
+bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd);
+double bw_pd_bond__alpha(const bw_pd_bond *pd, int32_t h, int32_t l);
+
+/* pd_bond_force.c: a = L/rho of `n` blocks (list NULL: all); notes blocks with a bond beyond s0 */
+void bw_pd_bond__force(bw_pd_bond *pd, size_t n, const uint32_t list[], bool check);
+double bw_pd_bond__elastic(const bw_pd_bond *pd); /* of this rank's halves [M L^2/T^2] */
+
+/* pd_bond_damping.c: damp of `n` blocks (list NULL: all) */
+bool bw_pd_bond__damped(const bw_pd_bond *pd);
+void bw_pd_bond__damping(bw_pd_bond *pd, size_t n, const uint32_t list[]);
+
+/* pd_bond_break.c */
+bool bw_pd_bond__break_hits(bw_pd_bond *pd);
+
+/* pd_bond_contact.c, pd_bond_search.c */
+bw_status bw_pd_bond__contact_create(bw_pd_bond *pd);
+void bw_pd_bond__contact_destroy(bw_pd_bond *pd);
+bw_status bw_pd_bond__contact_update(bw_pd_bond *pd); /* Collective. */
+void bw_pd_bond__contact_force(bw_pd_bond *pd);       /* adds to extra; Collective */
+double bw_pd_bond__contact_energy(bw_pd_bond *pd);    /* of this rank's halves; Collective */
+
+/* pd_bond_views.c */
+void bw_pd_bond__adopt_prescribed(bw_pd_bond *pd);
+
+/* pd_bond_step.c */
+bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check);
+void bw_pd_bond__impose(bw_pd_bond *pd);
+
+/* Own particle of lane `lane` of a block. */
+static inline int32_t bw_pd_bond__owner(const bw_pd_block *block, int lane)
+{
+  return block->own + __builtin_popcount(block->mask & ((1u << lane) - 1u));
+}
+
+static inline void bw_pd_bond__reference(const bw_pd_bond_config *c, const int32_t site[3],
+                                         double X0[3])
+{
+  const bool planar = c->geometry != BW_PD_3D;
+  for (int k = 0; k < 3; k++) {
+    X0[k] = c->origin[k];
+    for (int d = 0; d < (planar ? 2 : 3); d++)
+      X0[k] += c->axes[d][k] * (site[d] + 0.5) * c->ds;
+  }
+}

@@ -1,0 +1,261 @@
+/* Pairs of surface particles outside each other's family: candidates, copies, cells. */
+#include "bw_memory.h"
+#include "pd_bond_contact.h"
+
+#include <math.h>
+#include <string.h>
+
+void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3])
+{
+  double X[3];
+  bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X);
+  for (int k = 0; k < 3; k++)
+    X[k] += (double)pd->u[k][pd->place[i]];
+  for (int a = 0; a < 3; a++)
+    y[a] =
+        pd->config.axes[a][0] * X[0] + pd->config.axes[a][1] * X[1] + pd->config.axes[a][2] * X[2];
+}
+
+void bw_pd_contact__forget(bw_pd_contact *c)
+{
+  bw_release(&c->mine);
+  bw_release(&c->sent);
+  bw_exchange_destroy(&c->plan);
+  bw_release(&c->send);
+  bw_release(&c->y);
+  bw_release(&c->site);
+  bw_release(&c->pair_start);
+  bw_release(&c->pair);
+  c->n_mine = c->n_theirs = c->n_sent = 0;
+}
+
+/* Own particles with an incomplete family or a broken bond. */
+static bw_status candidates(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  int32_t *held = NULL;
+  BW_TRY(BW_ALLOCATE(&held, pd->n));
+  for (size_t b = 0; b < pd->n_block; b++)
+    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++)
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        if (pd->slot[q].mask >> lane & 1) held[bw_pd_bond__owner(&pd->block[b], lane)]++;
+  bw_status st = BW_ALLOCATE(&c->mine, pd->n);
+  for (size_t i = 0; i < pd->n && st == BW_OK; i++)
+    if (held[i] < pd->stencil.n) c->mine[c->n_mine++] = (int32_t)i;
+  bw_release(&held);
+  return st;
+}
+
+/* Boxes of all ranks' candidates, (size,6) lower and upper corners. */
+static bw_status boxes(const bw_pd_bond *pd, const bw_pd_contact *c, double **box)
+{
+  double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, y[3];
+  size_t bytes;
+  void *all = NULL;
+  for (size_t q = 0; q < c->n_mine; q++) {
+    bw_pd_contact__position(pd, (size_t)c->mine[q], y);
+    for (int k = 0; k < 3; k++) {
+      mine[k] = fmin(mine[k], y[k]);
+      mine[3 + k] = fmax(mine[3 + k], y[k]);
+    }
+  }
+  BW_TRY(bw_comm_allgather(pd->comm, sizeof mine, mine, &bytes, &all));
+  *box = all;
+  return BW_OK;
+}
+
+static bool in_box(const bw_pd_bond *pd, const double y[3], const double box[6], double margin)
+{
+  for (int k = 0; k < 3; k++) {
+    if (pd->config.period[k] > 0 && box[k] <= box[3 + k]) continue;
+    if (!(y[k] >= box[k] - margin && y[k] <= box[3 + k] + margin)) return false;
+  }
+  return true;
+}
+
+/* Candidates near another rank's go there. */
+static bw_status choose_sent(const bw_pd_bond *pd, bw_pd_contact *c, const double *box,
+                             int **destination)
+{
+  const int size = bw_comm_size(pd->comm), me = bw_comm_rank(pd->comm);
+  for (int pass = 0; pass < 2; pass++) {
+    size_t n = 0;
+    for (size_t q = 0; q < c->n_mine && size > 1; q++) {
+      double y[3];
+      bw_pd_contact__position(pd, (size_t)c->mine[q], y);
+      for (int r = 0; r < size; r++) {
+        if (r == me || !in_box(pd, y, box + 6 * r, c->reach + c->skin)) continue;
+        if (pass == 1) (*destination)[n] = r;
+        if (pass == 1) c->sent[n] = c->mine[q];
+        n++;
+      }
+    }
+    c->n_sent = n;
+    if (pass == 1) break;
+    BW_TRY(BW_ALLOCATE(destination, n));
+    BW_TRY(BW_ALLOCATE(&c->sent, n));
+  }
+  return BW_ALLOCATE(&c->send, 3 * c->n_sent);
+}
+
+/* Cells of edge at least reach + skin, hashed; whole numbers of them in periodic directions. */
+typedef struct {
+  double edge[3], lower[3];
+  int32_t count[3]; /* cells in a periodic direction, 0: not periodic */
+  size_t buckets;
+  int32_t *head, *next, *cell; /* (buckets), (n), (n,3) */
+} cells;
+
+static void cell_of(const cells *g, const double y[3], int32_t cell[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const double x = floor((y[k] - g->lower[k]) / g->edge[k]);
+    cell[k] = (int32_t)fmax(-1e9, fmin(1e9, x));
+    const int32_t n = g->count[k];
+    if (n > 0) cell[k] = (cell[k] % n + n) % n;
+  }
+}
+
+static size_t bucket_of(const cells *g, const int32_t cell[3])
+{
+  const uint64_t key = (uint64_t)(uint32_t)cell[0] * 0x9e3779b97f4a7c15u ^
+                       (uint64_t)(uint32_t)cell[1] * 0xc2b2ae3d27d4eb4fu ^
+                       (uint64_t)(uint32_t)cell[2] * 0x165667b19e3779f9u;
+  return (size_t)(key >> 24) & (g->buckets - 1);
+}
+
+static bw_status make_cells(const bw_pd_bond *pd, const bw_pd_contact *c, cells *g)
+{
+  const size_t n = c->n_mine + c->n_theirs;
+  for (int k = 0; k < 3; k++) {
+    const double p = pd->config.period[k], least = c->reach + c->skin;
+    g->lower[k] = n > 0 ? c->y[k] : 0;
+    g->count[k] = p > 0 ? (int32_t)fmax(1, floor(p / least)) : 0;
+    g->edge[k] = p > 0 ? p / g->count[k] : least;
+  }
+  for (g->buckets = 64; g->buckets < 2 * n;)
+    g->buckets *= 2;
+  BW_TRY(BW_ALLOCATE(&g->head, g->buckets));
+  BW_TRY(BW_ALLOCATE(&g->next, n));
+  BW_TRY(BW_ALLOCATE(&g->cell, 3 * n));
+  memset(g->head, 0xff, g->buckets * sizeof *g->head); /* all -1 */
+  for (size_t q = 0; q < n; q++) {
+    cell_of(g, c->y + 3 * q, g->cell + 3 * q);
+    const size_t b = bucket_of(g, g->cell + 3 * q);
+    g->next[q] = g->head[b];
+    g->head[b] = (int32_t)q;
+  }
+  return BW_OK;
+}
+
+/* Whether two sites are in each other's family: those pairs need no search. */
+static bool same_family(const bw_pd_bond *pd, const int32_t a[3], const int32_t b[3])
+{
+  int32_t o[3];
+  for (int k = 0; k < 3; k++) {
+    const int32_t p = (int32_t)lround(pd->config.period[k] / pd->config.ds);
+    o[k] = b[k] - a[k];
+    if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
+  }
+  return bw_pd_bond__direction(&pd->stencil, o) >= 0;
+}
+
+/* Partners of candidate q in one cell; returns how many, written from *out on. */
+static size_t pairs_in_cell(const bw_pd_bond *pd, const bw_pd_contact *c, const cells *g, size_t q,
+                            const int32_t cell[3], int32_t *out)
+{
+  const double far = c->reach + c->skin;
+  size_t n = 0;
+  for (int32_t p = g->head[bucket_of(g, cell)]; p >= 0; p = g->next[p]) {
+    double d[3];
+    if ((size_t)p == q || memcmp(g->cell + 3 * p, cell, 3 * sizeof *cell) != 0) continue;
+    bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
+    if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
+    if (same_family(pd, c->site + 3 * q, c->site + 3 * p)) continue;
+    if (out != NULL) out[n] = p;
+    n++;
+  }
+  return n;
+}
+
+/* Partners of candidate q in the 27 cells around it, every cell once. */
+static size_t pairs_of(const bw_pd_bond *pd, const bw_pd_contact *c, const cells *g, size_t q,
+                       int32_t *out)
+{
+  int first[3], last[3], step[3];
+  size_t n = 0;
+  for (int k = 0; k < 3; k++) {
+    first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
+    last[k] = g->count[k] == 1 ? 0 : 1;
+  }
+  for (step[2] = first[2]; step[2] <= last[2]; step[2]++)
+    for (step[1] = first[1]; step[1] <= last[1]; step[1]++)
+      for (step[0] = first[0]; step[0] <= last[0]; step[0]++) {
+        int32_t cell[3];
+        for (int k = 0; k < 3; k++) {
+          cell[k] = g->cell[3 * q + (size_t)k] + step[k];
+          if (g->count[k] > 0) cell[k] = (cell[k] + g->count[k]) % g->count[k];
+        }
+        n += pairs_in_cell(pd, c, g, q, cell, out == NULL ? NULL : out + n);
+      }
+  return n;
+}
+
+static bw_status list_pairs(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  cells g = {0};
+  bw_status st = make_cells(pd, c, &g);
+  BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
+  for (int pass = 0; pass < 2 && st == BW_OK; pass++) {
+    size_t n = 0;
+    for (size_t q = 0; q < c->n_mine; q++) {
+      c->pair_start[q] = n;
+      n += pairs_of(pd, c, &g, q, pass == 0 ? NULL : c->pair + n);
+    }
+    c->pair_start[c->n_mine] = n;
+    if (pass == 0) st = BW_ALLOCATE(&c->pair, n);
+  }
+  bw_release(&g.head);
+  bw_release(&g.next);
+  bw_release(&g.cell);
+  return st;
+}
+
+static bw_status share(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  int32_t *send = NULL;
+  const size_t n = c->n_mine;
+  c->n_theirs = bw_exchange_received(c->plan);
+  bw_status st = BW_ALLOCATE(&c->y, 3 * (n + c->n_theirs));
+  BW_THEN(st, BW_ALLOCATE(&c->site, 3 * (n + c->n_theirs)));
+  BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n_sent));
+  BW_TRY(bw_comm_agree(pd->comm, st));
+  for (size_t q = 0; q < n; q++) {
+    bw_pd_contact__position(pd, (size_t)c->mine[q], c->y + 3 * q);
+    memcpy(c->site + 3 * q, pd->site + 3 * (size_t)c->mine[q], 3 * sizeof *send);
+  }
+  for (size_t q = 0; q < c->n_sent; q++) {
+    bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
+    memcpy(send + 3 * q, pd->site + 3 * (size_t)c->sent[q], 3 * sizeof *send);
+  }
+  bw_exchange_forward(c->plan, 3 * sizeof(double), c->send, c->y + 3 * n);
+  bw_exchange_forward(c->plan, 3 * sizeof *send, send, c->site + 3 * n);
+  bw_release(&send);
+  return BW_OK;
+}
+
+bw_status bw_pd_contact__search(bw_pd_bond *pd)
+{
+  bw_pd_contact *c = pd->contact;
+  double *box = NULL;
+  int *destination = NULL;
+  bw_pd_contact__forget(c);
+  bw_status st = bw_comm_agree(pd->comm, candidates(pd, c));
+  BW_THEN(st, boxes(pd, c, &box));
+  if (st == BW_OK) st = bw_comm_agree(pd->comm, choose_sent(pd, c, box, &destination));
+  BW_THEN(st, bw_exchange_create(pd->comm, c->n_sent, destination, &c->plan));
+  BW_THEN(st, share(pd, c));
+  if (st == BW_OK) st = bw_comm_agree(pd->comm, list_pairs(pd, c));
+  bw_release(&box);
+  bw_release(&destination);
+  return st;
+}

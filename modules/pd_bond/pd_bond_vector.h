@@ -1,0 +1,160 @@
+/* pd_bond_vector.h -- eight numbers at a time, for the bond sweeps.
+ *
+ * A vector is a gcc/clang vector type (any processor). With AVX-512 the four operations the
+ * language cannot express (fused multiply-add, reciprocal root, masks) use its instructions;
+ * elsewhere short loops that the compiler vectorises. Both ways a bond seen from its two ends
+ * gives exactly opposite results: every operation is exact under a change of sign. */
+#pragma once
+#include "pd_bond_internal.h"
+#include <math.h>
+#include <string.h>
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
+
+typedef bw_real vec __attribute__((vector_size(BW_PD_LANES * sizeof(bw_real))));
+
+static inline vec vec_load(const bw_real *from)
+{
+  vec x;
+  memcpy(&x, from, sizeof x);
+  return x;
+}
+
+static inline void vec_store(bw_real *to, vec x)
+{
+  memcpy(to, &x, sizeof x);
+}
+
+static inline vec vec_all(bw_real x)
+{
+  return (vec){x, x, x, x, x, x, x, x};
+}
+
+static inline double vec_sum(vec x)
+{
+  double sum = 0;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    sum += (double)x[k];
+  return sum;
+}
+
+#if defined(__AVX512VL__) && !defined(BW_SINGLE)
+
+static inline vec vec_fma(vec a, vec b, vec c)
+{
+  return (vec)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+
+/* c - a b */
+static inline vec vec_fnma(vec a, vec b, vec c)
+{
+  return (vec)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+
+/* 1/sqrt(x): the 14-bit estimate y and one step of fourth order, y (1 + e/2 + 3e^2/8 + 5e^3/16)
+ * with e = 1 - x y^2, |e| < 2^-13: the next term is below 2^-53. */
+static inline vec vec_rsqrt(vec x)
+{
+  const vec y = (vec)_mm512_rsqrt14_pd((__m512d)x);
+  const vec e = vec_fnma(x * y, y, vec_all(1.0));
+  const vec p = vec_fma(vec_fma(vec_all(0.3125), e, vec_all(0.375)), e, vec_all(0.5));
+  return vec_fma(y * e, p, y);
+}
+
+/* x in the lanes of mask, 0 in the others. */
+static inline vec vec_keep(uint8_t mask, vec x)
+{
+  return (vec)_mm512_maskz_mov_pd(mask, (__m512d)x);
+}
+
+static inline uint8_t vec_above(vec a, vec b)
+{
+  return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_GT_OQ);
+}
+
+#elif defined(__AVX512VL__)
+
+static inline vec vec_fma(vec a, vec b, vec c)
+{
+  return (vec)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+
+static inline vec vec_fnma(vec a, vec b, vec c)
+{
+  return (vec)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+
+/* One step of second order doubles the 14 bits of the estimate. */
+static inline vec vec_rsqrt(vec x)
+{
+  const vec y = (vec)_mm256_rsqrt14_ps((__m256)x);
+  const vec e = vec_fnma(x * y, y, vec_all(1.0f));
+  return vec_fma(y * e, vec_fma(vec_all(0.375f), e, vec_all(0.5f)), y);
+}
+
+static inline vec vec_keep(uint8_t mask, vec x)
+{
+  return (vec)_mm256_maskz_mov_ps(mask, (__m256)x);
+}
+
+static inline uint8_t vec_above(vec a, vec b)
+{
+  return _mm256_cmp_ps_mask((__m256)a, (__m256)b, _CMP_GT_OQ);
+}
+
+#else
+
+static inline vec vec_fma(vec a, vec b, vec c)
+{
+  return a * b + c;
+}
+
+static inline vec vec_fnma(vec a, vec b, vec c)
+{
+  return c - a * b;
+}
+
+static inline vec vec_rsqrt(vec x)
+{
+  bw_real y[BW_PD_LANES];
+  memcpy(y, &x, sizeof y);
+#pragma omp simd
+  for (int k = 0; k < BW_PD_LANES; k++)
+    y[k] = 1 / (bw_real)sqrt(y[k]);
+  memcpy(&x, y, sizeof y);
+  return x;
+}
+
+static inline vec vec_keep(uint8_t mask, vec x)
+{
+  bw_real y[BW_PD_LANES];
+  memcpy(y, &x, sizeof y);
+#pragma omp simd
+  for (int k = 0; k < BW_PD_LANES; k++)
+    y[k] = mask >> k & 1 ? y[k] : 0;
+  memcpy(&x, y, sizeof y);
+  return x;
+}
+
+static inline uint8_t vec_above(vec a, vec b)
+{
+  unsigned mask = 0;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    mask |= (unsigned)(a[k] > b[k]) << k;
+  return (uint8_t)mask;
+}
+
+#endif
+
+/* The lanes of a block's owners to successive own places: all at once when the block is full. */
+static inline void vec_put_owners(const bw_pd_block *block, vec x, bw_real *own)
+{
+  if (block->mask == 0xff) {
+    vec_store(own + block->own, x);
+    return;
+  }
+  int32_t at = block->own;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    if (block->mask >> k & 1) own[at++] = x[k];
+}

@@ -135,6 +135,29 @@ START_TEST(flipped_bits_of_data)
 }
 END_TEST
 
+/* Two rows in each other's place: every bit is there, but not where it was. */
+START_TEST(rows_that_changed_places)
+{
+  enum { ROW = 3 * sizeof(double) };
+  char path[512];
+  unsigned char *bytes = NULL, row[ROW];
+  ck_path(path, "swapped.h5");
+  bw_check_ok(ck_put_state(path));
+  const size_t n = ck_read_bytes(path, &bytes);
+  bw_comm_barrier(bw_check_world());
+  const double row2 = ck_state_value(2, 0);
+  const size_t at = find(bytes, n, &row2, sizeof row2);
+  ck_assert_uint_lt(at + 2 * ROW, n);
+  memcpy(row, bytes + at, ROW);
+  memcpy(bytes + at, bytes + at + ROW, ROW);
+  memcpy(bytes + at + ROW, row, ROW);
+  ck_write_bytes(path, n, bytes);
+  bw_check_status(ck_get_state(bw_check_world(), path), BW_EIO);
+  ck_message_names(path, "'solid/x' is damaged");
+  bw_release(&bytes);
+}
+END_TEST
+
 /* A flipped bit anywhere: refused, or it sat where nothing is kept and all values are right
  * (ck_get_state compares them). */
 START_TEST(flipped_bits_anywhere)
@@ -216,6 +239,6 @@ END_TEST
 static const bw_check_test tests[] = {
     BW_TEST(missing_and_foreign_files), BW_TEST(heads_of_other_files),
     BW_TEST(files_cut_short),           BW_TEST(flipped_bits_of_data),
-    BW_TEST(flipped_bits_anywhere),     BW_TEST(requests_that_do_not_fit),
-    BW_TEST(tables_with_wrong_ids)};
+    BW_TEST(rows_that_changed_places),  BW_TEST(flipped_bits_anywhere),
+    BW_TEST(requests_that_do_not_fit),  BW_TEST(tables_with_wrong_ids)};
 BW_CHECK_MAIN("checkpoint.damage", tests)

@@ -9,7 +9,8 @@
 /* All values below are sums of small multiples of 1/2: exact in Float32. */
 enum { NX = 5, NY = 7, NZ = 6 };
 
-static bw_grid *make_grid(int nz, bw_stretch stretch)
+/* Blocks of y (ranks_z = 1), of z (ranks_y = 1), or both; 0, 0: as the grid likes. */
+static bw_grid *make_grid_on(int nz, bw_stretch stretch, int ranks_y, int ranks_z)
 {
   bw_grid_config config = bw_grid_config_default();
   const int n[3] = {NX, NY, nz};
@@ -18,9 +19,15 @@ static bw_grid *make_grid(int nz, bw_stretch stretch)
     config.length[d] = 0.25 * n[d] * (d + 1);
   }
   config.y_stretch = stretch;
+  config.ranks[0] = ranks_y, config.ranks[1] = ranks_z;
   bw_grid *grid = NULL;
   bw_check_ok(bw_grid_create(bw_check_world(), &config, &grid));
   return grid;
+}
+
+static bw_grid *make_grid(int nz, bw_stretch stretch)
+{
+  return make_grid_on(nz, stretch, 0, 0);
 }
 
 static void make_folder(char path[512], const char *name)
@@ -69,11 +76,11 @@ static void check_vector(const vtk_file *f, int nz)
       }
 }
 
-static void write_and_check_grid(int nz, bw_stretch stretch, const char *name)
+static void write_and_check(bw_grid *grid, const char *name)
 {
+  const int nz = bw_grid_look(grid)->n[2];
   char path[512];
   make_folder(path, name);
-  bw_grid *grid = make_grid(nz, stretch);
   bw_real *p = make_field(grid, 0), *u = make_field(grid, 1000), *v = make_field(grid, 2000),
           *w = make_field(grid, 3000);
   const bw_vtk_field fields[] = {
@@ -95,6 +102,12 @@ static void write_and_check_grid(int nz, bw_stretch stretch, const char *name)
   bw_release(&u);
   bw_release(&v);
   bw_release(&w);
+}
+
+static void write_and_check_grid(int nz, bw_stretch stretch, const char *name)
+{
+  bw_grid *grid = make_grid(nz, stretch);
+  write_and_check(grid, name);
   bw_grid_destroy(&grid);
 }
 
@@ -107,6 +120,20 @@ START_TEST(uniform_grid)
   vtk_has(&f, "<ImageData WholeExtent=\"0 5 0 7 0 6\" Origin=\"0 0 0\" "
               "Spacing=\"0.25 0.5 0.75\">");
   vtk_close(&f);
+}
+END_TEST
+
+/* Every division puts every block in its place. */
+START_TEST(blocks_of_y_of_z_and_of_both)
+{
+  const int size = bw_comm_size(bw_check_world());
+  for (int ranks_y = 1; ranks_y <= size; ranks_y++) {
+    if (size % ranks_y != 0) continue;
+    bw_grid *grid = make_grid_on(NZ, BW_STRETCH_NONE, ranks_y, size / ranks_y);
+    write_and_check(grid, "blocks.vti");
+    bw_grid_destroy(&grid);
+    bw_comm_barrier(bw_check_world()); /* all have read it before it is written again */
+  }
 }
 END_TEST
 
@@ -282,6 +309,7 @@ START_TEST(refusals_name_the_path)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(uniform_grid),
+                                      BW_TEST(blocks_of_y_of_z_and_of_both),
                                       BW_TEST(flat_grid_has_a_zero_third_component),
                                       BW_TEST(stretched_grid_has_coordinates),
                                       BW_TEST(points_in_rank_order),

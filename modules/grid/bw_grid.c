@@ -113,7 +113,7 @@ bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_g
   bw_grid *g = NULL;
   *out = NULL;
   bw_status st = BW_ALLOCATE(&g, 1);
-  if (st == BW_OK) g->mpi = MPI_COMM_NULL;
+  if (st == BW_OK) g->mpi = g->line[1] = g->line[2] = MPI_COMM_NULL;
   BW_THEN(st, check(config));
   BW_THEN(st, bw_grid__divide(config, bw_comm_size(comm), g->view.ranks));
   if (st == BW_OK) {
@@ -122,10 +122,12 @@ bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_g
     st = make_y(g, config);
   }
   BW_THEN(st, bw_grid__halo_create(g));
+  BW_THEN(st, bw_grid__line_create(g));
   st = bw_comm_agree(comm, st);
-  if (st == BW_OK)
+  if (st == BW_OK) {
     MPI_Comm_dup(bw_comm_mpi(comm), &g->mpi);
-  else
+    bw_grid__line_connect(g);
+  } else
     bw_grid_destroy(&g);
   *out = g;
   return st;
@@ -137,6 +139,7 @@ void bw_grid_destroy(bw_grid **grid)
   if (g == NULL) return;
   if (g->mpi != MPI_COMM_NULL) MPI_Comm_free(&g->mpi);
   bw_grid__halo_destroy(g);
+  bw_grid__line_destroy(g);
   bw_release(&g->y_face);
   bw_release(&g->y_centre_store);
   bw_release(grid);

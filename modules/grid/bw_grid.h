@@ -90,3 +90,14 @@ void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[]);
 
 /* Bytes one bw_halo_update of one field sends to other ranks, from this rank. Local. */
 size_t bw_halo_volume(const bw_grid *grid);
+
+/* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order
+ * of their coord[d]: receive[receive_start[p] ..] <- send[send_start[me] ..] of rank p. Counts
+ * are in bw_reals and agree pairwise; this rank's own entries are skipped. For solvers that
+ * work on lines. Collective over the line. */
+void bw_grid_swap(bw_grid *grid, int d, const size_t send_start[], const size_t send_count[],
+                  const bw_real *send, const size_t receive_start[], const size_t receive_count[],
+                  bw_real *receive);
+
+/* Element-wise sum over that line, in place, on all of its ranks. Collective over the line. */
+void bw_grid_line_sum(bw_grid *grid, int d, int n, double x[]);

@@ -1,35 +1,50 @@
-/* bw_transpose.h -- the same numbers as x-, z- and y-pencils: each direction whole in turn.
+/* bw_transpose.h -- rows that are whole in x become columns that are whole in z, and back.
  *
- * Arrays without halo, x fastest, of `columns` "x-entries" (n[0] reals, or 2 (n[0]/2 + 1) for
- * the interleaved spectrum of a real transform). The layouts:
- *   X  [m_z][m_y][columns]          all of x         (blocks: y over ranks[1], z over ranks[2])
- *   Z  [n_z][m_y][c_z]              all of z         (x-entries divided over ranks[2])
- *   Y  [n_z][n_y][c_zy]             all of z and y   (those c_z divided again over ranks[1])
- * A step between layouts that one block row holds entirely costs no message, and none at all
- * happens (the pointer is passed through) when the two layouts are the same. */
+ * For solvers that transform along x, then along z, and then couple in y. Numbers come in rows of
+ * `columns` x-entries (a transformed x-row); entry c of the row (j, k) is a number of the column
+ * (c, j) along z. Columns are divided over the ranks[2] blocks of a row of pencils and cut into
+ * blocks of a few entries whose y-z plane fits the cache:
+ *   X side  rows, put and taken one by one (all x, local j, local k)
+ *   Z side  blocks [m_y][n_z][width]       (a few x-entries, local j, all k)
+ * y is never divided anew: solve over the ranks in y with bw_tridiagonal.h.
+ * When one rank holds all of z no message is sent and a block is opened in place.
+ * Indices j, k of this header are local and start at 0.
+ * Life  create -> { put every row, to_z, open/close each block, to_x, get every row } -> destroy.
+ * Nothing is allocated after create. */
 #pragma once
 #include "bw_grid.h"
 
 typedef struct bw_transpose bw_transpose;
 
-/* Extents [z, y, x-entry] of a layout on this rank and where they start globally (from 0). */
+/* A block of the Z side: global x-entries first .. first + width - 1. */
 typedef struct {
-  int extent[3], start[3]; /* order x, y, z */
-  size_t size;             /* product of the extents */
-} bw_layout;
+  int first, width;
+} bw_columns;
 
-typedef enum { BW_LAYOUT_X, BW_LAYOUT_Z, BW_LAYOUT_Y } bw_layout_id;
+/* `grain`: x-entries that stay together (2 for interleaved complex numbers; divides columns).
+ * `grid` is borrowed. Collective. */
+bw_status bw_transpose_create(bw_grid *grid, int columns, int grain,
+                              bw_transpose **out) BW_MUST_CHECK;
+void bw_transpose_destroy(bw_transpose **t); /* NULL is fine. Local. */
 
-/* `grain`: x-entries that stay together (2 for interleaved complex numbers). Collective. */
-bw_status bw_transpose_create(bw_grid *grid, int columns, int grain, bw_transpose **out)
-    BW_MUST_CHECK;
-void bw_transpose_destroy(bw_transpose **t);
+/* Blocks of this rank (0 is possible), widest first; all but the last have the full width. */
+int bw_transpose_blocks(const bw_transpose *t);                /* Local. */
+bw_columns bw_transpose_columns(const bw_transpose *t, int b); /* Local. */
 
-const bw_layout *bw_transpose_layout(const bw_transpose *t, bw_layout_id id); /* Local. */
-size_t bw_transpose_size(const bw_transpose *t); /* reals that hold any layout. Local. */
+/* Rows (j, k) .. (j, k + rows - 1), `stride` reals apart, into or out of the X side. Local. */
+void bw_transpose_put(bw_transpose *t, int j, int k, int rows, const bw_real *row,
+                      ptrdiff_t stride);
+void bw_transpose_get(const bw_transpose *t, int j, int k, int rows, bw_real *row,
+                      ptrdiff_t stride);
 
-/* Move `a` (layout `from`) to layout `to` (X<->Z, Z<->Y), using `b` as the other buffer; both
- * hold bw_transpose_size reals. Returns the one of a, b that has the result. Collective. */
-bw_real *bw_transpose_move(bw_transpose *t, bw_layout_id from, bw_layout_id to, bw_real *a,
-                           bw_real *b);
-size_t bw_transpose_volume(const bw_transpose *t); /* bytes to other ranks per round trip */
+/* All numbers from the X side to the Z side, and back. Collective. */
+void bw_transpose_to_z(bw_transpose *t);
+void bw_transpose_to_x(bw_transpose *t);
+
+/* Block b as [m_y][n_z][width], to be changed in place, valid until close writes it back; one
+ * block is open at a time. Local. */
+bw_real *bw_transpose_open(bw_transpose *t, int b);
+void bw_transpose_close(bw_transpose *t, int b);
+
+/* Bytes to other ranks of one to_z and one to_x together, from this rank. Local. */
+size_t bw_transpose_volume(const bw_transpose *t);

@@ -13,6 +13,8 @@ struct bw_grid {
   double *y_centre_store; /* [0..n1+3]; view.y_centre points at its entry 1 (index 0) */
   int neighbour[3][2];    /* rank below and above, MPI_PROC_NULL beyond a physical boundary */
   bw_real *send[2], *receive[2]; /* one face of BW_GRID__BATCH fields each; NULL when serial */
+  MPI_Comm line[3];              /* ranks of this line of blocks in y and in z; line[0] unused */
+  MPI_Request *request;          /* for a swap within a line */
 };
 
 /* Cells before block c of r blocks over n cells: sizes differ by at most one, larger ones first. */
@@ -25,6 +27,11 @@ static inline int bw_grid__block_start(int n, int r, int c)
 /* Neighbours and buffers of the halo exchange. Local. */
 bw_status bw_grid__halo_create(bw_grid *grid);
 void bw_grid__halo_destroy(bw_grid *grid);
+
+/* Requests of the line swaps (local), and after them the communicators (collective). */
+bw_status bw_grid__line_create(bw_grid *grid);
+void bw_grid__line_connect(bw_grid *grid);
+void bw_grid__line_destroy(bw_grid *grid);
 
 /* Blocks in y and z (ranks[1], ranks[2] of the view) for `size` ranks. Local. */
 bw_status bw_grid__divide(const bw_grid_config *config, int size, int ranks[3]);

@@ -23,23 +23,23 @@ static bw_status inflow_check(const bw_grid_view *g, const bw_ns_channel_config 
   const char *dn = direction_name[d], *sn = end_name[s];
   if (side->profile == BW_PROFILE_CALLBACK)
     BW_REQUIRE(side->function != NULL, BW_EINPUT,
-               "ns_channel: %s %s side: a callback inflow needs side.function", sn, dn);
+               "ns_channel: %s %s side: a callback inflow needs side.function", dn, sn);
   if (side->profile != BW_PROFILE_POISEUILLE) return BW_OK;
   BW_REQUIRE(d == 0, BW_EINPUT,
              "ns_channel: %s %s side: a Poiseuille inflow is plane in y and "
              "enters through an x side; use a callback",
-             sn, dn);
+             dn, sn);
   BW_REQUIRE(isfinite(side->bulk_velocity), BW_EINPUT,
              "ns_channel: %s %s side: side.bulk_velocity of the Poiseuille inflow is %g; "
              "give a finite velocity",
-             sn, dn, side->bulk_velocity);
+             dn, sn, side->bulk_velocity);
   for (int q = 0; q < 2; q++) {
     const double *v = c->side[1][q].velocity;
     BW_REQUIRE(!g->periodic[1] && c->side[1][q].kind == BW_SIDE_WALL && v[0] == 0.0 && v[2] == 0.0,
                BW_EINPUT,
                "ns_channel: %s %s side: a Poiseuille inflow needs walls at rest at both "
                "y sides; the %s one is not",
-               sn, dn, end_name[q]);
+               dn, sn, end_name[q]);
   }
   return BW_OK;
 }
@@ -51,22 +51,22 @@ static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c
   BW_REQUIRE((side->kind == BW_SIDE_PERIODIC) == g->periodic[d], BW_EINPUT,
              "ns_channel: %s %s side is %speriodic but the grid is %speriodic in %s; make both "
              "the same",
-             sn, dn, side->kind == BW_SIDE_PERIODIC ? "" : "not ", g->periodic[d] ? "" : "not ",
+             dn, sn, side->kind == BW_SIDE_PERIODIC ? "" : "not ", g->periodic[d] ? "" : "not ",
              dn);
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(isfinite(side->velocity[q]), BW_EINPUT,
-               "ns_channel: %s %s side: velocity[%d] is %g; give a finite velocity", sn, dn, q,
+               "ns_channel: %s %s side: velocity[%d] is %g; give a finite velocity", dn, sn, q,
                side->velocity[q]);
   if (side->kind == BW_SIDE_WALL)
     BW_REQUIRE(side->velocity[d] == 0.0, BW_EINPUT,
                "ns_channel: %s %s side: a wall moves tangentially only, but velocity[%d] is %g; "
                "use an inflow for blowing",
-               sn, dn, d, side->velocity[d]);
+               dn, sn, d, side->velocity[d]);
   if (side->kind == BW_SIDE_OUTFLOW)
     BW_REQUIRE(s == 1, BW_EINPUT,
                "ns_channel: %s %s side: an outflow must be an upper side; let "
                "the flow go along +%s",
-               sn, dn, dn);
+               dn, dn, sn);
   if (side->kind == BW_SIDE_INFLOW) BW_TRY(inflow_check(g, c, d, s));
   return BW_OK;
 }

@@ -1,0 +1,267 @@
+/* Whole steps: the same on any number of ranks, 2D equals 3D, flow rate, steady Poiseuille,
+ * limits, errors.
+ * TEST ranks=1,2,3,4 */
+#include "ns_support.h"
+
+static const bool channel[3] = {true, false, true}, closed[3] = {false, false, false};
+
+typedef struct {
+  const char *name;
+  int n[3];
+  double stretch;
+  bw_ns_channel_config config;
+} flow;
+
+enum { FLOWS = 5 };
+
+/* Channel at constant flow rate; its 2D form; inflow/outflow; closed box with a lid; implicit. */
+static flow flow_of(int which)
+{
+  flow f = {.name = "channel", .n = {8, 10, 9}, .stretch = 1.3, .config = ns_config(channel, 0.02)};
+  f.config.forcing = BW_FORCING_FLOW_RATE;
+  f.config.forcing_value = 0.7;
+  if (which == 1) f.name = "2D", f.n[2] = 1;
+  if (which == 4) f.name = "implicit", f.config.viscous = BW_VISCOUS_IMPLICIT_Y;
+  if (which != 2 && which != 3) return f;
+  f.config = ns_config(closed, 0.02);
+  f.config.side[1][1].velocity[0] = 1.0;
+  f.name = "lid";
+  if (which == 3) return f;
+  f.name = "inflow";
+  f.config.side[1][1].velocity[0] = 0.0;
+  f.config.side[0][0].kind = BW_SIDE_INFLOW;
+  f.config.side[0][0].profile = BW_PROFILE_POISEUILLE;
+  f.config.side[0][0].bulk_velocity = 1.0;
+  f.config.side[0][1].kind = BW_SIDE_OUTFLOW;
+  return f;
+}
+
+static bw_ns_channel *run_flow(const bw_comm *comm, const flow *f, int steps, bw_ns_velocity_fn u0)
+{
+  const double length[3] = {1.6, 1.0, 1.2};
+  bool periodic[3];
+  for (int d = 0; d < 3; d++)
+    periodic[d] = f->config.side[d][0].kind == BW_SIDE_PERIODIC;
+  bw_grid_config c = bw_grid_config_default();
+  for (int d = 0; d < 3; d++)
+    c.n[d] = f->n[d], c.length[d] = length[d], c.periodic[d] = periodic[d];
+  if (f->stretch > 0) c.y_stretch = BW_STRETCH_TANH, c.y_stretch_strength = f->stretch;
+  if (f->config.viscous == BW_VISCOUS_IMPLICIT_Y) c.ranks[0] = 1, c.ranks[1] = bw_comm_size(comm);
+  bw_grid *grid = NULL;
+  bw_check_ok(bw_grid_create(comm, &c, &grid));
+  bw_ns_channel *ns = ns_solver(grid, &f->config);
+  bw_check_ok(bw_ns_channel_set_velocity(ns, u0, NULL, 0));
+  for (int step = 0; step < steps; step++)
+    bw_check_ok(bw_ns_channel_step(ns, 0.01));
+  return ns;
+}
+
+START_TEST(ranks_do_not_show)
+{
+  bw_comm *self = NULL;
+  bw_check_ok(bw_comm_self(&self));
+  for (int which = 0; which < FLOWS; which++) {
+    const flow f = flow_of(which);
+    bw_ns_channel *many = run_flow(bw_check_world(), &f, 8, ns_smooth);
+    bw_ns_channel *one = run_flow(self, &f, 8, ns_smooth);
+    const bw_grid_view *g = many->g;
+    for (int c = 0; c < many->components + 1; c++)
+      for (int k = 1; k <= g->m[2]; k++)
+        for (int j = 1; j <= g->m[1]; j++)
+          for (int i = 1; i <= g->m[0]; i++) {
+            const bw_real *a = c < many->components ? many->u[c] : many->p;
+            const bw_real *b = c < many->components ? one->u[c] : one->p;
+            const double x = (double)a[bw_at(g, i, j, k)];
+            const double y = (double)b[bw_at(one->g, i, j + g->lo[1], k + g->lo[2])];
+            /* round-off of 24 sub-steps; p is divided by dt = 0.01 */
+            ck_assert_msg(fabs(x - y) < NS_TOLERANCE(1e-12), "%s, field %d (%d,%d,%d): %g", f.name,
+                          c, i, j, k, x - y);
+          }
+    ns_free(&many);
+    ns_free(&one);
+  }
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+static void planar_noise(const double x[3], double t, void *context, double u[3])
+{
+  const double flat[3] = {x[0], x[1], 0.0};
+  ns_noise(flat, t, context, u);
+  u[2] = 0.0;
+}
+
+START_TEST(two_dimensions_are_three_without_z)
+{
+  flow flat = flow_of(1), thick = flow_of(0);
+  thick.n[2] = 4;
+  bw_ns_channel *a = run_flow(bw_check_world(), &flat, 10, planar_noise);
+  bw_comm *self = NULL;
+  bw_check_ok(bw_comm_self(&self));
+  bw_ns_channel *b = run_flow(self, &thick, 10, planar_noise);
+  ck_assert_ptr_null(bw_ns_channel_velocity(a)[2]);
+  ck_assert_ptr_null(a->R[2]);
+  for (int c = 0; c < 2; c++)
+    for (int j = 1; j <= a->g->m[1]; j++)
+      for (int i = 1; i <= a->g->m[0]; i++)
+        for (int k = 1; k <= b->g->m[2]; k++)
+          bw_check_near(a->u[c][bw_at(a->g, i, j, 1)], b->u[c][bw_at(b->g, i, j + a->g->lo[1], k)],
+                        NS_TOLERANCE(1e-12));
+  ns_free(&a);
+  ns_free(&b);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+/* After every project the bulk velocity is the wanted one, whatever a body did; and the gradient
+ * reported is what the body and the walls take. */
+START_TEST(flow_rate_is_exact_with_a_body)
+{
+  flow f = flow_of(0);
+  bw_ns_channel *ns = run_flow(bw_check_world(), &f, 0, ns_smooth);
+  const bw_grid_view *g = ns->g;
+  for (int step = 0; step < 4; step++)
+    for (int r = 0; r < 3; r++) {
+      bw_ns_channel_predict(ns, r, 0.01);
+      for (int i = 2; i <= 4; i++)
+        ns->u[0][bw_at(g, i, 1, 1)] *= (bw_real)0.5;
+      bw_ns_channel_project(ns, r, 0.01);
+      bw_check_near(bw_ns_channel_summary(ns).bulk_velocity, 0.7, NS_TOLERANCE(1e-14));
+    }
+  ck_assert_double_gt(bw_ns_channel_summary(ns).pressure_gradient, 0.0);
+  ns_free(&ns);
+}
+END_TEST
+
+/* A constant gradient g = 12 nu U_b/H^2 holds the scheme's own Poiseuille profile
+ * (bw_ns_channel.h) still to round-off; so does the flow rate, which then reports g. */
+static void at_rest(const double x[3], double t, void *context, double u[3])
+{
+  (void)x, (void)t, (void)context;
+  u[0] = u[1] = u[2] = 0.0;
+}
+
+START_TEST(inflow_profile_is_steady_to_the_outlet)
+{
+  flow f = flow_of(2);
+  for (int d = 2, s = 0; s < 2; s++)
+    f.config.side[d][s].kind = BW_SIDE_FREE_SLIP;
+  bw_ns_channel *ns = run_flow(bw_check_world(), &f, 0, at_rest);
+  const bw_grid_view *g = ns->g;
+  for (int c = 0; c < 3; c++) /* the inflow's profile everywhere */
+    for (int k = 1; k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++)
+        for (int i = 1; i <= g->m[0]; i++)
+          ns->u[c][bw_at(g, i, j, k)] = c == 0 ? ns->u[0][bw_at(g, 0, j, k)] : 0;
+  bw_ns_channel_refresh(ns);
+  bw_check_near(bw_ns_channel_divergence(ns), 0.0, NS_TOLERANCE(1e-14));
+  for (int step = 0; step < 400; step++)
+    bw_check_ok(bw_ns_channel_step(ns, 0.01));
+  double most = 0;
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++)
+      for (int i = 1; i <= g->m[0]; i++)
+        most = fmax(
+            most, fabs((double)ns->u[0][bw_at(g, i, j, k)] - (double)ns->u[0][bw_at(g, 0, j, k)]));
+  bw_check_near(most, 0.0, NS_TOLERANCE(1e-11)); /* 1200 sub-steps of round-off in p/dt */
+  ns_free(&ns);
+}
+END_TEST
+
+/* Stokes decay at the viscous limit stays bounded, over it grows; the message names the limit. */
+START_TEST(limits_are_checked)
+{
+  flow f = flow_of(0);
+  bw_ns_channel *ns = run_flow(bw_check_world(), &f, 1, ns_smooth);
+  const double limit = bw_ns_channel_dt_max(ns);
+  bw_check_status(bw_ns_channel_step(ns, 1.01 * limit), BW_ECFL);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "over the limit"));
+  bw_check_status(bw_ns_channel_step(ns, -1.0), BW_EINPUT);
+  bw_check_status(bw_ns_channel_step(ns, (double)NAN), BW_EINPUT);
+  bw_check_ok(bw_ns_channel_step(ns, 0.99 * limit));
+  const bw_grid_view *g = ns->g; /* global cell (3, 7, 5) of v */
+  const int j = 7 - g->lo[1], k = 5 - g->lo[2];
+  for (int r = 0; r < 3; r++) {
+    bw_ns_channel_predict(ns, r, 0.001);
+    bw_ns_channel_project(ns, r, 0.001);
+  }
+  if (j >= 1 && j <= g->m[1] && k >= 1 && k <= g->m[2]) ns->u[1][bw_at(g, 3, j, k)] = (bw_real)NAN;
+  bw_ns_channel_refresh(ns);
+  bw_check_status(bw_ns_channel_check(ns, 0.001), BW_EDIVERGED);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "component v"));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "(3, 7, 5)"));
+  ns_free(&ns);
+}
+END_TEST
+
+/* A value that a body makes infinite between predict and project is found after the step. */
+START_TEST(what_is_not_finite_is_found)
+{
+  flow f = flow_of(3);
+  bw_ns_channel *ns = run_flow(bw_check_world(), &f, 1, ns_smooth);
+  for (int r = 0; r < 3; r++) {
+    bw_ns_channel_predict(ns, r, 0.001);
+    if (r == 2 && bw_comm_rank(bw_check_world()) == 0)
+      ns->u[0][bw_at(ns->g, 2, 1, 1)] = (bw_real)INFINITY;
+    bw_ns_channel_project(ns, r, 0.001);
+  }
+  bw_check_status(bw_ns_channel_check(ns, 0.001), BW_EDIVERGED);
+  ns_free(&ns);
+}
+END_TEST
+
+static void refused(const bool periodic[3], const bw_ns_channel_config *c, const char *word)
+{
+  const int n[3] = {4, 4, 4};
+  const double length[3] = {1, 1, 1};
+  bw_grid *grid = ns_grid(bw_check_world(), n, length, periodic, 0, 1);
+  bw_ns_channel *ns = NULL;
+  bw_check_status(bw_ns_channel_create(grid, c, &ns), BW_EINPUT);
+  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "'%s' is not in: %s", word,
+                bw_last_message());
+  ck_assert_ptr_null(ns);
+  bw_grid_destroy(&grid);
+}
+
+START_TEST(contradictions_are_refused)
+{
+  bw_ns_channel_config good = ns_config(closed, 0.1), c = good;
+  c.nu = (double)NAN;
+  refused(closed, &c, "nu");
+  c.nu = -1.0;
+  refused(closed, &c, "nu");
+  c = good, c.side[2][1].kind = BW_SIDE_PERIODIC;
+  refused(closed, &c, "z upper side is periodic");
+  refused(channel, &good, "x lower side is not periodic");
+  c = good, c.forcing = BW_FORCING_FLOW_RATE, c.forcing_value = 1;
+  refused(closed, &c, "periodic x");
+  c = ns_config(channel, 0.1), c.forcing = BW_FORCING_GRADIENT, c.forcing_value = (double)NAN;
+  refused(channel, &c, "forcing_value");
+  c = good, c.side[1][0].velocity[1] = 1;
+  refused(closed, &c, "tangentially");
+  c = good, c.side[0][0].kind = BW_SIDE_INFLOW, c.side[0][0].velocity[0] = 1;
+  refused(closed, &c, "add an outflow");
+  c = good, c.side[0][1].kind = BW_SIDE_OUTFLOW;
+  refused(closed, &c, "no inflow");
+  c.side[0][0].kind = BW_SIDE_OUTFLOW;
+  refused(closed, &c, "upper");
+  c.side[0][0].kind = BW_SIDE_INFLOW, c.side[0][0].profile = BW_PROFILE_CALLBACK;
+  refused(closed, &c, "function");
+  c.side[0][0].profile = BW_PROFILE_POISEUILLE;
+  refused(closed, &c, "bulk_velocity");
+  c.side[0][0].bulk_velocity = 1, c.side[1][0].kind = BW_SIDE_FREE_SLIP;
+  refused(closed, &c, "walls at rest");
+  const bool y_periodic[3] = {true, true, true};
+  c = ns_config(y_periodic, 0.1), c.viscous = BW_VISCOUS_IMPLICIT_Y;
+  refused(y_periodic, &c, "mplicit");
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(ranks_do_not_show),
+                                      BW_TEST(two_dimensions_are_three_without_z),
+                                      BW_TEST(flow_rate_is_exact_with_a_body),
+                                      BW_TEST(inflow_profile_is_steady_to_the_outlet),
+                                      BW_TEST(limits_are_checked),
+                                      BW_TEST(what_is_not_finite_is_found),
+                                      BW_TEST(contradictions_are_refused)};
+BW_CHECK_MAIN("ns_channel.step", tests)

@@ -1,0 +1,99 @@
+#include "bw_case.h"
+#include "bw_folder.h"
+#include "bw_memory.h"
+#include "bw_real.h"
+#include "case_internal.h"
+
+#include <stdio.h>
+
+static void release(bw_case **run)
+{
+  if (*run == NULL) return;
+  bw_release(&(*run)->overrides);
+  bw_release(&(*run)->out);
+  bw_log_destroy(&(*run)->log);
+  bw_release(run);
+}
+
+static bw_status load(const bw_case *run, void *config)
+{
+  const bw_case_args *a = &run->args;
+  BW_TRY(bw_config_load(a->comm, a->yaml, run->about->fields, a->n_overrides, a->overrides,
+                        run->about->config_size, config));
+  BW_REQUIRE(a->restart == NULL || bw_path_exists(a->comm, a->restart), BW_EIO,
+             "--restart %s: there is no such file", a->restart);
+  return BW_OK;
+}
+
+/* The resolved configuration: printed with --check, recorded otherwise. */
+static bw_status announce(bw_case *run, const void *config)
+{
+  const bw_case_args *a = &run->args;
+  char *resolved = NULL;
+  bw_status st = bw_comm_agree(a->comm, bw_config_dump(run->about->fields, config, &resolved));
+  if (!a->check) {
+    BW_THEN(st, bw_core__case_folder(run));
+    BW_THEN(st, bw_core__case_record(run, resolved));
+  }
+  if (st == BW_OK)
+    bw_log_info(run->log, "%s: %s on %d rank%s, %s precision%s%s", run->about->name, a->yaml,
+                bw_comm_size(a->comm), bw_comm_size(a->comm) == 1 ? "" : "s", BW_REAL_NAME,
+                a->check ? "" : ", results in ", a->check ? ", checked only:" : a->out);
+  if (st == BW_OK && a->check) bw_log_info(run->log, "%s", resolved);
+  bw_release(&resolved);
+  return st;
+}
+
+static bw_status begin(bw_case *run, int argc, char **argv, void *config)
+{
+  const bool speaker = bw_comm_rank(run->args.comm) == 0;
+  BW_TRY(bw_comm_agree(run->args.comm, bw_core__case_parse(run, argc, argv)));
+  if (run->version && speaker) bw_core__case_version();
+  if (run->help && speaker) bw_core__case_help(run, config);
+  bw_log_config settings = bw_log_config_default();
+  settings.quiet = run->args.quiet;
+  BW_TRY(bw_comm_agree(run->args.comm, bw_log_create(run->args.comm, &settings, &run->log)));
+  if (run->args.stop) return BW_OK;
+  BW_TRY(load(run, config));
+  return announce(run, config);
+}
+
+bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_case_about *about,
+                        void *config, bw_case **out)
+{
+  bw_case *run = NULL;
+  *out = NULL;
+  BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&run, 1)));
+  run->about = about;
+  run->args.comm = comm;
+  run->wall_start = bw_wall_time();
+  const bw_status st = begin(run, argc, argv, config);
+  if (st != BW_OK) release(&run);
+  *out = run;
+  return st;
+}
+
+const bw_case_args *bw_case_args_of(const bw_case *run)
+{
+  return &run->args;
+}
+
+bw_log *bw_case_log(const bw_case *run)
+{
+  return run->log;
+}
+
+bw_status bw_case_path(const bw_case *run, const char *name, char **path)
+{
+  return bw_path_join(run->out, name, path);
+}
+
+bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine)
+{
+  bw_status st = comm != NULL ? bw_comm_agree(comm, mine) : mine;
+  if (*run == NULL) return st;
+  const bw_status recorded = bw_comm_agree(comm, bw_core__case_record_end(*run, st));
+  if (st == BW_OK) st = recorded;
+  release(run);
+  return st;
+}

@@ -1,0 +1,163 @@
+/* The command line that all cases share. */
+#include "bw_folder.h"
+#include "bw_memory.h"
+#include "bw_real.h"
+#include "case_internal.h"
+#include "core_internal.h"
+
+#include <string.h>
+
+static bw_status take_set(bw_case *run, const char *value)
+{
+  run->overrides[run->args.n_overrides++] = value;
+  return BW_OK;
+}
+
+static bw_status take_out(bw_case *run, const char *value)
+{
+  bw_release(&run->out);
+  BW_REQUIRE(value[0] != '\0', BW_EUSAGE, "--out: the name of the folder is empty");
+  return bw_path_join("", value, &run->out);
+}
+
+static bw_status take_restart(bw_case *run, const char *value)
+{
+  run->args.restart = value;
+  return BW_OK;
+}
+
+static bw_status take_check(bw_case *run, const char *value)
+{
+  (void)value;
+  run->args.check = true;
+  return BW_OK;
+}
+
+static bw_status take_quiet(bw_case *run, const char *value)
+{
+  (void)value;
+  run->args.quiet = true;
+  return BW_OK;
+}
+
+static bw_status take_help(bw_case *run, const char *value)
+{
+  (void)value;
+  run->help = run->args.stop = true;
+  return BW_OK;
+}
+
+static bw_status take_version(bw_case *run, const char *value)
+{
+  (void)value;
+  run->version = run->args.stop = true;
+  return BW_OK;
+}
+
+static const struct option {
+  const char *name, *value; /* value: what follows it, NULL for nothing */
+  bw_status (*take)(bw_case *, const char *);
+  const char *help;
+} options[] = {
+    {"--set", "KEY.PATH=VALUE", take_set, "replace or add a value of the case file; repeatable"},
+    {"--out", "DIR", take_out, "folder of the results"},
+    {"--restart", "FILE", take_restart, "go on from a checkpoint"},
+    {"--check", NULL, take_check, "read and check everything, print the sizes, run nothing"},
+    {"--quiet", NULL, take_quiet, "only warnings and errors"},
+    {"--help", NULL, take_help, "this text, with all keys of the case file"},
+    {"--version", NULL, take_version, "version, commit and precision"},
+};
+enum { N_OPTIONS = sizeof options / sizeof *options };
+
+/* --name, --name=value (the length of the name counts) */
+static const struct option *find_option(const char *word, size_t length)
+{
+  for (int q = 0; q < N_OPTIONS; q++)
+    if (strlen(options[q].name) == length && strncmp(word, options[q].name, length) == 0)
+      return &options[q];
+  return NULL;
+}
+
+static bw_status unknown_option(const char *word)
+{
+  const char *nearest = NULL;
+  int best = 64;
+  for (int q = 0; q < N_OPTIONS; q++)
+    if (bw_core__near_miss(word, options[q].name, &best)) nearest = options[q].name;
+  if (nearest != NULL)
+    return BW_FAIL(BW_EUSAGE, "%s: unknown option; did you mean %s?", word, nearest);
+  return BW_FAIL(BW_EUSAGE, "%s: unknown option; --help lists them", word);
+}
+
+static bw_status parse_option(bw_case *run, int argc, char **argv, int *at)
+{
+  const char *word = argv[*at], *value = strchr(word, '=');
+  const size_t length = value != NULL ? (size_t)(value - word) : strlen(word);
+  const struct option *o = find_option(word, length);
+  if (o == NULL) return unknown_option(word);
+  BW_REQUIRE(o->value != NULL || value == NULL, BW_EUSAGE, "%s takes no value", o->name);
+  if (value != NULL) value++;
+  if (o->value != NULL && value == NULL) {
+    BW_REQUIRE(*at + 1 < argc, BW_EUSAGE, "%s needs a value: %s %s", o->name, o->name, o->value);
+    value = argv[++*at];
+  }
+  return o->take(run, value);
+}
+
+/* out/CASE, or out/CASE-FILE when the case file is called otherwise. */
+static bw_status default_folder(bw_case *run)
+{
+  const char *slash = strrchr(run->args.yaml, '/');
+  const char *stem = slash != NULL ? slash + 1 : run->args.yaml, *dot = strrchr(stem, '.');
+  const int length = dot != NULL ? (int)(dot - stem) : (int)strlen(stem);
+  const size_t room = sizeof "out/-" + strlen(run->about->name) + (size_t)length;
+  const bool same =
+      strlen(run->about->name) == (size_t)length && strncmp(run->about->name, stem, length) == 0;
+  BW_TRY(BW_ALLOCATE(&run->out, room));
+  if (same || length == 0)
+    snprintf(run->out, room, "out/%s", run->about->name);
+  else
+    snprintf(run->out, room, "out/%s-%.*s", run->about->name, length, stem);
+  return BW_OK;
+}
+
+bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
+{
+  BW_TRY(BW_ALLOCATE(&run->overrides, (size_t)argc));
+  for (int q = 1; q < argc; q++) {
+    if (argv[q][0] == '-') {
+      BW_TRY(parse_option(run, argc, argv, &q));
+    } else {
+      BW_REQUIRE(run->args.yaml == NULL, BW_EUSAGE,
+                 "two case files are given: %s and %s (a value of --set with spaces needs quotes)",
+                 run->args.yaml, argv[q]);
+      run->args.yaml = argv[q];
+    }
+  }
+  run->args.overrides = run->overrides;
+  if (run->args.stop) return BW_OK;
+  BW_REQUIRE(run->args.yaml != NULL, BW_EUSAGE,
+             "no case file is given: %s CASE.yaml [options]; --help lists them", run->about->name);
+  if (run->out == NULL) BW_TRY(default_folder(run));
+  run->args.out = run->out;
+  return BW_OK;
+}
+
+void bw_core__case_version(void)
+{
+  printf("breakwater %s (commit %s, %s precision)\n", BW_VERSION, BW_COMMIT, BW_REAL_NAME);
+}
+
+void bw_core__case_help(const bw_case *run, const void *config)
+{
+  printf("%s: %s\n\nusage: [mpirun -np N] %s CASE.yaml [options]\n", run->about->name,
+         run->about->summary, run->about->name);
+  for (int q = 0; q < N_OPTIONS; q++) {
+    char name[64];
+    snprintf(name, sizeof name, "%s %s", options[q].name,
+             options[q].value != NULL ? options[q].value : "");
+    printf("  %-22s %s\n", name, options[q].help);
+  }
+  printf("\nkeys of the case file:\n");
+  bw_config_help(run->about->fields, config, stdout);
+}

@@ -130,8 +130,9 @@ void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data)
 static bw_status layout(const bw_comm *comm, size_t bytes, int **counts, int **starts,
                         size_t *total)
 {
-  BW_TRY(BW_ALLOCATE(counts, (size_t)comm->size));
-  BW_TRY(BW_ALLOCATE(starts, (size_t)comm->size));
+  bw_status st = BW_ALLOCATE(counts, (size_t)comm->size);
+  BW_THEN(st, BW_ALLOCATE(starts, (size_t)comm->size));
+  BW_TRY(bw_comm_agree(comm, st));
   int64_t sum = (int64_t)bytes;
   bw_comm_sum_int(comm, 1, &sum);
   BW_REQUIRE(sum <= INT_MAX, BW_EMEM, "gathering %lld bytes on one rank: 2 GiB is the limit",
@@ -148,8 +149,8 @@ bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine,
                             void **out)
 {
   int *counts = NULL, *starts = NULL;
-  bw_status st = layout(comm, bytes, &counts, &starts, total);
   *out = NULL;
+  bw_status st = layout(comm, bytes, &counts, &starts, total);
   BW_THEN(st, bw_allocate(*total, 1, out));
   st = bw_comm_agree(comm, st);
   if (st == BW_OK)
@@ -163,8 +164,8 @@ bw_status bw_comm_gather(const bw_comm *comm, size_t bytes, const void *mine, si
                          void **out)
 {
   int *counts = NULL, *starts = NULL;
-  bw_status st = layout(comm, bytes, &counts, &starts, total);
   *out = NULL;
+  bw_status st = layout(comm, bytes, &counts, &starts, total);
   if (comm->rank == 0) BW_THEN(st, bw_allocate(*total, 1, out));
   st = bw_comm_agree(comm, st);
   if (st == BW_OK)

@@ -1,6 +1,7 @@
 #include "bw_exchange.h"
 #include "bw_memory.h"
 
+#include <limits.h>
 #include <string.h>
 
 enum { TAG_FORWARD = 71, TAG_BACKWARD = 72 };
@@ -25,8 +26,10 @@ static bw_status sort_by_destination(bw_exchange *e, const int destination[], in
   const int size = bw_comm_size(e->comm);
   size_t *next = NULL;
   BW_TRY(BW_ALLOCATE(&next, (size_t)size + 1));
-  for (size_t i = 0; i < e->sent; i++)
+  for (size_t i = 0; i < e->sent; i++) {
+    BW_ASSERT(destination[i] >= 0 && destination[i] < size);
     count[destination[i]]++;
+  }
   for (int r = 0; r < size; r++)
     next[r + 1] = next[r] + (size_t)count[r];
   for (size_t i = 0; i < e->sent; i++)
@@ -64,8 +67,9 @@ static bw_status partners(const bw_comm *comm, const int count[], int *n, int **
 static bw_status plan(bw_exchange *e, const int destination[], int *out_count, int *in_count)
 {
   const bw_comm *comm = e->comm;
-  BW_TRY(BW_ALLOCATE(&e->order, e->sent));
-  BW_TRY(sort_by_destination(e, destination, out_count));
+  bw_status st = BW_ALLOCATE(&e->order, e->sent);
+  BW_THEN(st, sort_by_destination(e, destination, out_count));
+  BW_TRY(bw_comm_agree(comm, st)); /* before the first message */
   MPI_Alltoall(out_count, 1, MPI_INT, in_count, 1, MPI_INT, bw_comm_mpi(comm));
   e->self_count = (size_t)out_count[bw_comm_rank(comm)];
   BW_TRY(partners(comm, out_count, &e->n_to, &e->to, &e->to_start, &e->to_offset, &e->self_send,
@@ -146,6 +150,7 @@ static void post(bw_exchange *e, bool receive, int n, const int rank[], const si
   for (int p = 0; p < n; p++) {
     unsigned char *at = data + offset[p] * bytes;
     const int length = (int)((start[p + 1] - start[p]) * bytes);
+    BW_ASSERT((start[p + 1] - start[p]) * bytes <= INT_MAX);
     if (receive)
       MPI_Irecv(at, length, MPI_BYTE, rank[p], tag, comm, &q[p]);
     else

@@ -2,7 +2,9 @@
  *
  * Set up once from the destination of each item; then moved any number of times, forth
  * (values to where they are needed) and back (answers to where the items came from). Counts
- * travel in the set-up only. Items to this rank itself are copied, not sent.
+ * travel in the set-up only. Items to this rank itself are copied, not sent. The send buffer
+ * grows to the largest set ever moved (running out of memory there ends the run); nothing else is
+ * allocated after create. One partner gets at most 2 GiB per move.
  * Life     create -> { forward, backward }* -> destroy. */
 #pragma once
 #include "bw_comm.h"

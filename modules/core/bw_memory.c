@@ -9,6 +9,7 @@ enum { ALIGNMENT = 64 };
 bw_status bw_allocate(size_t count, size_t size, void *out)
 {
   void *p = NULL;
+  memcpy(out, &p, sizeof p);
   BW_REQUIRE(size == 0 || count <= (SIZE_MAX - 2 * ALIGNMENT) / size, BW_EMEM,
              "an array of %zu items of %zu bytes exceeds the address space", count, size);
   const size_t bytes = (count * size + 2 * ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;

@@ -4,7 +4,8 @@
 #include <stddef.h>
 
 /* *out = zeroed array of `count` items of `size` bytes, aligned to 64 bytes; never NULL on
- * success, also for count = 0. The caller owns it and frees it with bw_release. Local. */
+ * success (also for count = 0), NULL after a failure. The caller owns it and frees it with
+ * bw_release. Local. */
 bw_status bw_allocate(size_t count, size_t size, void *out) BW_MUST_CHECK;
 
 /* Free *out (a pointer's address) and set it to NULL; NULL inside is fine. Local. */

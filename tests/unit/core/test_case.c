@@ -1,0 +1,212 @@
+/* The command line, the rules of the output folder, run.yaml.
+ * TEST ranks=1,2 */
+#include "bw_case.h"
+#include "bw_check.h"
+#include "bw_file.h"
+#include "bw_folder.h"
+#include "bw_memory.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct {
+  double nu;
+  int steps;
+} config;
+static const bw_config_field fields[] = {
+    BW_CONFIG_VALUE(config, nu, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
+    BW_CONFIG_VALUE(config, steps, BW_OPTIONAL, BW_AT_LEAST(0), "", "time steps"), BW_CONFIG_END};
+static const bw_case_about about = {"tube", "flow in a tube", fields, sizeof(config)};
+static const bw_case_about other_case = {"plate", "another", fields, sizeof(config)};
+
+/* A folder that is new for every test program run, the same on all ranks. */
+static char base[96];
+static const char *in_base(const char *name, char path[200])
+{
+  if (base[0] == '\0') {
+    int64_t number = bw_comm_rank(bw_check_world()) == 0 ? (int64_t)getpid() : 0;
+    bw_comm_max_int(bw_check_world(), 1, &number);
+    snprintf(base, sizeof base, "test_core_case/%lld", (long long)number);
+    bw_check_ok(bw_folder_make(bw_check_world(), base));
+  }
+  snprintf(path, 200, "%s/%s", base, name);
+  return path;
+}
+
+/* begin with the words given (the program's name comes first) */
+static bw_status begin(const bw_case_about *of, const char *const words[], config *c, bw_case **run)
+{
+  char *argv[16] = {(char *)"program"};
+  char copy[16][256];
+  int argc = 1;
+  for (; words[argc - 1] != NULL; argc++) {
+    snprintf(copy[argc], sizeof copy[argc], "%s", words[argc - 1]);
+    argv[argc] = copy[argc];
+  }
+  *c = (config){.nu = NAN, .steps = 7};
+  return bw_case_begin(bw_check_world(), argc, argv, of, c, run);
+}
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static void expect_refusal(const bw_case_about *of, const char *const words[], bw_status code,
+                           const char *piece)
+{
+  config c;
+  bw_case *run = NULL;
+  bw_check_status(begin(of, words, &c, &run), code);
+  ck_assert_ptr_null(run);
+  ck_assert_msg(strstr(bw_last_message(), piece) != NULL, "'%s' not in: %s", piece,
+                bw_last_message());
+}
+
+static const char *case_file(char path[200])
+{
+  in_base("tube.yaml", path);
+  bw_check_ok(bw_file_write_text(bw_check_world(), path, "nu: 0.5\n"));
+  return path;
+}
+
+START_TEST(command_line_errors_have_hints)
+{
+  char yaml[200];
+  case_file(yaml);
+  expect_refusal(&about, WORDS("--quiet"), BW_EUSAGE, "no case file is given: tube CASE.yaml");
+  expect_refusal(&about, WORDS("a.yaml", "b.yaml"), BW_EUSAGE, "two case files");
+  expect_refusal(&about, WORDS(yaml, "--ouput", "x"), BW_EUSAGE,
+                 "--ouput: unknown option; did you mean --out?");
+  expect_refusal(&about, WORDS(yaml, "--zzzzzzzzzz"), BW_EUSAGE, "--help lists them");
+  expect_refusal(&about, WORDS(yaml, "-q"), BW_EUSAGE, "-q: unknown option");
+  expect_refusal(&about, WORDS(yaml, "--out"), BW_EUSAGE, "--out needs a value: --out DIR");
+  expect_refusal(&about, WORDS(yaml, "--out", ""), BW_EUSAGE, "empty");
+  expect_refusal(&about, WORDS(yaml, "--check=1"), BW_EUSAGE, "--check takes no value");
+  expect_refusal(&about, WORDS("no_such.yaml"), BW_EIO, "no_such.yaml");
+  expect_refusal(&about, WORDS(yaml, "--set", "nu=-1", "--check"), BW_EINPUT,
+                 "nu = -1: must be > 0");
+  expect_refusal(&about, WORDS(yaml, "--restart", "no.h5"), BW_EIO,
+                 "--restart no.h5: there is no such file");
+}
+END_TEST
+
+START_TEST(check_help_and_version_touch_nothing)
+{
+  char yaml[200], folder[200];
+  config c;
+  bw_case *run = NULL;
+  case_file(yaml);
+  in_base("untouched", folder);
+  bw_check_ok(begin(&about, WORDS(yaml, "--check", "--out", folder, "--quiet"), &c, &run));
+  ck_assert(bw_case_args_of(run)->check && bw_case_args_of(run)->quiet);
+  ck_assert(!bw_case_args_of(run)->stop);
+  ck_assert_double_eq(c.nu, 0.5);
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK));
+  ck_assert(!bw_path_exists(bw_check_world(), folder));
+
+  bw_check_ok(begin(&about, WORDS("--help"), &c, &run));
+  ck_assert(bw_case_args_of(run)->stop);
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK));
+  bw_check_ok(begin(&about, WORDS("--version", yaml), &c, &run));
+  ck_assert(bw_case_args_of(run)->stop);
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK));
+  ck_assert_ptr_null(run);
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK)); /* after a failed begin */
+}
+END_TEST
+
+START_TEST(default_folders)
+{
+  char yaml[200], other[200];
+  config c;
+  bw_case *run = NULL;
+  case_file(yaml);
+  bw_check_ok(begin(&about, WORDS(yaml, "--check", "--quiet"), &c, &run));
+  ck_assert_str_eq(bw_case_args_of(run)->out, "out/tube");
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK));
+  in_base("s1.yaml", other);
+  bw_check_ok(bw_file_write_text(bw_check_world(), other, "nu: 1\n"));
+  bw_check_ok(begin(&about, WORDS(other, "--check", "--quiet"), &c, &run));
+  ck_assert_str_eq(bw_case_args_of(run)->out, "out/tube-s1");
+  bw_check_ok(bw_case_end(bw_check_world(), &run, BW_OK));
+}
+END_TEST
+
+/* run.yaml holds what was run, is a case file, and tells how it ended. */
+START_TEST(the_record)
+{
+  char yaml[200], folder[200], *record = NULL, *text = NULL, *path = NULL;
+  config c, again = {.nu = NAN, .steps = 1};
+  bw_case *run = NULL;
+  case_file(yaml);
+  in_base("record", folder);
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--set=nu=0.1", "--quiet"), &c, &run));
+  ck_assert_double_eq(c.nu, 0.1);
+  bw_check_ok(bw_case_path(run, "run.yaml", &record));
+  bw_check_ok(bw_config_load(bw_check_world(), record, fields, 0, NULL, sizeof again, &again));
+  ck_assert_double_eq(again.nu, 0.1);
+  ck_assert_int_eq(again.steps, 7);
+  const bw_status failed = BW_FAIL(BW_EDIVERGED, "the flow \"blew up\"");
+  bw_check_status(bw_case_end(bw_check_world(), &run, failed), BW_EDIVERGED);
+  ck_assert_str_eq(bw_last_message(), "the flow \"blew up\"");
+  bw_check_ok(bw_file_read_text(bw_check_world(), record, NULL, &text));
+  char ranks[32];
+  snprintf(ranks, sizeof ranks, "  ranks: %d\n", bw_comm_size(bw_check_world()));
+  const char *const pieces[] = {"\nrun:\n  case: tube\n",
+                                "  version: ",
+                                "  commit: ",
+                                ranks,
+                                "  precision: ",
+                                "  set: [\"nu=0.1\"]\n",
+                                "  start: 2",
+                                "  end: 2",
+                                "  exit_code: 6\n",
+                                "message: \"the flow \\\"blew up\\\"\""};
+  for (size_t q = 0; q < sizeof pieces / sizeof *pieces; q++)
+    ck_assert_msg(strstr(text, pieces[q]) != NULL, "'%s' not in:\n%s", pieces[q], text);
+  again.nu = NAN; /* still a case file with its end in it */
+  bw_check_ok(bw_config_load(bw_check_world(), record, fields, 0, NULL, sizeof again, &again));
+  ck_assert_double_eq(again.nu, 0.1);
+  bw_release(&record);
+  bw_release(&text);
+  bw_release(&path);
+}
+END_TEST
+
+START_TEST(results_are_not_overwritten)
+{
+  const bw_comm *comm = bw_check_world();
+  char yaml[200], folder[200], *checkpoint = NULL, *kept = NULL;
+  config c;
+  bw_case *run = NULL;
+  case_file(yaml);
+  in_base("kept", folder);
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  /* a run without results may be repeated */
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
+  bw_check_ok(bw_case_path(run, "checkpoint-1.h5", &checkpoint));
+  bw_check_ok(bw_case_path(run, "run-1.yaml", &kept));
+  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  ck_assert(bw_path_exists(comm, kept));
+
+  expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EINPUT, "give --out NEW, or --restart");
+  expect_refusal(&other_case, WORDS(yaml, "--out", folder, "--restart", checkpoint), BW_EINPUT,
+                 "holds results of another case than plate");
+  bw_check_ok(
+      begin(&about, WORDS(yaml, "--out", folder, "--restart", checkpoint, "--quiet"), &c, &run));
+  ck_assert_str_eq(bw_case_args_of(run)->restart, checkpoint);
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  bw_release(&checkpoint);
+  bw_release(&kept);
+
+  in_base("in_the_way", folder);
+  bw_check_ok(bw_file_write_text(comm, folder, "a file"));
+  expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EIO, "in the way");
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(command_line_errors_have_hints), BW_TEST(check_help_and_version_touch_nothing),
+    BW_TEST(default_folders), BW_TEST(the_record), BW_TEST(results_are_not_overwritten)};
+BW_CHECK_MAIN("core.case", tests)

@@ -49,6 +49,8 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->all_velocity, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->own_normal, pi->config.smooth_normals ? 3 * n : 0));
+  BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->place, 3 * slots));
@@ -106,7 +108,7 @@ static bool judge(bw_pd_interface *pi, size_t h)
 }
 
 /* The reference shape: its surface and its area, whatever has broken or moved since, so that a
- * restart finds the same. Faces of a sheet that has no normal count in full. Collective. */
+ * restart finds the same. Collective. */
 static void measure_reference(bw_pd_interface *pi)
 {
   const bw_pd_bond_config *c = bw_pd_bond_settings(pi->pd);
@@ -118,11 +120,7 @@ static void measure_reference(bw_pd_interface *pi)
     pi->first[h] = judge(pi, h);
     pi->surface[h] = pi->first[h];
     if (pi->outside[h]) continue;
-    const double(*e)[3] = c->axes;
-    double n[3] = {e[0][0] + e[1][0] + e[2][0], e[0][1] + e[1][1] + e[2][1],
-                   e[0][2] + e[1][2] + e[2][2]};
-    (void)bw_pd_interface__normal(pi, n); /* where it balances all faces have a part of 1 */
-    total[0] += bw_pd_interface__open_area(pi, n);
+    total[0] += bw_pd_interface__open_area(pi);
     total[1] += pi->first[h] ? 1.0 : 0.0;
   }
   bw_comm_sum(bw_pd_bond_comm(pi->pd), 2, total);
@@ -158,11 +156,12 @@ bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *c
 {
   *out = NULL;
   bw_pd_interface *pi = NULL;
-  bw_status st = BW_ALLOCATE(&pi, 1);
+  bw_status st = bw_comm_agree(bw_pd_bond_comm(pd), BW_ALLOCATE(&pi, 1));
   if (st == BW_OK) {
     pi->pd = pd;
     pi->config = *config;
     pi->n = bw_pd_bond_count(pd);
+    pi->n_extended = bw_pd_bond_get_extended(pd).n;
     st = build(pi);
   }
   st = bw_comm_agree(bw_pd_bond_comm(pd), st);
@@ -183,12 +182,13 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,  (void **)&p->first,       (void **)&p->outside,
-                    (void **)&p->leans,    (void **)&p->damaged,     (void **)&p->leaning,
-                    (void **)&p->list,     (void **)&p->X0,          (void **)&p->normal,
-                    (void **)&p->position, (void **)&p->velocity,    (void **)&p->all_velocity,
-                    (void **)&p->area,     (void **)&p->list_normal, (void **)&p->link,
-                    (void **)&p->state,    (void **)&p->place,       (void **)&p->off};
+  void **array[] = {(void **)&p->surface,    (void **)&p->first,       (void **)&p->outside,
+                    (void **)&p->leans,      (void **)&p->damaged,     (void **)&p->leaning,
+                    (void **)&p->list,       (void **)&p->X0,          (void **)&p->normal,
+                    (void **)&p->position,   (void **)&p->velocity,    (void **)&p->all_velocity,
+                    (void **)&p->area,       (void **)&p->list_normal, (void **)&p->link,
+                    (void **)&p->state,      (void **)&p->place,       (void **)&p->off,
+                    (void **)&p->own_normal, (void **)&p->all_normal};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   bw_release(pi);
@@ -225,6 +225,34 @@ static void follow_openings(bw_pd_interface *pi, const bw_real *X)
   }
 }
 
+/* Mean of the normals of the surface particles a surface particle has intact bonds with. Those
+ * on the other side of a sheet or an edge look elsewhere (more than 60 degrees) and stay out.
+ * Collective. */
+static void smooth(bw_pd_interface *pi)
+{
+  memset(pi->own_normal, 0, 3 * pi->n * sizeof *pi->own_normal);
+  for (size_t row = 0; row < pi->n_list; row++)
+    memcpy(&pi->own_normal[3 * pi->list[row]], &pi->list_normal[3 * row], 3 * sizeof(double));
+  bw_pd_bond_fill_extended(pi->pd, 3 * sizeof(double), pi->own_normal, pi->all_normal);
+  for (size_t row = 0; row < pi->n_list; row++) {
+    const size_t h = (size_t)pi->list[row];
+    const double *mine = &pi->all_normal[3 * h];
+    double sum[3] = {mine[0], mine[1], mine[2]}, squared = 0.0;
+    const int family = bw_pd_bond_links(pi->pd, h, pi->link);
+    for (int q = 0; q < family; q++) {
+      const double *n = &pi->all_normal[3 * (size_t)pi->link[q].neighbour];
+      const double cosine = mine[0] * n[0] + mine[1] * n[1] + mine[2] * n[2];
+      if (!pi->link[q].intact || !(cosine > 0.5)) continue;
+      for (int d = 0; d < 3; d++)
+        sum[d] += n[d];
+    }
+    for (int d = 0; d < 3; d++)
+      squared += sum[d] * sum[d];
+    for (size_t d = 0; d < 3; d++)
+      pi->list_normal[3 * row + d] = sum[d] / sqrt(squared);
+  }
+}
+
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
   const bw_pd_bond_extended all = bw_pd_bond_get_extended(pi->pd);
@@ -238,6 +266,7 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi)
     (void)bw_pd_interface__normal(pi, &pi->normal[3 * h]); /* the last one where it balances */
     append(pi, h, all.X);
   }
+  if (pi->config.smooth_normals) smooth(pi);
   return BW_OK;
 }
 

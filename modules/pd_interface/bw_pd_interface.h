@@ -11,10 +11,10 @@
  * where the neighbours balance (thin sheets, single particles) the normal is the last one that
  * could be told, at the start the direction of the empty sectors.
  * Areas: particles that were surface in the reference shape share its area
- *   ds^2 sum over open lattice faces f of |n.e_f|   (exact for planes of any orientation)
- * in equal parts; new crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in both).
- * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
- * them as planes in the config. There partners are taken as mirrored in the plane, until the
+ *   ds^2 sum over open lattice faces f of |n_f.e_f|, n_f the normal at the face's middle
+ * in equal parts (figures in README); new crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in
+ * both). Sides of the domain against which the solid leans (a wall of the channel) are not surface:
+ * give them as planes in the config. There partners are taken as mirrored in the plane, until the
  * particle has moved from the wall by more than the threshold or its bonds across it broke.
  * Particles beyond such a plane (ghost layers) are never surface.
  * MPI: results are of the rank's own particles. Updates cost only the copying of positions and
@@ -25,10 +25,12 @@
 typedef struct bw_pd_interface bw_pd_interface;
 
 typedef struct {
-  double threshold;  /* mean distance over horizon that opens a sector [-]   default 1 */
-  int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
-                        POROUS), 1 in 3D                                     default 0 */
-  bool walled[3][2]; /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
+  double threshold;    /* mean distance over horizon that opens a sector [-]   default 1 */
+  int n_empty;         /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
+                          POROUS), 1 in 3D                                     default 0 */
+  bool smooth_normals; /* average 3.45 over the surface within the horizon (normals that differ
+                          by more than 60 degrees apart); one exchange per update. Default false */
+  bool walled[3][2];   /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
   double lower[3], upper[3];
 } bw_pd_interface_config;
 

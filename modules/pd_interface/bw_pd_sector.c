@@ -105,6 +105,7 @@ bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface_
   memset(s, 0, sizeof *s);
   s->dims = c->geometry == BW_PD_3D ? 3 : 2;
   s->ds = c->ds;
+  s->family = c->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
   s->slots = bw_pd_bond_max_family(pd);
   s->reach = (int)floor(c->horizon_ratio + 0.5);

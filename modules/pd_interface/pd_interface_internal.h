@@ -8,7 +8,7 @@ enum { BW_PD_INTERFACE__SECTORS = 24 }; /* 3D; 8 of them are used in 2D */
  * (each component -reach..reach) to its slot, -1: none. */
 typedef struct {
   int dims, sectors, slots, reach;
-  double ds;
+  double ds, family;   /* spacing; radius of the family [L] */
   double axes[3][3];   /* lattice directions */
   double *xi;          /* (slots,3) [L] */
   double *fraction;    /* (slots) Gamma */
@@ -56,6 +56,9 @@ struct bw_pd_interface {
   size_t n_list;
   double *position, *velocity, *list_normal, *area;
   double *all_velocity; /* (n,3) */
+  double *own_normal;   /* (n,3) of the surface, 0 elsewhere; for smoothing */
+  double *all_normal;   /* (n_extended,3) */
+  size_t n_extended;
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
@@ -65,10 +68,11 @@ enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN
 void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, const bw_real *X);
 
 /* Of the particle resolved last: bits of its empty sectors; its unit normal (false and unchanged
- * when the neighbours balance); open area [L^2] of its lattice faces projected on n. Local. */
+ * when the neighbours balance); area [L^2] of its open lattice faces, each projected on the
+ * normal there (reference shape). Local. */
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi);
 bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3]);
-double bw_pd_interface__open_area(const bw_pd_interface *pi, const double n[3]);
+double bw_pd_interface__open_area(const bw_pd_interface *pi);
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X);

@@ -1,0 +1,83 @@
+/* Tip, branches, fork and angle of a crack drawn by hand.
+ * TEST ranks=1,2,3,4 */
+#include "bw_check.h"
+#include "bw_memory.h"
+#include "bw_pd_crack.h"
+
+/* A lattice 60 x 41 of spacing 0.5, rows dealt out to the ranks: a stem two rows thick along
+ * y = 10 up to x = 10, from there two branches that part by +-1/2 in slope. */
+typedef struct {
+  size_t n;
+  double *X0, *damage;
+} plate;
+
+static bool drawn(double x, double y)
+{
+  const double off = x < 10.0 ? 0.0 : 0.5 * (x - 10.0);
+  return x < 25.0 && (fabs(y - 10.0 - off) < 0.5 || fabs(y - 10.0 + off) < 0.5);
+}
+
+static plate plate_create(void)
+{
+  const int me = bw_comm_rank(bw_check_world()), size = bw_comm_size(bw_check_world());
+  plate p = {0};
+  bw_check_ok(BW_ALLOCATE(&p.X0, 3 * 60 * 40));
+  bw_check_ok(BW_ALLOCATE(&p.damage, 60 * 40));
+  for (int j = 0; j < 40; j++)
+    for (int i = 0; i < 60; i++) {
+      if (j % size != me) continue;
+      const double x = 0.5 * (i + 0.5), y = 0.5 * (j + 0.5);
+      p.X0[3 * p.n] = x, p.X0[3 * p.n + 1] = y;
+      p.damage[p.n++] = drawn(x, y) ? 0.4 : 0.3;
+    }
+  return p;
+}
+
+START_TEST(a_drawn_fork_is_measured)
+{
+  plate p = plate_create();
+  const bw_pd_crack_config c = bw_pd_crack_config_default();
+  bw_check_near(bw_pd_crack_tip(bw_check_world(), &c, p.n, p.X0, p.damage), 24.75, 1e-12);
+  bw_pd_crack k;
+  bw_check_ok(bw_pd_crack_collect(bw_check_world(), &c, p.n, p.X0, p.damage, &k));
+  for (size_t q = 1; q < k.n; q++)
+    ck_assert(k.s[q] > k.s[q - 1] || (k.s[q] == k.s[q - 1] && k.t[q] > k.t[q - 1]));
+  const double gap = 0.75;
+  double middle[2];
+  ck_assert_int_eq(bw_pd_crack_branches(&k, 5.25, 0.25, gap, 2, middle), 1);
+  bw_check_near(middle[0], 10.0, 1e-12);
+  ck_assert_int_eq(bw_pd_crack_branches(&k, 20.25, 0.25, gap, 2, middle), 2);
+  bw_check_near(middle[0], 10.0 - 0.5 * 10.25, 0.26);
+  bw_check_near(middle[1], 10.0 + 0.5 * 10.25, 0.26);
+  ck_assert_int_eq(bw_pd_crack_branches(&k, 27.25, 0.25, gap, 2, middle), 0);
+  /* two rows about each branch: parted by a sound one when 2 off > 2 rows + gap, x ~ 11.5 */
+  bw_check_near(bw_pd_crack_fork(&k, 0.25, 0.5, 3, gap), 11.5, 0.05);
+  bw_check_near(bw_pd_crack_angle(&k, 12.25, 24.75, 0.5, gap), 2 * atan(0.5), 0.03);
+  ck_assert(isnan(bw_pd_crack_angle(&k, 2.25, 8.75, 0.5, gap)));
+  ck_assert(isnan(bw_pd_crack_fork(&k, 20.25, 0.5, 20, gap)));
+  bw_pd_crack_release(&k);
+  bw_release(&p.X0);
+  bw_release(&p.damage);
+}
+END_TEST
+
+START_TEST(no_crack_is_no_crack)
+{
+  plate p = plate_create();
+  bw_pd_crack_config c = bw_pd_crack_config_default();
+  c.level = 0.5;
+  ck_assert(isinf(bw_pd_crack_tip(bw_check_world(), &c, p.n, p.X0, p.damage)));
+  bw_pd_crack k;
+  bw_check_ok(bw_pd_crack_collect(bw_check_world(), &c, p.n, p.X0, p.damage, &k));
+  ck_assert_uint_eq(k.n, 0);
+  ck_assert_int_eq(bw_pd_crack_branches(&k, 5.0, 1.0, 1.0, 0, NULL), 0);
+  ck_assert(isnan(bw_pd_crack_fork(&k, 0.0, 0.5, 2, 1.0)));
+  bw_pd_crack_release(&k);
+  bw_release(&p.X0);
+  bw_release(&p.damage);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(a_drawn_fork_is_measured),
+                                      BW_TEST(no_crack_is_no_crack)};
+BW_CHECK_MAIN("pd_interface.crack", tests)

@@ -38,10 +38,9 @@ typedef struct {
   bw_ibm_mdf *body;
   bw_probe *probe[2];
   double dt, h;
-  size_t n; /* surface points of this rank: all of them on rank 0 */
+  size_t n;                          /* surface points of this rank: all of them on rank 0 */
   double *point, *normal, *traction; /* (n,3) on the nominal surface */
   double area;                       /* of one point */
-  int box_low[3], box_high[3];       /* cells of the control volume */
 } cylinder_flow;
 
 static inline cylinder_config cylinder_config_default(void)
@@ -107,13 +106,10 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   BW_TRY(bw_ns_channel_set_velocity(f->fluid, cylinder_poiseuille, &height, 0.0));
   f->dt = c->dt_fraction * bw_ns_channel_dt_max(f->fluid);
 
-  const int centre[2] = {(int)lround(c->upstream * c->cells_per_diameter), grid.n[1] / 2};
-  for (int d = 0; d < 2; d++) {
-    f->box_low[d] = centre[d] - c->cells_per_diameter;
-    f->box_high[d] = centre[d] + c->cells_per_diameter;
-  }
-  f->box_low[2] = 0, f->box_high[2] = 1;
-  return BW_OK;
+  const int size = c->cells_per_diameter;
+  const int x = (int)lround(c->upstream * size), y = grid.n[1] / 2;
+  return bw_ns_channel_watch_box(f->fluid, (int[3]){x - size, y - size, 0},
+                                 (int[3]){x + size, y + size, 1});
 }
 
 /* `n` points on a circle of radius R about the cylinder's centre, and their normals. */
@@ -123,8 +119,8 @@ static inline void cylinder_circle(const cylinder_flow *f, double R, size_t n, d
   const double turn = 2.0 * acos(-1.0) / (double)n;
   for (size_t q = 0; q < n; q++) {
     const double c = cos(turn * ((double)q + 0.5)), s = sin(turn * ((double)q + 0.5));
-    const double x[3] = {f->config.upstream + R * c,
-                         0.5 * bw_grid_look(f->grid)->length[1] + R * s, 0.5 * f->h};
+    const double x[3] = {f->config.upstream + R * c, 0.5 * bw_grid_look(f->grid)->length[1] + R * s,
+                         0.5 * f->h};
     const double m[3] = {c, s, 0.0};
     for (int d = 0; d < 3; d++) {
       point[3 * q + (size_t)d] = x[d];
@@ -213,7 +209,7 @@ static inline cylinder_drag cylinder_measure(cylinder_flow *f)
   const bw_ibm_mdf_report r = bw_ibm_mdf_measure(f->body, u);
   cylinder_drag drag = {.reaction = -scale * r.total_force[0], .slip = r.slip_after};
   double box[3];
-  bw_ns_channel_control_volume(f->fluid, f->box_low, f->box_high, box);
+  bw_ns_channel_control_volume(f->fluid, box);
   drag.control_volume = -scale * box[0];
   for (int p = 0; p < 2; p++) {
     bw_probe_traction(f->probe[p], u, bw_ns_channel_pressure(f->fluid), NULL, f->traction, NULL);

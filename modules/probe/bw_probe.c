@@ -77,31 +77,59 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The traction over rho at a point of velocity V and acceleration A from what its tip saw.
- * Quadratic: with a = du/dn at the wall, grad u = a n + (derivatives along the wall), so the
- * tangential part of (grad u)^T.n is that of the tip (where it differs by O(dl^2)) and its normal
- * part is a.n; a rotating rigid body then feels none, as it must. */
-static void assemble(const bw_probe *b, const bw_probe__reply *r, const double n[3], double dl,
-                     const double V[3], const double A[3], double t[3])
+typedef struct {
+  double slope, curvature; /* at the wall: df/dn, d2f/dn2 */
+} wall_end;
+
+/* f = wall + a eta + b eta^2 with the value and slope that the tip's weights see of it:
+ *   value = wall + a dl + b (dl^2 + square),  slope = a + b (2 dl + square_slope). */
+static wall_end parabola_through(const bw_probe__along *f, double wall, double dl)
 {
-  double dudn[3], gtn[3], lift = 0.0;
-  memcpy(dudn, r->dudn, sizeof dudn);
-  memcpy(gtn, r->gtn, sizeof gtn);
-  if (b->profile == BW_PROBE_QUADRATIC) {
-    for (int c = 0; c < 3; c++) {
-      const double chord = (r->u[c] - V[c]) / dl;
-      dudn[c] = 2.0 * chord - r->dudn[c];
-      lift += 2.0 * (r->dudn[c] - chord) / dl * n[c]; /* d2u_n/dn2 */
-    }
-    const double change = dot(dudn, n) - dot(r->gtn, n);
-    for (int c = 0; c < 3; c++)
-      gtn[c] += change * n[c];
-  }
-  const double dpdn_wall = b->nu * lift - dot(A, n);
-  const double p = r->p - 0.5 * dl * (dpdn_wall + r->dpdn);
-  for (int c = 0; c < 3; c++)
-    t[c] = b->rho * (-p * n[c] + b->nu * (dudn[c] + gtn[c]));
+  const double lever = 2.0 * dl + f->square_slope;
+  const double b = (f->slope * dl - (f->value - wall)) / (dl * lever - dl * dl - f->square);
+  return (wall_end){f->slope - b * lever, 2.0 * b};
 }
+
+/* p on the wall, where its slope is known; the same parabola. */
+static double wall_pressure(const bw_probe__along *p, double slope, double dl)
+{
+  const double b = (p->slope - slope) / (2.0 * dl + p->square_slope);
+  return p->value - slope * dl - b * (dl * dl + p->square);
+}
+
+/* POROUS 3.85-3.94: velocity gradient of the tip, trapezoidal pressure. */
+static void linear_profile(const bw_probe *b, const bw_probe__reply *r, const double n[3],
+                           double dl, const double V[3], const double A[3], double t[3])
+{
+  (void)V;
+  const double p = r->p.value - 0.5 * dl * (r->p.slope - dot(A, n));
+  for (int c = 0; c < 3; c++)
+    t[c] = b->rho * (-p * n[c] + b->nu * (r->u[c].slope + r->gtn[c]));
+}
+
+/* With a = du/dn at the wall, grad u = a n + (derivatives along the wall): the tangential part
+ * of (grad u)^T.n is that of the tip (where it differs by O(dl^2)), its normal part is a.n; a
+ * rotating rigid body then feels none, as it must. */
+static void quadratic_profile(const bw_probe *b, const bw_probe__reply *r, const double n[3],
+                              double dl, const double V[3], const double A[3], double t[3])
+{
+  double slope[3], an = 0.0, bend = 0.0;
+  for (int c = 0; c < 3; c++) {
+    const wall_end w = parabola_through(&r->u[c], V[c], dl);
+    slope[c] = w.slope;
+    an += w.slope * n[c];
+    bend += w.curvature * n[c];
+  }
+  const double p = wall_pressure(&r->p, b->nu * bend - dot(A, n), dl);
+  const double change = an - dot(r->gtn, n);
+  for (int c = 0; c < 3; c++)
+    t[c] = b->rho * (-p * n[c] + b->nu * (slope[c] + r->gtn[c] + change * n[c]));
+}
+
+typedef void (*profile_fn)(const bw_probe *b, const bw_probe__reply *r, const double n[3],
+                           double dl, const double V[3], const double A[3], double t[3]);
+static const profile_fn profile_of[BW_PROBE_PROFILES] = {
+    [BW_PROBE_LINEAR] = linear_profile, [BW_PROBE_QUADRATIC] = quadratic_profile};
 
 void bw_probe_traction(bw_probe *b, bw_real *const u[3], const bw_real *p, const double A[],
                        double traction[], unsigned char flag[])
@@ -113,8 +141,9 @@ void bw_probe_traction(bw_probe *b, bw_real *const u[3], const bw_real *p, const
   if (b->n > 0) memset(traction, 0, 3 * b->n * sizeof *traction);
   for (size_t s = 0; s < b->n_sent; s++) {
     const size_t i = b->sent_from[s];
-    assemble(b, &b->answer[s], b->point[i].normal, b->length[i], b->V == NULL ? zero : b->V + 3 * i,
-             A == NULL ? zero : A + 3 * i, traction + 3 * i);
+    profile_of[b->profile](b, &b->answer[s], b->point[i].normal, b->length[i],
+                           b->V == NULL ? zero : b->V + 3 * i, A == NULL ? zero : A + 3 * i,
+                           traction + 3 * i);
   }
   if (flag != NULL && b->n > 0) memcpy(flag, b->flag, b->n);
 }

@@ -8,8 +8,9 @@
  * Where the velocity gradient of t is taken:
  *   BW_PROBE_LINEAR     at the tip, as the documents do: first order in dl;
  *   BW_PROBE_QUADRATIC  at the wall, from the parabola through the velocity V of the surface and
- *                       the velocity and its slope at the tip: du/dn = 2 (u_e - V)/dl - du/dn|e,
- *                       second order; the same parabola adds mu d2u_n/dn2 to dp/dn|wall.
+ *                       the velocity and its slope at the tip, du/dn = 2 (u_e - V)/dl - du/dn|e,
+ *                       with what the kernel makes of a parabola (its second moment) taken out:
+ *                       exact for parabolas; dp/dn|wall gains mu d2u_n/dn2.
  * A probe whose stencil leaves the box through a side that is not periodic, or whose tip lies in
  * another solid (bw_probe_set_obstacles), is shortened once to dl = h and flagged; when that does
  * not help either its traction is zero and it is flagged blocked. Never silently wrong.

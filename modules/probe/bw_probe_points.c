@@ -117,14 +117,14 @@ static bw_status avoid_obstacles(bw_probe *b, const double X[])
   }
   BW_TRY(route(b));
   for (size_t q = 0; q < b->held; q++)
-    b->reply[q].p = bw_probe__evaluate(b, b->obstacles, 3, b->received[q].tip).value;
+    b->reply[q].p.value = bw_probe__evaluate(b, b->obstacles, 3, b->received[q].tip).value;
   bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
   /* the first free tip of a point, the long one coming first */
   for (size_t i = 0, s = 0; i < b->n; i++) {
     const double longest = b->length[i];
     bool free = false;
     for (double dl = longest; s < b->n_sent && b->sent_from[s] == i; s++, dl = b->h)
-      if (!free && b->answer[s].p <= 0.5) {
+      if (!free && b->answer[s].p.value <= 0.5) {
         free = true;
         b->length[i] = dl;
       }

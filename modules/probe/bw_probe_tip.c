@@ -16,11 +16,14 @@ static int weights_of(const bw_probe *probe, const double x[3], int place, int d
   int first = (int)floor(s - 0.5 - k->radius) + 1;
   if (first > g->m[d] + g->halo[d] - PROBE_WIDTH + 1)
     first = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
+  w->square = w->square_slope = 0.0;
   for (int q = 0; q < PROBE_WIDTH; q++) {
     const double r = s - (double)(first + q), above = k->phi(r + 0.5), below = k->phi(r - 0.5);
     w->at[q] = k->phi(r);
     w->mean[q] = 0.5 * (above + below);
     w->slope[q] = (above - below) / h;
+    w->square += w->at[q] * r * r * h * h;
+    w->square_slope += w->slope[q] * r * r * h * h;
   }
   return first;
 }
@@ -50,26 +53,38 @@ bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int
         for (int a = 0; a < 4; a++)
           sum[a][q] += factor[a] * (double)row[q];
     }
-  return (bw_probe__sample){
-      dot(sum[0], w[0].at),
-      {dot(sum[1], w[0].slope), dot(sum[2], w[0].mean), dot(sum[3], w[0].mean)}};
+  bw_probe__sample s = {
+      .value = dot(sum[0], w[0].at),
+      .grad = {dot(sum[1], w[0].slope), dot(sum[2], w[0].mean), dot(sum[3], w[0].mean)}};
+  for (int d = 0; d < 3; d++) {
+    s.square[d] = w[d].square;
+    s.square_slope[d] = w[d].square_slope;
+  }
+  return s;
+}
+
+/* First moments vanish, so of ((x - tip).n)^2 only the squares of each direction remain. */
+static bw_probe__along along_normal(const bw_probe__sample *s, const double n[3])
+{
+  bw_probe__along a = {.value = s->value};
+  for (int d = 0; d < 3; d++) {
+    a.slope += s->grad[d] * n[d];
+    a.square += s->square[d] * n[d] * n[d];
+    a.square_slope += s->square_slope[d] * n[d] * n[d] * n[d];
+  }
+  return a;
 }
 
 bw_probe__reply bw_probe__at_tip(const bw_probe *probe, bw_real *const u[3], const bw_real *p,
                                  const bw_probe__item *item)
 {
-  bw_probe__reply r = {.p = 0.0};
-  const double *n = item->normal;
   const bw_probe__sample s = bw_probe__evaluate(probe, p, 3, item->tip);
-  r.p = s.value;
-  r.dpdn = s.grad[0] * n[0] + s.grad[1] * n[1] + s.grad[2] * n[2];
+  bw_probe__reply r = {.p = along_normal(&s, item->normal)};
   for (int c = 0; c < 3 && u[c] != NULL; c++) {
     const bw_probe__sample v = bw_probe__evaluate(probe, u[c], c, item->tip);
-    r.u[c] = v.value;
-    for (int d = 0; d < 3; d++) {
-      r.dudn[c] += v.grad[d] * n[d]; /* (du_c/dx_d) n_d */
-      r.gtn[d] += v.grad[d] * n[c];  /* (du_c/dx_d) n_c */
-    }
+    r.u[c] = along_normal(&v, item->normal);
+    for (int d = 0; d < 3; d++)
+      r.gtn[d] += v.grad[d] * item->normal[c]; /* (du_c/dx_d) n_c */
   }
   return r;
 }

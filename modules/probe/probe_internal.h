@@ -6,14 +6,16 @@
 enum { PROBE_CENTRE, PROBE_FACE, PROBE_PLACES }; /* where nodes sit in one direction */
 enum { PROBE_WIDTH = 4 };                        /* nodes per direction, padded with zeros */
 
-/* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2). */
+/* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2); and
+ * what they make of (x - tip)^2, for which the true value and slope are 0. */
 typedef struct {
   double at[PROBE_WIDTH], mean[PROBE_WIDTH], slope[PROBE_WIDTH]; /* slope [1/L] */
+  double square, square_slope;                                   /* [L^2], [L] */
 } bw_probe__weights;
 
-/* A field and its gradient at a tip. */
+/* A field and its gradient at a tip, and the two moments of each direction. */
 typedef struct {
-  double value, grad[3];
+  double value, grad[3], square[3], square_slope[3];
 } bw_probe__sample;
 
 /* What travels to the tip's rank, and what comes back. */
@@ -22,8 +24,13 @@ typedef struct {
 } bw_probe__item;
 
 typedef struct {
-  double p, dpdn;               /* over rho [L^2/T^2], [L/T^2] */
-  double u[3], dudn[3], gtn[3]; /* velocity, (grad u).n, (grad u)^T.n */
+  double value, slope;         /* at the tip, and its derivative along n */
+  double square, square_slope; /* the same for the function eta^2 of the distance from the tip */
+} bw_probe__along;
+
+typedef struct {
+  bw_probe__along p, u[3]; /* p over rho [L^2/T^2], u [L/T] */
+  double gtn[3];           /* (grad u)^T.n [1/T] */
 } bw_probe__reply;
 
 struct bw_probe {

@@ -10,7 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { CHUNK = 1 << 30 }; /* bytes per MPI call: its counts are int */
+enum {
+  CHUNK = 1 << 30,       /* bytes per MPI call: its counts are int */
+  LARGEST_TEXT = 1 << 30 /* bytes that read_text takes: they are broadcast in one call */
+};
 
 struct bw_file {
   const bw_comm *comm;
@@ -181,7 +184,8 @@ static bw_status read_whole(const char *path, char **text, size_t *bytes)
     if (ferror(in)) st = BW_FAIL(BW_EIO, "cannot read %s: %s", path, strerror(errno));
     if (st != BW_OK || n < room - 1) break;
     char *more = NULL;
-    if (room >= (size_t)CHUNK) st = BW_FAIL(BW_EIO, "cannot read %s: larger than 1 GiB", path);
+    if (room >= (size_t)LARGEST_TEXT)
+      st = BW_FAIL(BW_EIO, "cannot read %s: larger than 1 GiB", path);
     BW_THEN(st, BW_ALLOCATE(&more, 2 * room));
     if (st != BW_OK) break;
     memcpy(more, *text, n);

@@ -153,10 +153,19 @@ START_TEST(values_and_defaults)
   c = defaults();
   bw_check_ok(load(more, 0, NULL, &c));
   ck_assert_int_eq(c.n_shapes, 3);
+  ck_assert_int_eq(c.shapes[2].kind, -7);
   ck_assert_double_eq(c.shapes[2].x[1], 0.75); /* ... is that of every item */
   ck_assert(c.verbose && c.has_probe && !c.has_damping);
   ck_assert_double_eq(c.probe.length, 2.0);
   ck_assert_int_eq(c.probe.count, 3);
+
+  c = defaults();
+  bw_check_ok(load("name: a\nsteps: 0\nfluid: {nu: 1, n: [1, 1, 1]}\n"
+                   "shapes: [{radius: 1, x: [9, 9, 9], kind: poiseuille}, {radius: 0.5}]\n",
+                   0, NULL, &c));
+  ck_assert_double_eq(c.shapes[0].x[1], 9.0);
+  ck_assert_double_eq(c.shapes[1].x[1], 0.75); /* the defaults, not what item 0 was given */
+  ck_assert_int_eq(c.shapes[1].kind, -7);
 }
 END_TEST
 

@@ -152,6 +152,27 @@ START_TEST(a_short_write_is_an_error)
 }
 END_TEST
 
+/* Bytes that were written and are not there at the end (a full disk may show up late). */
+START_TEST(missing_bytes_are_noticed_at_the_end)
+{
+  const bw_comm *comm = bw_check_world();
+  const int me = bw_comm_rank(comm);
+  char path[128], part[140];
+  bw_file *file = NULL;
+  in_own_folder("cut.bin", path);
+  snprintf(part, sizeof part, "%s.part", path);
+  bw_check_ok(bw_file_create(comm, path, &file));
+  bw_check_ok(bw_file_write_at_all(file, 4 * me, 4, "abcd"));
+  bw_comm_barrier(comm);
+  if (me == 0) ck_assert_int_eq(truncate(part, 4 * bw_comm_size(comm) - 1), 0);
+  bw_check_status(bw_file_close(&file), BW_EIO);
+  ck_assert_ptr_null(file);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), path));
+  ck_assert(!bw_path_exists(comm, path));
+  ck_assert(!bw_path_exists(comm, part));
+}
+END_TEST
+
 START_TEST(folders_are_made_with_parents)
 {
   const bw_comm *comm = bw_check_world();
@@ -194,6 +215,7 @@ static const bw_check_test tests[] = {BW_TEST(ranks_write_their_bytes),
                                       BW_TEST(unfinished_files_replace_nothing),
                                       BW_TEST(refusals_name_the_path_and_the_reason),
                                       BW_TEST(a_short_write_is_an_error),
+                                      BW_TEST(missing_bytes_are_noticed_at_the_end),
                                       BW_TEST(folders_are_made_with_parents),
                                       BW_TEST(a_signal_to_one_rank_reaches_all)};
 BW_CHECK_MAIN("core.file", tests)

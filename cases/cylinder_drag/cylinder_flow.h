@@ -219,3 +219,13 @@ static inline cylinder_drag cylinder_measure(cylinder_flow *f)
   bw_comm_sum(bw_grid_comm(f->grid), 2, drag.probe);
   return drag;
 }
+
+/* Steps until `interval` later, at least one. Collective. */
+static inline bw_status cylinder_advance(cylinder_flow *f, double interval)
+{
+  const double end = bw_ns_channel_time(f->fluid) + interval - 0.5 * f->dt;
+  do {
+    BW_TRY(cylinder_step(f));
+  } while (bw_ns_channel_time(f->fluid) < end);
+  return BW_OK;
+}

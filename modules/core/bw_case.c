@@ -6,6 +6,24 @@
 
 #include <stdio.h>
 
+/* Given by the build to this file alone, so that a commit compiles one file anew. */
+#ifndef BW_VERSION
+#define BW_VERSION "unknown"
+#endif
+#ifndef BW_COMMIT
+#define BW_COMMIT "unknown"
+#endif
+
+const char *bw_version(void)
+{
+  return BW_VERSION;
+}
+
+const char *bw_commit(void)
+{
+  return BW_COMMIT;
+}
+
 static void release(bw_case **run)
 {
   if (*run == NULL) return;

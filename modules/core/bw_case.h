@@ -15,6 +15,10 @@
 #include "bw_config.h"
 #include "bw_log.h"
 
+/* Of the sources this program was built from; "unknown" where the build could not tell. Local. */
+const char *bw_version(void);
+const char *bw_commit(void);
+
 typedef struct {
   const char *name;    /* of the program; the default folder is out/NAME of the YAML file */
   const char *summary; /* one line for --help */

@@ -2,14 +2,6 @@
 #pragma once
 #include "bw_case.h"
 
-/* Given by the build. */
-#ifndef BW_VERSION
-#define BW_VERSION "unknown"
-#endif
-#ifndef BW_COMMIT
-#define BW_COMMIT "unknown"
-#endif
-
 struct bw_case {
   const bw_case_about *about;
   bw_case_args args;

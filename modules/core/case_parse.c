@@ -145,7 +145,7 @@ bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
 
 void bw_core__case_version(void)
 {
-  printf("breakwater %s (commit %s, %s precision)\n", BW_VERSION, BW_COMMIT, BW_REAL_NAME);
+  printf("breakwater %s (commit %s, %s precision)\n", bw_version(), bw_commit(), BW_REAL_NAME);
 }
 
 void bw_core__case_help(const bw_case *run, const void *config)

@@ -95,7 +95,7 @@ static void put_record(FILE *out, const bw_case *run, const char *resolved)
   now(start);
   fprintf(out, "# The case as it was run; this file is a case file itself.\n%s", resolved);
   fprintf(out, "run:\n  case: %s\n  version: \"%s\"\n  commit: \"%s\"\n", run->about->name,
-          BW_VERSION, BW_COMMIT);
+          bw_version(), bw_commit());
   fprintf(out, "  precision: %s\n  ranks: %d\n  file: ", BW_REAL_NAME,
           bw_comm_size(run->args.comm));
   bw_core__put_quoted(out, run->args.yaml);

@@ -2,11 +2,13 @@
  *
  *   rho X'' = L + F + C + D,   L_h = sum_l c0 alpha_hl lambda_hl s_hl e_hl Gamma_hl dV_l
  * with stretch s = (|xi+eta|-|xi|)/|xi| and e the present bond direction (POROUS 3.29-3.51, read
- * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4).
+ * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4), in
+ * Verlet that of the half-step velocity.
  * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
  * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
- * after every step when breakage is enabled.
- * 2D: site[2] = 0, one layer of `thickness`; z components stay zero.
+ * at the end of every step when breakage is enabled: it holds during the whole step and is gone
+ * from the force the next step starts with. Both ends decide alike, on any number of ranks.
+ * 2D: site[2] = 0, one layer of `thickness`; X0[2] = origin[2], z components of V and A zero.
  * Shapes   vectors row-major (n,3); particles of a rank are 0..n-1, in lattice order; the global
  *          id of a particle is its row in the list given to create.
  * Units    any consistent set: [M], [L], [T].
@@ -44,10 +46,11 @@ typedef struct {
   bw_pd_surface_correction surface_correction; /* default volume */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
   bw_pd_integrator integrator;                 /* default Verlet */
-  double damping_pair;      /* k_d of 3.41 [M/(L^6 T)]              default 0 */
+  double damping_pair;      /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
   double damping_mean;      /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
   double damping_absolute;  /* -k V (settling) [M/(L^3 T)]          default 0 */
-  bool contact;             /* short-range repulsion between surfaces  default false */
+  bool contact;             /* repulsion of particles nearer than ds that no intact bond joins
+                               (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
   double origin[3];         /* of the lattice [L]                   default 0 */
   double axes[3][3];        /* rows: lattice directions             default identity */
   double period[3];         /* periodic length per direction [L], 0: not periodic. Must be a whole
@@ -79,14 +82,17 @@ void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0);         /* new s0. Local. */
 
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
 void bw_pd_bond_set_force(bw_pd_bond *pd, const double F[]);
-/* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored); copied. Local. */
+/* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored), from the next step
+ * on; copied. set_state and set_restart give them the velocity of their rows. Local. */
 void bw_pd_bond_set_prescribed(bw_pd_bond *pd, const double V[]);
 
 /* One step of dt [T]. BW_ECFL when dt > dt_max; BW_EDIVERGED when a particle is not finite or
- * moves more than one horizon in the step (names the particle, its place). Collective. */
+ * moves more than one horizon in the step (RK3: in a sub-step); names the particle, its place.
+ * Collective. */
 bw_status bw_pd_bond_step(bw_pd_bond *pd, double dt) BW_MUST_CHECK;
 
-/* Largest stable step of the intact network [T], ERRATA 6; the same on all ranks. Local. */
+/* Largest stable step of the intact network with its damping [T], ERRATA 6; contact not counted;
+ * the same on all ranks. Local. */
 double bw_pd_bond_dt_max(const bw_pd_bond *pd);
 
 /* Views, borrowed until the next step, restart or destroy. Local. */
@@ -102,7 +108,7 @@ double bw_pd_bond_critical_stretch(const bw_pd_bond *pd);   /* s0 [-] */
 double bw_pd_bond_volume(const bw_pd_bond *pd);             /* of one particle [L^3] */
 
 /* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
- * Local, except get_damage (Collective). */
+ * Local. */
 void bw_pd_bond_get_reference(const bw_pd_bond *pd, double X0[]);
 void bw_pd_bond_get_position(const bw_pd_bond *pd, double X[]);
 void bw_pd_bond_get_velocity(const bw_pd_bond *pd, double V[]);
@@ -130,7 +136,8 @@ bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
  * Collective. */
 void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);
 
-/* Counts bond-breaking events of this rank so far: unchanged means nothing to update. Local. */
+/* Counts bond-breaking events of this rank so far (pre-cracks and set_bits too, which may also
+ * mend): unchanged means nothing to update. Local. */
 int64_t bw_pd_bond_events(const bw_pd_bond *pd);
 
 typedef struct {
@@ -139,7 +146,8 @@ typedef struct {
   double damping, fracture;        /* dissipated since the start (or restart's stored value) */
   double external;                 /* work of F and of prescribed motion since the start */
   double momentum[3], angular[3];  /* about the origin */
-  int64_t bonds, broken;           /* undirected bonds: at the start, broken since */
+  int64_t bonds, broken;           /* undirected bonds: at the start without those a pre-crack cut;
+                                      broken by stretch since */
 } bw_pd_bond_ledger;
 bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
 
@@ -148,8 +156,10 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
 size_t bw_pd_bond_bits_bytes(const bw_pd_bond *pd);
 void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[]);
 bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[]) BW_MUST_CHECK;
-/* Everything else a restart needs: X0-relative displacement, V, acceleration (n,9), and the
- * ledger's running sums (4: damping, fracture, external, broken-at-start offset). */
+/* Everything else a restart needs: X0-relative displacement, V, acceleration without F (n,9), and
+ * the ledger's running sums of all ranks (4: damping, fracture, external, directed bonds cut by
+ * pre-cracks). Set bits and rows, in any order, then force and prescribed velocities: the run goes
+ * on to the same bits; of the ledger one kick's damping is split anew. Both collective. */
 void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4]);
 bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[],
                                  const double sums[4]) BW_MUST_CHECK;

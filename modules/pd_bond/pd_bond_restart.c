@@ -37,7 +37,10 @@ bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[])
       }
     }
   pd->events++;
-  if (!pd->restored) pd->current = false;
+  if (!pd->restored)
+    pd->current = false;
+  else if (bw_pd_bond__damped(pd))
+    bw_pd_bond__damping(pd, 0, NULL); /* for the book only */
   return BW_OK;
 }
 

@@ -1,0 +1,103 @@
+/* pd_test.h -- lattices, and states gathered by global id, for the tests of pd_bond. */
+#pragma once
+#include "bw_check.h"
+#include "bw_memory.h"
+#include "bw_pd_bond.h"
+
+typedef struct {
+  int64_t n;
+  int32_t *site; /* (n,3) */
+  uint8_t *kind; /* (n) */
+} pd_body;
+
+static inline pd_body pd_box(int nx, int ny, int nz)
+{
+  pd_body b = {.n = (int64_t)nx * ny * nz};
+  bw_check_ok(BW_ALLOCATE(&b.site, 3 * (size_t)b.n));
+  bw_check_ok(BW_ALLOCATE(&b.kind, (size_t)b.n));
+  int32_t *s = b.site;
+  for (int z = 0; z < nz; z++)
+    for (int y = 0; y < ny; y++)
+      for (int x = 0; x < nx; x++, s += 3)
+        s[0] = x, s[1] = y, s[2] = z;
+  return b;
+}
+
+static inline void pd_body_release(pd_body *b)
+{
+  bw_release(&b->site);
+  bw_release(&b->kind);
+}
+
+/* A soft material in units near 1: rounding shows at the size of BW_REAL_EPSILON. */
+static inline bw_pd_bond_config pd_soft(bw_pd_geometry geometry)
+{
+  bw_pd_bond_config c = bw_pd_bond_config_default();
+  c.geometry = geometry;
+  c.ds = 0.5;
+  c.rho = 2;
+  c.E = 3;
+  return c;
+}
+
+static inline bw_pd_bond *pd_make(const bw_comm *comm, const bw_pd_bond_config *c,
+                                  const pd_body *body)
+{
+  bw_pd_bond *pd = NULL;
+  bw_check_ok(bw_pd_bond_create(comm, c, body->n, body->site, body->kind, &pd));
+  return pd;
+}
+
+typedef void (*pd_getter)(const bw_pd_bond *, double[]);
+
+/* all (total,3) on every rank: the getter's rows by global id. */
+static inline void pd_gather(const bw_pd_bond *pd, pd_getter get, double all[])
+{
+  const size_t n = bw_pd_bond_count(pd), total = (size_t)bw_pd_bond_total(pd);
+  double *mine = NULL;
+  bw_check_ok(BW_ALLOCATE(&mine, 3 * n));
+  get(pd, mine);
+  for (size_t q = 0; q < 3 * total; q++)
+    all[q] = 0;
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < 3; k++)
+      all[3 * (size_t)bw_pd_bond_id(pd)[i] + k] = mine[3 * i + k];
+  bw_comm_sum(bw_pd_bond_comm(pd), (int)(3 * total), all);
+  bw_release(&mine);
+}
+
+/* A field of space: what it writes from the reference position X0 of a particle. */
+typedef void (*pd_field)(const double X0[3], double out[3]);
+
+/* State from fields of the displacement and the velocity (NULL: zero). */
+static inline void pd_set(bw_pd_bond *pd, pd_field displacement, pd_field velocity)
+{
+  const size_t n = bw_pd_bond_count(pd);
+  double *X = NULL, *V = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_pd_bond_get_reference(pd, X);
+  for (size_t i = 0; i < n; i++) {
+    double u[3] = {0};
+    if (velocity != NULL) velocity(X + 3 * i, V + 3 * i);
+    if (displacement != NULL) displacement(X + 3 * i, u);
+    for (size_t k = 0; k < 3; k++)
+      X[3 * i + k] += u[k];
+  }
+  bw_pd_bond_set_state(pd, X, V);
+  bw_release(&X);
+  bw_release(&V);
+}
+
+static inline void pd_steps(bw_pd_bond *pd, int n, double dt)
+{
+  for (int q = 0; q < n; q++)
+    bw_check_ok(bw_pd_bond_step(pd, dt));
+}
+
+/* Kinetic, elastic and contact energy and what left: constant but for the work of forces. */
+static inline double pd_energy(bw_pd_bond *pd)
+{
+  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  return l.kinetic + l.elastic + l.contact + l.damping + l.fracture - l.external;
+}

@@ -1,0 +1,141 @@
+/* Contact: bodies that meet are pushed apart; momentum and energy are kept.
+ * TEST ranks=1,2,3,4 */
+#include "pd_test.h"
+
+/* Two blocks of 4 x 3 x 3 cells with a gap of 5 cells (more than the horizon) along x. */
+static pd_body two_blocks(void)
+{
+  pd_body b = pd_box(8, 3, 3);
+  for (int64_t q = 0; q < b.n; q++)
+    if (b.site[3 * q] > 3) b.site[3 * q] += 5;
+  return b;
+}
+
+static void towards(const double X0[3], double v[3])
+{
+  v[0] = X0[0] < 3 ? 0.1 : -0.1;
+  v[1] = X0[0] < 3 ? 0.005 : 0; /* past each other: no symmetry to hide behind */
+}
+
+/* Kinetic energy and momentum of the block that starts on the left. */
+static double left_momentum(const bw_pd_bond *pd)
+{
+  const size_t n = (size_t)bw_pd_bond_total(pd);
+  double V[3 * 72], p = 0;
+  pd_gather(pd, bw_pd_bond_get_velocity, V);
+  for (size_t i = 0; i < n; i++)
+    if (i % 8 < 4) p += V[3 * i];
+  return p * 2 * 0.125;
+}
+
+static void check_collision(bw_pd_bond_config c, bool wall_between)
+{
+  pd_body body = two_blocks();
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  pd_set(pd, NULL, towards);
+  const bw_pd_bond_ledger start = bw_pd_bond_account(pd);
+  const double before = left_momentum(pd), dt = 0.1 * bw_pd_bond_dt_max(pd);
+  double most = 0, closest = 1e9;
+  for (int q = 0; q < (int)(24 / dt); q++) {
+    pd_steps(pd, 1, dt);
+    if (q % 10 != 0) continue;
+    most = fmax(most, bw_pd_bond_account(pd).contact);
+    double X[3 * 72];
+    pd_gather(pd, bw_pd_bond_get_position, X);
+    for (size_t i = 0; i < 9; i++) /* facing columns 3 and 4 of every row */
+      closest = fmin(closest, X[3 * (8 * i + 4)] - X[3 * (8 * i + 3)]);
+  }
+  const bw_pd_bond_ledger end = bw_pd_bond_account(pd);
+  const double after = left_momentum(pd);
+  if (wall_between) {
+    ck_assert_double_gt(most, 1e-3 * start.kinetic);
+    ck_assert_double_lt(after, -0.2 * before); /* the rest of it now is vibration */
+    ck_assert_double_gt(closest, 0.25);        /* half a cell */
+    ck_assert_double_eq(end.contact, 0);
+  } else {
+    ck_assert_double_lt(closest, 0);
+    bw_check_near(after, before, 1e3 * BW_REAL_EPSILON);
+  }
+  for (int k = 0; k < 3; k++) {
+    bw_check_near(end.momentum[k], start.momentum[k], 1e4 * BW_REAL_EPSILON);
+    bw_check_near(end.angular[k], start.angular[k], 1e5 * BW_REAL_EPSILON);
+  }
+  /* Verlet at a tenth of the limit: (w dt)^2/8 = 0.5 %, contact being about as stiff as bonds */
+  bw_check_near((end.kinetic + end.elastic) / (start.kinetic + start.elastic), 1, 0.005);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+
+START_TEST(bodies_bounce)
+{
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  check_collision(c, false);
+  c.contact = true;
+  check_collision(c, true);
+}
+END_TEST
+
+/* Half of what one meets is beyond the period: the blocks part and meet around the back. */
+static void apart(const double X0[3], double v[3])
+{
+  v[0] = X0[0] < 3 ? -0.1 : 0.1;
+  v[1] = 0;
+}
+
+START_TEST(bodies_meet_through_a_period)
+{
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.contact = true;
+  c.period[0] = 9; /* 18 cells: 5 behind */
+  pd_body body = two_blocks();
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  pd_set(pd, NULL, apart);
+  const double before = left_momentum(pd), dt = 0.2 * bw_pd_bond_dt_max(pd);
+  ck_assert_double_lt(before, 0);
+  pd_steps(pd, (int)(24 / dt), dt);
+  ck_assert_double_gt(left_momentum(pd), -0.2 * before);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+static double approach;
+
+static void close_up(const double X0[3], double u[3])
+{
+  u[0] = X0[0] > 0.5 ? -approach : 0;
+}
+
+/* Two particles whose bond was cut, at distance r: pushed apart with 15 c0 (ds/r - 1) dV/rho. */
+START_TEST(a_broken_bond_repels_in_closed_form)
+{
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.contact = true;
+  pd_body two = pd_box(2, 1, 1);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &two);
+  double A[6];
+  approach = 0.1;
+  pd_set(pd, close_up, NULL);
+  const double bonded = bw_pd_bond_account(pd).contact;
+  ck_assert_double_eq(bonded, 0); /* an intact bond: no contact */
+  bw_check_ok(bw_pd_bond_precrack(pd, (double[]){0.5, -1, -1}, (double[]){0.5, 1, -1},
+                                  (double[]){0.5, -1, 1}));
+  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  pd_gather(pd, bw_pd_bond_get_acceleration, A);
+  const double k = 15 * bw_pd_bond_micromodulus(pd) * 0.125, r = 0.4;
+  bw_check_near(A[0] / (-k / 2 * (0.5 / r - 1)), 1, 1e3 * BW_REAL_EPSILON);
+  bw_check_near(A[3] / (k / 2 * (0.5 / r - 1)), 1, 1e3 * BW_REAL_EPSILON);
+  bw_check_near(l.contact / (k * 0.125 * (0.5 * log(0.5 / r) - 0.5 + r)), 1, 1e3 * BW_REAL_EPSILON);
+  approach = -0.01;
+  pd_set(pd, close_up, NULL);
+  ck_assert_double_eq(bw_pd_bond_account(pd).contact, 0);
+  pd_gather(pd, bw_pd_bond_get_acceleration, A);
+  ck_assert_double_eq(A[0], 0);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&two);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(bodies_bounce), BW_TEST(bodies_meet_through_a_period),
+                                      BW_TEST(a_broken_bond_repels_in_closed_form)};
+BW_CHECK_MAIN("pd_bond.contact", tests)

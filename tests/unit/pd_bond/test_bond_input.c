@@ -1,0 +1,246 @@
+/* What create and step refuse, and what they say.
+ * TEST ranks=1,2 */
+#include "pd_test.h"
+
+#include <string.h>
+
+/* One change that spoils a configuration, and a word its message has to hold. */
+typedef void (*spoil)(bw_pd_bond_config *c);
+static void no_ds(bw_pd_bond_config *c)
+{
+  c->ds = NAN;
+}
+static void no_rho(bw_pd_bond_config *c)
+{
+  c->rho = NAN;
+}
+static void no_E(bw_pd_bond_config *c)
+{
+  c->E = NAN;
+}
+static void negative_E(bw_pd_bond_config *c)
+{
+  c->E = -1;
+}
+static void negative_G0(bw_pd_bond_config *c)
+{
+  c->G0 = -1;
+}
+static void zero_thickness(bw_pd_bond_config *c)
+{
+  c->thickness = 0;
+}
+static void infinite_ds(bw_pd_bond_config *c)
+{
+  c->ds = INFINITY;
+}
+static void small_m(bw_pd_bond_config *c)
+{
+  c->horizon_ratio = 0.5;
+}
+static void nu_03(bw_pd_bond_config *c)
+{
+  c->nu = 0.3;
+}
+static void nu_third(bw_pd_bond_config *c)
+{
+  c->nu = 1.0 / 3;
+}
+static void linear(bw_pd_bond_config *c)
+{
+  c->volume_fraction = BW_PD_FRACTION_LINEAR;
+}
+static void geometry(bw_pd_bond_config *c)
+{
+  c->geometry = (bw_pd_geometry)7;
+}
+static void surface(bw_pd_bond_config *c)
+{
+  c->surface_correction = (bw_pd_surface_correction)9;
+}
+static void integrator(bw_pd_bond_config *c)
+{
+  c->integrator = (bw_pd_integrator)4;
+}
+static void reach(bw_pd_bond_config *c)
+{
+  c->family_reach = (bw_pd_family_reach)4;
+}
+static void damping(bw_pd_bond_config *c)
+{
+  c->damping_mean = -1;
+}
+static void axes(bw_pd_bond_config *c)
+{
+  c->axes[0][1] = 0.1;
+}
+static void origin(bw_pd_bond_config *c)
+{
+  c->origin[1] = NAN;
+}
+static void period(bw_pd_bond_config *c)
+{
+  c->period[0] = 3.3;
+}
+static void short_period(bw_pd_bond_config *c)
+{
+  c->period[1] = 1;
+}
+static void contact(bw_pd_bond_config *c)
+{
+  c->contact = true, c->period[2] = 1.5;
+}
+static void flat_period(bw_pd_bond_config *c)
+{
+  c->geometry = BW_PD_PLANE_STRESS;
+  c->period[2] = 2;
+}
+static void flat_sites(bw_pd_bond_config *c)
+{
+  c->geometry = BW_PD_PLANE_STRESS;
+}
+
+static const struct {
+  spoil spoil;
+  const char *word;
+} bad[] = {{no_ds, "ds is not set"},
+           {no_rho, "rho is not set"},
+           {no_E, "E is not set"},
+           {negative_E, "E = -1"},
+           {negative_G0, "G0 = -1"},
+           {zero_thickness, "thickness = 0"},
+           {infinite_ds, "ds = inf"},
+           {small_m, "horizon_ratio = 0.5"},
+           {nu_03, "leave nu out"},
+           {nu_third, "1/4"},
+           {linear, "exact"},
+           {geometry, "geometry = 7"},
+           {surface, "surface_correction = 9"},
+           {integrator, "integrator = 4"},
+           {reach, "family_reach = 4"},
+           {damping, "damping_mean = -1"},
+           {axes, "right angles"},
+           {origin, "origin[1]"},
+           {period, "period[0] = 3.3"},
+           {short_period, "period has 2"},
+           {contact, "4 ds"},
+           {flat_period, "2D"},
+           {flat_sites, "site[2] must be 0"}};
+
+START_TEST(bad_configurations_are_named)
+{
+  pd_body body = pd_box(3, 3, 3);
+  for (size_t q = 0; q < sizeof bad / sizeof *bad; q++) {
+    bw_pd_bond_config c = pd_soft(BW_PD_3D);
+    bw_pd_bond *pd = NULL;
+    bad[q].spoil(&c);
+    bw_check_status(bw_pd_bond_create(bw_check_world(), &c, body.n, body.site, NULL, &pd),
+                    BW_EINPUT);
+    ck_assert_ptr_null(pd);
+    ck_assert_msg(strstr(bw_last_message(), bad[q].word) != NULL, "case %zu says: %s", q,
+                  bw_last_message());
+    bw_pd_bond_destroy(&pd);
+  }
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.nu = 0.25;
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  ck_assert_double_eq(bw_pd_bond_settings(pd)->nu, 0.25);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+START_TEST(bad_lists_are_named)
+{
+  pd_body body = pd_box(3, 2, 1);
+  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_pd_bond *pd = NULL;
+  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 0, body.site, NULL, &pd), BW_EINPUT);
+  body.kind[4] = 8;
+  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, body.kind, &pd), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "particle 4"));
+  body.site[3 * 5] = 0;
+  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "3 and 5"));
+  body.site[3 * 5] = 1 << 21;
+  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "2^20"));
+  pd_body_release(&body);
+}
+END_TEST
+
+START_TEST(steps_beyond_the_limit_are_refused)
+{
+  pd_body body = pd_box(4, 4, 4);
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  const double limit = bw_pd_bond_dt_max(pd);
+  bw_check_status(bw_pd_bond_step(pd, 1.01 * limit), BW_ECFL);
+  bw_check_status(bw_pd_bond_step(pd, 0), BW_ECFL);
+  bw_check_status(bw_pd_bond_step(pd, NAN), BW_ECFL);
+  bw_check_ok(bw_pd_bond_step(pd, limit));
+  bw_pd_bond_set_damping(pd, 1, 0.1, 0.2);
+  ck_assert_double_lt(bw_pd_bond_dt_max(pd), limit);
+  bw_pd_bond_destroy(&pd);
+  c.integrator = BW_PD_RK3;
+  pd = pd_make(bw_check_world(), &c, &body);
+  bw_check_near(bw_pd_bond_dt_max(pd) / limit, sqrt(3.0) / 2, 1e-12); /* ERRATA 6 */
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+/* At the limit the sharpest mode of the lattice does not grow, with damping of every kind. */
+static void zigzag(const double X0[3], double u[3])
+{
+  const int parity = (int)floor(X0[0] / 0.5) + (int)floor(X0[1] / 0.5);
+  u[0] = parity % 2 == 0 ? 1e-4 : -1e-4;
+  u[1] = 0.5 * u[0];
+}
+
+START_TEST(the_limit_is_stable)
+{
+  for (int q = 0; q < 2; q++) {
+    bw_pd_bond_config c = pd_soft(BW_PD_3D);
+    c.integrator = (bw_pd_integrator)q;
+    c.damping_pair = 0.5, c.damping_mean = 1, c.damping_absolute = 0.5;
+    pd_body body = pd_box(6, 6, 6);
+    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+    pd_set(pd, zigzag, NULL);
+    const double start = bw_pd_bond_account(pd).elastic;
+    for (int s = 0; s < 300; s++)
+      bw_check_ok(bw_pd_bond_step(pd, bw_pd_bond_dt_max(pd)));
+    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    ck_assert_double_lt(l.elastic + l.kinetic, start);
+    bw_pd_bond_destroy(&pd);
+    pd_body_release(&body);
+  }
+}
+END_TEST
+
+START_TEST(divergence_is_reported_with_its_place)
+{
+  pd_body body = pd_box(4, 4, 4);
+  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_pd_bond_count(pd);
+  double F[3 * 64] = {0};
+  for (size_t i = 0; i < n; i++)
+    if (bw_pd_bond_id(pd)[i] == 17) F[3 * i] = 1e9;
+  bw_pd_bond_set_force(pd, F);
+  bw_check_status(bw_pd_bond_step(pd, 0.3), BW_EDIVERGED);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "particle 17"));
+  for (size_t i = 0; i < 3 * n; i++)
+    F[i] = NAN;
+  bw_pd_bond_set_force(pd, F);
+  bw_check_status(bw_pd_bond_step(pd, 0.3), BW_EDIVERGED);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(bad_configurations_are_named), BW_TEST(bad_lists_are_named),
+    BW_TEST(steps_beyond_the_limit_are_refused), BW_TEST(the_limit_is_stable),
+    BW_TEST(divergence_is_reported_with_its_place)};
+BW_CHECK_MAIN("pd_bond.input", tests)

@@ -1,0 +1,261 @@
+/* The answer does not depend on the number of ranks; restart on another number; periods.
+ * TEST ranks=1,2,3,4 */
+#include "pd_test.h"
+
+static void shake(const double X0[3], double v[3])
+{
+  v[0] = 0.3 * sin(2 * X0[0] + X0[1]);
+  v[1] = 0.2 * cos(3 * X0[1]) + 0.1 * X0[0];
+  v[2] = 0.2 * sin(X0[2] * X0[0]);
+}
+
+static bw_comm *alone(void)
+{
+  bw_comm *self = NULL;
+  bw_check_ok(bw_comm_self(&self));
+  return self;
+}
+
+/* A block with a hole, so that rows are ragged and cuts go through them. */
+static pd_body holed(void)
+{
+  pd_body b = pd_box(13, 7, 6);
+  int64_t kept = 0;
+  for (int64_t q = 0; q < b.n; q++) {
+    const int32_t *s = b.site + 3 * q;
+    const double r2 = pow(s[0] - 6, 2) + pow(s[1] - 3, 2) + pow(s[2] - 5, 2);
+    if (r2 < 5) continue;
+    for (int k = 0; k < 3; k++)
+      b.site[3 * kept + k] = s[k];
+    kept++;
+  }
+  b.n = kept;
+  return b;
+}
+
+static void compare(const bw_pd_bond *a, const bw_pd_bond *b, pd_getter get, double tolerance)
+{
+  const size_t n = (size_t)bw_pd_bond_total(a);
+  double *x = NULL, *y = NULL;
+  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
+  pd_gather(a, get, x);
+  pd_gather(b, get, y);
+  for (size_t q = 0; q < 3 * n; q++)
+    bw_check_near(x[q], y[q], tolerance);
+  bw_release(&x);
+  bw_release(&y);
+}
+
+static bw_pd_bond_config breaking(bool damped)
+{
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.G0 = 0.003;
+  c.damping_pair = damped ? 0.02 : 0;
+  c.damping_mean = damped ? 0.01 : 0;
+  c.integrator = damped ? BW_PD_VERLET : BW_PD_RK3;
+  return c;
+}
+
+START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
+{
+  bw_comm *self = alone();
+  pd_body body = holed();
+  for (int damped = 0; damped < 2; damped++) {
+    const bw_pd_bond_config c = breaking(damped);
+    bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+    ck_assert_double_eq(bw_pd_bond_dt_max(many), bw_pd_bond_dt_max(one));
+    pd_set(many, NULL, shake);
+    pd_set(one, NULL, shake);
+    const double dt = 0.4 * bw_pd_bond_dt_max(one);
+    pd_steps(many, 50, dt);
+    pd_steps(one, 50, dt);
+    compare(many, one, bw_pd_bond_get_position,
+            1e-13 + 400 * (BW_REAL_EPSILON > 1e-10) * BW_REAL_EPSILON);
+    pd_steps(many, 150, dt);
+    pd_steps(one, 150, dt);
+    const bw_pd_bond_ledger a = bw_pd_bond_account(many), b = bw_pd_bond_account(one);
+    ck_assert_int_gt(b.broken, 50);
+    ck_assert_int_eq(a.broken, b.broken);
+    bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
+    bw_check_near(a.damping, b.damping, 1e3 * BW_REAL_EPSILON);
+    compare(many, one, bw_pd_bond_get_velocity, 1e4 * BW_REAL_EPSILON);
+    bw_pd_bond_destroy(&many);
+    bw_pd_bond_destroy(&one);
+  }
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+/* Rows of a rank to rows of another division: through the global id, by a sum over ranks. */
+static void move_rows(const bw_pd_bond *from, const bw_pd_bond *to, size_t width,
+                      const double rows[], double out[])
+{
+  const size_t total = (size_t)bw_pd_bond_total(from);
+  double *all = NULL;
+  bw_check_ok(BW_ALLOCATE(&all, width * total));
+  for (size_t i = 0; i < bw_pd_bond_count(from); i++)
+    for (size_t k = 0; k < width; k++)
+      all[width * (size_t)bw_pd_bond_id(from)[i] + k] = rows[width * i + k];
+  bw_comm_sum(bw_pd_bond_comm(from), (int)(width * total), all);
+  for (size_t i = 0; i < bw_pd_bond_count(to); i++)
+    for (size_t k = 0; k < width; k++)
+      out[width * i + k] = all[width * (size_t)bw_pd_bond_id(to)[i] + k];
+  bw_release(&all);
+}
+
+static void restart_from(const bw_pd_bond *from, bw_pd_bond *to)
+{
+  const size_t n = bw_pd_bond_count(from), m = bw_pd_bond_count(to);
+  const size_t bytes = bw_pd_bond_bits_bytes(from);
+  double *rows = NULL, *moved = NULL, sums[4];
+  uint8_t *bits = NULL;
+  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + 9)));
+  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + 9)));
+  bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
+  bw_pd_bond_get_restart(from, rows, sums);
+  move_rows(from, to, 9, rows, moved);
+  bw_check_ok(bw_pd_bond_set_restart(to, moved, sums));
+  bw_pd_bond_get_bits(from, bits);
+  for (size_t q = 0; q < n * bytes; q++)
+    rows[q] = bits[q];
+  move_rows(from, to, bytes, rows, moved);
+  for (size_t q = 0; q < m * bytes; q++)
+    bits[q] = (uint8_t)moved[q];
+  bw_check_ok(bw_pd_bond_set_bits(to, bits));
+  bw_release(&rows);
+  bw_release(&moved);
+  bw_release(&bits);
+}
+
+/* Stop in the middle of cracking, go on with one rank each: the same to the last bit but for the
+ * order of sums over ranks in the book. */
+START_TEST(restart_on_another_number_of_ranks)
+{
+  bw_comm *self = alone();
+  pd_body body = holed();
+  for (int damped = 0; damped < 2; damped++) {
+    const bw_pd_bond_config c = breaking(damped);
+    bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+    const double dt = 0.4 * bw_pd_bond_dt_max(one);
+    bw_check_ok(bw_pd_bond_precrack(many, (double[]){1, 1, 0.5}, (double[]){2, 1, 0.5},
+                                    (double[]){1, 2, 0.5}));
+    pd_set(many, NULL, shake);
+    pd_steps(many, 80, dt);
+    restart_from(many, one);
+    ck_assert_int_eq(bw_pd_bond_account(many).bonds, bw_pd_bond_account(one).bonds);
+    ck_assert_int_eq(bw_pd_bond_account(many).broken, bw_pd_bond_account(one).broken);
+    pd_steps(many, 100, dt);
+    pd_steps(one, 100, dt);
+    const bw_pd_bond_ledger a = bw_pd_bond_account(many), b = bw_pd_bond_account(one);
+    ck_assert_int_eq(a.broken, b.broken);
+    ck_assert_int_gt(a.broken, 50);
+    bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
+    bw_check_near(a.damping, b.damping,
+                  1e-3); /* one kick is split anew between bonds and damping */
+    compare(many, one, bw_pd_bond_get_position, 0);
+    compare(many, one, bw_pd_bond_get_velocity, 0);
+    bw_pd_bond_destroy(&many);
+    bw_pd_bond_destroy(&one);
+  }
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+/* A wave along x in a bar that is periodic in y and z (also with periods below the horizon) is the
+ * wave in the middle of a bulk: no edge is felt. */
+static void along_x(const double X0[3], double v[3])
+{
+  v[0] = 0.1 * sin(X0[0]);
+  v[1] = 0.05 * cos(2 * X0[0]);
+  v[2] = 0;
+}
+
+static void row_of(const bw_pd_bond *pd, const pd_body *body, int y, int z, double out[])
+{
+  double *X = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * (size_t)body->n));
+  pd_gather(pd, bw_pd_bond_get_velocity, X);
+  for (int64_t q = 0; q < body->n; q++)
+    if (body->site[3 * q + 1] == y && body->site[3 * q + 2] == z)
+      for (int k = 0; k < 3; k++)
+        out[3 * body->site[3 * q] + k] = X[3 * q + k];
+  bw_release(&X);
+}
+
+START_TEST(periods_are_an_endless_body)
+{
+  const int length = 10;
+  double bulk[30], thin[30];
+  pd_body wide = pd_box(length, 16, 16), narrow = pd_box(length, 4, 2);
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.surface_correction = BW_PD_SURFACE_NONE;
+  bw_pd_bond *a = pd_make(bw_check_world(), &c, &wide);
+  c.period[1] = 2, c.period[2] = 1;
+  bw_pd_bond *b = pd_make(bw_check_world(), &c, &narrow);
+  pd_set(a, NULL, along_x);
+  pd_set(b, NULL, along_x);
+  /* 2 steps: the edge's news has come 3 x 2 cells far, the middle is 7 away */
+  pd_steps(a, 2, 0.3);
+  pd_steps(b, 2, 0.3);
+  row_of(a, &wide, 8, 8, bulk);
+  row_of(b, &narrow, 1, 1, thin);
+  for (int q = 0; q < 3 * length; q++)
+    bw_check_near(thin[q], bulk[q], 20 * BW_REAL_EPSILON);
+  bw_pd_bond_destroy(&a);
+  bw_pd_bond_destroy(&b);
+  pd_body_release(&wide);
+  pd_body_release(&narrow);
+}
+END_TEST
+
+/* A lattice turned in space moves in the same way, turned. */
+START_TEST(orientation_does_not_matter)
+{
+  pd_body body = pd_box(6, 5, 4);
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_pd_bond *a = pd_make(bw_check_world(), &c, &body);
+  const double s = 0.6, k = 0.8, R[3][3] = {{k, s, 0}, {-s, k, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      c.axes[i][j] = R[i][j];
+  bw_pd_bond *b = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_pd_bond_count(a);
+  double *X = NULL, *V = NULL, *W = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&W, 3 * n));
+  bw_pd_bond_get_reference(a, X);
+  for (size_t i = 0; i < n; i++) {
+    shake(X + 3 * i, V + 3 * i);
+    for (int q = 0; q < 3; q++)
+      W[3 * i + (size_t)q] = R[0][q] * V[3 * i] + R[1][q] * V[3 * i + 1] + R[2][q] * V[3 * i + 2];
+  }
+  bw_pd_bond_set_state(a, X, V);
+  bw_pd_bond_get_reference(b, X);
+  bw_pd_bond_set_state(b, X, W);
+  pd_steps(a, 40, 0.3);
+  pd_steps(b, 40, 0.3);
+  bw_pd_bond_get_velocity(a, V);
+  bw_pd_bond_get_velocity(b, W);
+  for (size_t i = 0; i < n; i++)
+    for (int q = 0; q < 3; q++)
+      bw_check_near(W[3 * i + (size_t)q],
+                    R[0][q] * V[3 * i] + R[1][q] * V[3 * i + 1] + R[2][q] * V[3 * i + 2],
+                    1e4 * BW_REAL_EPSILON);
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&W);
+  bw_pd_bond_destroy(&a);
+  bw_pd_bond_destroy(&b);
+  pd_body_release(&body);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
+                                      BW_TEST(restart_on_another_number_of_ranks),
+                                      BW_TEST(periods_are_an_endless_body),
+                                      BW_TEST(orientation_does_not_matter)};
+BW_CHECK_MAIN("pd_bond.ranks", tests)

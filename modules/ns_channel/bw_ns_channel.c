@@ -176,6 +176,11 @@ void bw_ns_channel_set_gradient(bw_ns_channel *ns, double gradient)
   ns->impulsive = false;
 }
 
+void bw_ns_channel_set_forcing(bw_ns_channel *ns, double value)
+{
+  ns->config.forcing_value = value;
+}
+
 bw_ns_cost bw_ns_channel_cost(const bw_ns_channel *ns)
 {
   return ns->cost;

@@ -121,6 +121,10 @@ bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3],
  * step. What a fixed body feels is -rho F. Collective. */
 void bw_ns_channel_control_volume(bw_ns_channel *ns, double force[3]);
 
+/* Change the bulk velocity or the gradient that config.forcing_value gave (ramps, oscillating
+ * flow); from the next predict on. No effect without forcing. Local, the same on all ranks. */
+void bw_ns_channel_set_forcing(bw_ns_channel *ns, double value);
+
 /* The gradient that the constant flow rate starts the next step from [L/T^2]: with u, v, w, p and
  * the time the whole state of the solver (a checkpoint saves it). Local. */
 double bw_ns_channel_gradient(const bw_ns_channel *ns);

@@ -40,7 +40,8 @@ static double worst(const bw_ns_channel *ns, int c, scalar_fn f)
         double x[3];
         point(g, c % 3, i, j, k, x);
         const bw_real *field = c < 3 ? ns->u[c] : ns->R[c - 3];
-        most = fmax(most, fabs((double)field[bw_at(g, i, j, k)] - f(c % 3, x)));
+        const double error = fabs((double)field[bw_at(g, i, j, k)] - f(c % 3, x));
+        most = isfinite(error) ? fmax(most, error) : (double)INFINITY;
       }
   return most;
 }

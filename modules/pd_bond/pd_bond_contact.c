@@ -124,7 +124,7 @@ static double slot_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *bloc
            vec_all(row[BW_PD_XI + k]);
     r2 = vec_fma(z[k], z[k], r2);
   }
-  const unsigned near = broken & vec_above(vec_all((bw_real)(w->reach * w->reach)), r2);
+  const unsigned near = broken & lanes_bits(vec_above(vec_all((bw_real)(w->reach * w->reach)), r2));
   double energy = 0;
   for (int lane = 0; near != 0 && lane < BW_PD_LANES; lane++) {
     if (!(near >> lane & 1)) continue;

@@ -25,11 +25,12 @@ static inline void add_slot(const bw_pd_bond *pd, const bw_pd_slot *slot, const 
     along = vec_fma(dv[k], z[k], along);
   }
   const vec q = vec_rsqrt(r2);
-  const vec c = vec_keep(slot->mask, vec_all(row[BW_PD_WEIGHT]) * along * q * q);
-  s->count += vec_keep(slot->mask, vec_all(1));
+  const lanes holds = lanes_of(slot->mask);
+  const vec c = vec_keep(holds, vec_all(row[BW_PD_WEIGHT]) * along * q * q);
+  s->count += vec_keep(holds, vec_all(1));
   for (int k = 0; k < 3; k++) {
     s->pair[k] = vec_fma(c, z[k], s->pair[k]);
-    s->difference[k] += vec_keep(slot->mask, dv[k]);
+    s->difference[k] += vec_keep(holds, dv[k]);
   }
 }
 

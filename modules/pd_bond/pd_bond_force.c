@@ -50,7 +50,7 @@ static inline bool block_force(const sweep *s, const bw_pd_block *block, int dim
                                bw_pd_surface_correction surface, bool check)
 {
   vec uh[3], sum[3], wh = vec_load(s->w + block->first);
-  unsigned beyond = 0;
+  lanes beyond = lanes_of(0);
   for (int k = 0; k < dimension; k++) {
     uh[k] = vec_load(s->u[k] + block->first);
     sum[k] = vec_all(0);
@@ -58,16 +58,17 @@ static inline bool block_force(const sweep *s, const bw_pd_block *block, int dim
   const bw_pd_slot *end = s->slot + block[1].slot;
   for (const bw_pd_slot *slot = s->slot + block->slot; slot < end; slot++) {
     if (slot->mask == 0) continue;
+    const lanes holds = lanes_of(slot->mask);
     const bw_real *row = s->row + slot->direction * BW_PD_ROW;
     const bond x = bond_of(s, slot, row, uh, dimension);
-    const vec c = vec_keep(slot->mask, coefficient(s, slot, row, x.r2, wh, surface));
+    const vec c = vec_keep(holds, coefficient(s, slot, row, x.r2, wh, surface));
     for (int k = 0; k < dimension; k++)
       sum[k] = vec_fma(c, x.z[k], sum[k]);
-    if (check) beyond |= vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])) & slot->mask;
+    if (check) beyond |= vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])) & holds;
   }
   for (int k = 0; k < dimension; k++)
     vec_put_owners(block, sum[k], s->a[k]);
-  return beyond != 0;
+  return check && lanes_bits(beyond) != 0;
 }
 
 /* All blocks, or those of a list; returns how many were noted in hit. */
@@ -146,7 +147,8 @@ double bw_pd_bond__elastic(const bw_pd_bond *pd)
                         : pd->config.surface_correction == BW_PD_SURFACE_ENERGY ? both
                                                                                 : vec_all(1);
       const vec stretch = r2 * vec_rsqrt(r2) - vec_all(row[BW_PD_R0]);
-      sum += vec_keep(s.slot[q].mask, vec_all(row[BW_PD_STIFFNESS]) * alpha * stretch * stretch);
+      sum += vec_keep(lanes_of(s.slot[q].mask),
+                      vec_all(row[BW_PD_STIFFNESS]) * alpha * stretch * stretch);
     }
     energy += vec_sum(sum);
   }

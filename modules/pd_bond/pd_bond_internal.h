@@ -3,9 +3,9 @@
  * Storage. Own particles and copies of others' (halo and periodic images) lie in one numbering,
  * the storage, in lattice order (x fastest): the bounding box of their sites with holes where it is
  * well filled, without holes otherwise. Displacements are stored there, so the neighbours of
- * eight successive owners in one lattice direction are contiguous nearly always.
- * Bonds. A block is eight successive storage places, some of them own particles. A slot is one
- * direction of a block: where the eight neighbours start and which of the bonds exist (family) and
+ * successive owners in one lattice direction are contiguous nearly always.
+ * Bonds. A block is BW_PD_LANES successive storage places, some of them own particles. A slot is
+ * one direction of a block: where the neighbours start and which of the bonds exist (family) and
  * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
  * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
  * a family runs in the same order on any number of ranks. */
@@ -13,10 +13,25 @@
 #include "bw_exchange.h"
 #include "bw_pd_bond.h"
 
+/* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). */
+#ifdef BW_SINGLE
+#define BW_PD_WIDE   8
+#define BW_PD_NARROW 4
+#else
+#define BW_PD_WIDE   4
+#define BW_PD_NARROW 2
+#endif
+#if defined(__AVX512VL__)
+#define BW_PD_LANES 8
+#elif defined(__AVX__)
+#define BW_PD_LANES BW_PD_WIDE
+#else
+#define BW_PD_LANES BW_PD_NARROW
+#endif
+
 enum {
-  BW_PD_LANES = 8, /* owners per block */
-  BW_PD_PAD = 16,  /* unused places before and after a storage array: loads may overrun */
-  BW_PD_ROW = 8    /* constants of one direction in the kernels, see bw_pd_bond__constants */
+  BW_PD_PAD = 16, /* unused places before and after a storage array: loads may overrun */
+  BW_PD_ROW = 8   /* constants of one direction in the kernels, see bw_pd_bond__constants */
 };
 
 /* Column of a kernel row. */

@@ -1,9 +1,9 @@
-/* pd_bond_vector.h -- eight numbers at a time, for the bond sweeps.
+/* pd_bond_vector.h -- BW_PD_LANES numbers at a time, for the bond sweeps.
  *
- * A vector is a gcc/clang vector type (any processor). With AVX-512 the four operations the
- * language cannot express (fused multiply-add, reciprocal root, masks) use its instructions;
- * elsewhere short loops that the compiler vectorises. Both ways a bond seen from its two ends
- * gives exactly opposite results: every operation is exact under a change of sign. */
+ * A vector is a gcc/clang vector type of the processor's width. With AVX-512 the operations the
+ * language cannot express (fused multiply-add, reciprocal root, lane masks) use its instructions;
+ * elsewhere they are plain vector arithmetic. Both ways a bond seen from its two ends gives
+ * exactly opposite results: every operation is exact under a change of sign. */
 #pragma once
 #include "pd_bond_internal.h"
 #include <math.h>
@@ -28,7 +28,13 @@ static inline void vec_store(bw_real *to, vec x)
 
 static inline vec vec_all(bw_real x)
 {
+#if BW_PD_LANES == 8
   return (vec){x, x, x, x, x, x, x, x};
+#elif BW_PD_LANES == 4
+  return (vec){x, x, x, x};
+#else
+  return (vec){x, x};
+#endif
 }
 
 static inline double vec_sum(vec x)
@@ -39,7 +45,23 @@ static inline double vec_sum(vec x)
   return sum;
 }
 
-#if defined(__AVX512VL__) && !defined(BW_SINGLE)
+/* lanes: a choice of lanes. lanes_of and lanes_bits turn a mask (bit k: lane k) into one and back;
+ * choices are joined and met with | and &. */
+#ifdef __AVX512VL__
+
+typedef uint8_t lanes;
+
+static inline lanes lanes_of(uint8_t bits)
+{
+  return bits;
+}
+
+static inline uint8_t lanes_bits(lanes m)
+{
+  return m;
+}
+
+#ifndef BW_SINGLE
 
 static inline vec vec_fma(vec a, vec b, vec c)
 {
@@ -63,17 +85,17 @@ static inline vec vec_rsqrt(vec x)
 }
 
 /* x in the lanes of mask, 0 in the others. */
-static inline vec vec_keep(uint8_t mask, vec x)
+static inline vec vec_keep(lanes mask, vec x)
 {
   return (vec)_mm512_maskz_mov_pd(mask, (__m512d)x);
 }
 
-static inline uint8_t vec_above(vec a, vec b)
+static inline lanes vec_above(vec a, vec b)
 {
   return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_GT_OQ);
 }
 
-#elif defined(__AVX512VL__)
+#else
 
 static inline vec vec_fma(vec a, vec b, vec c)
 {
@@ -93,17 +115,46 @@ static inline vec vec_rsqrt(vec x)
   return vec_fma(y * e, vec_fma(vec_all(0.375f), e, vec_all(0.5f)), y);
 }
 
-static inline vec vec_keep(uint8_t mask, vec x)
+static inline vec vec_keep(lanes mask, vec x)
 {
   return (vec)_mm256_maskz_mov_ps(mask, (__m256)x);
 }
 
-static inline uint8_t vec_above(vec a, vec b)
+static inline lanes vec_above(vec a, vec b)
 {
   return _mm256_cmp_ps_mask((__m256)a, (__m256)b, _CMP_GT_OQ);
 }
 
+#endif
+
 #else
+
+#ifdef BW_SINGLE
+typedef int32_t lane_bits;
+#else
+typedef int64_t lane_bits;
+#endif
+typedef lane_bits lanes __attribute__((vector_size(BW_PD_LANES * sizeof(bw_real))));
+
+static inline lanes lanes_of(uint8_t bits)
+{
+#if BW_PD_LANES == 8
+  const lanes bit = {1, 2, 4, 8, 16, 32, 64, 128};
+#elif BW_PD_LANES == 4
+  const lanes bit = {1, 2, 4, 8};
+#else
+  const lanes bit = {1, 2};
+#endif
+  return (bit & (lane_bits)bits) != 0;
+}
+
+static inline uint8_t lanes_bits(lanes m)
+{
+  unsigned bits = 0;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    bits |= (unsigned)(m[k] & 1) << k;
+  return (uint8_t)bits;
+}
 
 static inline vec vec_fma(vec a, vec b, vec c)
 {
@@ -115,34 +166,31 @@ static inline vec vec_fnma(vec a, vec b, vec c)
   return c - a * b;
 }
 
+#ifdef BW_SINGLE
+#define SQRT sqrtf
+#else
+#define SQRT sqrt
+#endif
 static inline vec vec_rsqrt(vec x)
 {
   bw_real y[BW_PD_LANES];
   memcpy(y, &x, sizeof y);
 #pragma omp simd
   for (int k = 0; k < BW_PD_LANES; k++)
-    y[k] = 1 / (bw_real)sqrt(y[k]);
+    y[k] = SQRT(y[k]);
   memcpy(&x, y, sizeof y);
-  return x;
+  return 1 / x;
+}
+#undef SQRT
+
+static inline vec vec_keep(lanes mask, vec x)
+{
+  return (vec)((lanes)x & mask);
 }
 
-static inline vec vec_keep(uint8_t mask, vec x)
+static inline lanes vec_above(vec a, vec b)
 {
-  bw_real y[BW_PD_LANES];
-  memcpy(y, &x, sizeof y);
-#pragma omp simd
-  for (int k = 0; k < BW_PD_LANES; k++)
-    y[k] = mask >> k & 1 ? y[k] : 0;
-  memcpy(&x, y, sizeof y);
-  return x;
-}
-
-static inline uint8_t vec_above(vec a, vec b)
-{
-  unsigned mask = 0;
-  for (int k = 0; k < BW_PD_LANES; k++)
-    mask |= (unsigned)(a[k] > b[k]) << k;
-  return (uint8_t)mask;
+  return (lanes)(a > b);
 }
 
 #endif
@@ -150,7 +198,7 @@ static inline uint8_t vec_above(vec a, vec b)
 /* The lanes of a block's owners to successive own places: all at once when the block is full. */
 static inline void vec_put_owners(const bw_pd_block *block, vec x, bw_real *own)
 {
-  if (block->mask == 0xff) {
+  if (block->mask == (1u << BW_PD_LANES) - 1) {
     vec_store(own + block->own, x);
     return;
   }

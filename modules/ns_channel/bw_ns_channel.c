@@ -134,7 +134,7 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
   bw_release(&ns->p);
   bw_release(&ns->phi);
   bw_release(&ns->scratch);
-  bw_release(&ns->implicit);
+  bw_ns__implicit_destroy(ns);
   bw_release(&ns->metrics.heights);
   bw_release(&ns->metrics.reals);
   bw_release(pointer);

@@ -42,6 +42,8 @@ typedef struct {
   int extent[2], low[2]; /* indices low .. low+extent-1 in the tangential directions */
 } bw_ns_plane;
 
+typedef struct bw_ns_implicit bw_ns_implicit; /* ns_implicit.c */
+
 /* Momentum balance of a box, see bw_ns_channel_control_volume. */
 typedef struct {
   bool on, known; /* known: `momentum` is that of the present field */
@@ -66,7 +68,7 @@ struct bw_ns_channel {
   bw_ns_plane plane[3][2];
   bool has_outflow;
   double outflow_area;
-  bw_real *implicit; /* coefficients of ns_implicit.c */
+  bw_ns_implicit *implicit;
   double time;
   double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
   double applied;     /* mean gradient of the last finished step */
@@ -123,4 +125,6 @@ void bw_ns__box_finish(bw_ns_channel *ns, double dt);
 
 /* ns_implicit.c */
 bw_status bw_ns__implicit_create(bw_ns_channel *ns);
+void bw_ns__implicit_destroy(bw_ns_channel *ns);
+/* u <- (1 - kappa D_yy)^-1 u. Collective. */
 void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt);

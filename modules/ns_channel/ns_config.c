@@ -118,12 +118,5 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
                "ns_channel: forcing_value is %g; give a bulk velocity or a gradient",
                c->forcing_value);
   }
-  BW_REQUIRE(c->viscous == BW_VISCOUS_EXPLICIT || g->ranks[1] == 1, BW_EINPUT,
-             "ns_channel: implicit viscosity in y needs all of y on each rank, but y is divided "
-             "over %d; create the grid with ranks = {1, number of ranks}",
-             g->ranks[1]);
-  BW_REQUIRE(c->viscous == BW_VISCOUS_EXPLICIT || !g->periodic[1], BW_EINPUT,
-             "ns_channel: implicit viscosity in y is for walls; y is periodic, use the explicit "
-             "term");
   return balance_check(g, c);
 }

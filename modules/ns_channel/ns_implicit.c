@@ -1,49 +1,98 @@
 /* ns_implicit.c -- y diffusion by Crank-Nicolson in each sub-step: with kappa = gamma dt nu/2,
  *   (1 - kappa D_yy) u* = rhs,   rhs: the sweep's result, + kappa D_yy u included there.
- * One tridiagonal system per column, the same coefficients for all: rows in y are eliminated one
- * after the other, vectorised along x. All of y is on the rank. */
+ * One tridiagonal system per column, the same coefficients for all. Where all of y is on the rank
+ * (and not periodic), rows are eliminated one after the other, vectorised along x; else
+ * bw_tridiagonal.h couples the ranks. */
 #include "bw_memory.h"
+#include "bw_tridiagonal.h"
 #include "ns_channel_internal.h"
 
-typedef struct { /* one system: rows first..last */
-  int first, last;
-  bw_real *below, *inverse, *above; /* a_j; 1/pivot; c_j/pivot */
-} tridiagonal;
+struct bw_ns_implicit {
+  bw_tridiagonal *lines;            /* NULL: all of y is here */
+  double *lower, *diagonal, *upper; /* rows j = 1 .. n1 at [j-1] */
+  double edge[2];                   /* what couples rows 1 and n1 to the ghosts or faces */
+  bw_real *below, *inverse, *above; /* eliminated: a_j, 1/pivot, c_j/pivot */
+  bw_real no_shift[BW_TRIDIAGONAL_LINES];
+};
+
+static bw_status allocate(bw_ns_channel *ns)
+{
+  const size_t n = (size_t)ns->g->n[1];
+  BW_TRY(BW_ALLOCATE(&ns->implicit, 1));
+  bw_ns_implicit *q = ns->implicit;
+  BW_TRY(BW_ALLOCATE(&q->lower, 3 * n));
+  q->diagonal = q->lower + n, q->upper = q->diagonal + n;
+  BW_TRY(BW_ALLOCATE(&q->below, 3 * n));
+  q->inverse = q->below + n, q->above = q->inverse + n;
+  return BW_OK;
+}
 
 bw_status bw_ns__implicit_create(bw_ns_channel *ns)
 {
+  const bw_grid_view *g = ns->g;
   if (!ns->sweep.split_y) return BW_OK;
-  return BW_ALLOCATE(&ns->implicit, 3 * ((size_t)ns->g->m[1] + 2));
+  BW_TRY(bw_comm_agree(ns->comm, allocate(ns)));
+  if (g->ranks[1] == 1 && !g->periodic[1]) return BW_OK;
+  return bw_tridiagonal_create(ns->grid, (size_t)g->m[0] * (size_t)g->m[2], &ns->implicit->lines);
+}
+
+void bw_ns__implicit_destroy(bw_ns_channel *ns)
+{
+  if (ns->implicit == NULL) return;
+  bw_tridiagonal_destroy(&ns->implicit->lines);
+  bw_release(&ns->implicit->lower);
+  bw_release(&ns->implicit->below);
+  bw_release(&ns->implicit);
 }
 
 /* Ghost of a centred component beyond y side s: sign u + G (ns_boundary.c). */
-static bw_real ghost_sign(const bw_ns_channel *ns, int s)
+static double ghost_sign(const bw_ns_channel *ns, int s)
 {
   const bw_ns_side_kind kind = ns->config.side[1][s].kind;
-  return kind == BW_SIDE_WALL || kind == BW_SIDE_INFLOW ? -1 : 1;
+  return kind == BW_SIDE_WALL || kind == BW_SIDE_INFLOW ? -1.0 : 1.0;
 }
 
-static tridiagonal eliminate(bw_ns_channel *ns, int c, bw_real kappa)
+/* Height of the global cell j; ghosts mirror (which is the periodic image, too). */
+static double height(const bw_grid_view *g, int j)
 {
-  const bw_ns_metrics *m = &ns->metrics;
-  const int n = ns->g->m[1];
-  tridiagonal t = {.first = 1, .last = c == 1 ? n - 1 : n, .below = ns->implicit};
-  t.inverse = t.below + n + 2, t.above = t.inverse + n + 2;
-  bw_real previous = 0;
-  for (int j = t.first; j <= t.last; j++) {
-    const bw_real a =
-        c == 1 ? -kappa * m->rdyc[j] * m->rdyf[j] : -kappa * m->rdyf[j] * m->rdyc[j - 1];
-    const bw_real above =
-        c == 1 ? -kappa * m->rdyc[j] * m->rdyf[j + 1] : -kappa * m->rdyf[j] * m->rdyc[j];
-    bw_real pivot = 1 - a - above;
-    if (c != 1 && j == 1) pivot += a * ghost_sign(ns, 0);
-    if (c != 1 && j == n) pivot += above * ghost_sign(ns, 1);
-    if (j > t.first) pivot -= a * previous;
-    t.below[j] = a;
-    t.inverse[j] = 1 / pivot;
-    t.above[j] = previous = above / pivot;
+  const int n = g->n[1], cell = j < 1 ? 1 - j : j > n ? 2 * n + 1 - j : j;
+  return g->y_face[cell] - g->y_face[cell - 1];
+}
+
+/* Rows of 1 - kappa D_yy: component v sits on faces (row n1 is the side's face where there is a
+ * side), the others in cells. */
+static void coefficients(const bw_ns_channel *ns, int c, double kappa, bw_ns_implicit *q)
+{
+  const bw_grid_view *g = ns->g;
+  const int n = g->n[1];
+  for (int j = 1; j <= n; j++) {
+    const double h = height(g, j), next = height(g, j + 1), previous = height(g, j - 1);
+    const double mid = 0.5 * (h + next), mid_below = 0.5 * (previous + h);
+    q->lower[j - 1] = -kappa / (c == 1 ? mid * h : h * mid_below);
+    q->upper[j - 1] = -kappa / (c == 1 ? mid * next : h * mid);
+    q->diagonal[j - 1] = 1.0 - q->lower[j - 1] - q->upper[j - 1];
   }
-  return t;
+  q->edge[0] = q->lower[0], q->edge[1] = q->upper[n - 1];
+  if (g->periodic[1]) return;
+  if (c == 1) {
+    q->lower[n - 1] = 0.0, q->diagonal[n - 1] = 1.0;
+  } else {
+    q->diagonal[0] += q->edge[0] * ghost_sign(ns, 0);
+    q->diagonal[n - 1] += q->edge[1] * ghost_sign(ns, 1);
+  }
+  q->lower[0] = q->upper[n - 1] = 0.0;
+}
+
+static void eliminate(int n, bw_ns_implicit *q)
+{
+  double previous = 0.0;
+  for (int j = 0; j < n; j++) {
+    const double pivot = q->diagonal[j] - q->lower[j] * previous;
+    previous = q->upper[j] / pivot;
+    q->below[j] = (bw_real)q->lower[j];
+    q->inverse[j] = (bw_real)(1.0 / pivot);
+    q->above[j] = (bw_real)previous;
+  }
 }
 
 static void row_minus(int n, bw_real factor, bw_real scale, bw_real *restrict row,
@@ -54,49 +103,84 @@ static void row_minus(int n, bw_real factor, bw_real scale, bw_real *restrict ro
 }
 
 /* row -= factor G: what the ghost beyond side s of a centred component adds to the right. */
-static void row_boundary(const bw_ns_channel *ns, int c, int s, int k, bw_real factor, bw_real *row)
+static void row_boundary(const bw_ns_channel *ns, int c, int s, int k, bw_real factor,
+                         bw_real *restrict row)
 {
   const bw_ns_plane *p = &ns->plane[1][s];
-  const bw_ns_side *side = &ns->config.side[1][s];
   if (ghost_sign(ns, s) > 0) return;
   const bw_real *value = p->value[c];
   if (value != NULL) value += (k - p->low[1]) * p->extent[0] - p->low[0];
-  const bw_real constant = (bw_real)side->velocity[c];
+  const bw_real constant = (bw_real)ns->config.side[1][s].velocity[c];
   for (int i = 1; i <= ns->g->m[0]; i++)
     row[i] -= factor * 2 * (value != NULL ? value[i] : constant);
 }
 
-static void solve_plane(const bw_ns_channel *ns, int c, int k, const tridiagonal *t, bw_real kappa)
+/* Known values beyond rows 1 and n1 go to the right-hand side. */
+static void boundaries(const bw_ns_channel *ns, int c, int k)
 {
   const bw_grid_view *g = ns->g;
-  const bw_ns_metrics *m = &ns->metrics;
-  const int n = g->m[0];
-  const ptrdiff_t row = g->stride[1];
-  bw_real *first = ns->u[c] + bw_at(g, 0, 1, k);
-  if (c != 1) {
-    row_boundary(ns, c, 0, k, -kappa * m->rdyf[1] * m->rdyc[0], first);
-    row_boundary(ns, c, 1, k, -kappa * m->rdyf[g->m[1]] * m->rdyc[g->m[1]],
-                 first + row * (g->m[1] - 1));
-  } else { /* the faces on both sides are known */
-    row_minus(n, t->below[1], 1, first, first - row);
-    row_minus(n, -kappa * m->rdyc[t->last] * m->rdyf[t->last + 1], 1, first + row * (t->last - 1),
-              first + row * t->last);
+  const double *edge = ns->implicit->edge;
+  bw_real *first = ns->u[c] + bw_at(g, 0, 1, k), *last = ns->u[c] + bw_at(g, 0, g->m[1], k);
+  if (ns->plane[1][0].here) {
+    if (c == 1)
+      row_minus(g->m[0], (bw_real)edge[0], 1, first, first - g->stride[1]);
+    else
+      row_boundary(ns, c, 0, k, (bw_real)edge[0], first);
   }
-  row_minus(n, 0, t->inverse[1], first, first - row);
-  bw_real *q = first + row;
-  for (int j = 2; j <= t->last; j++, q += row)
-    row_minus(n, t->below[j], t->inverse[j], q, q - row);
-  q = first + row * (t->last - 2);
-  for (int j = t->last - 1; j >= 1; j--, q -= row)
-    row_minus(n, t->above[j], 1, q, q + row);
+  if (ns->plane[1][1].here && c != 1) row_boundary(ns, c, 1, k, (bw_real)edge[1], last);
+}
+
+static void solve_plane(const bw_grid_view *g, int k, const bw_ns_implicit *q, bw_real *u)
+{
+  const int n = g->m[0], rows = g->m[1];
+  const ptrdiff_t step = g->stride[1];
+  bw_real *row = u + bw_at(g, 0, 1, k);
+  for (int i = 1; i <= n; i++)
+    row[i] *= q->inverse[0];
+  for (int j = 1; j < rows; j++) {
+    row += step;
+    row_minus(n, q->below[j], q->inverse[j], row, row - step);
+  }
+  for (int j = rows - 2; j >= 0; j--) {
+    row -= step;
+    row_minus(n, q->above[j], 1, row, row + step);
+  }
+}
+
+/* All lines of a component in batches; what: reduce (false) or finish (true). */
+static void each_batch(const bw_grid_view *g, const bw_ns_implicit *q, bool finish, bw_real *u)
+{
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int i = 1; i <= g->m[0]; i += BW_TRIDIAGONAL_LINES) {
+      const int left = g->m[0] + 1 - i;
+      const bw_tridiagonal_batch batch = {
+          .first = (size_t)(k - 1) * (size_t)g->m[0] + (size_t)(i - 1),
+          .n = left < BW_TRIDIAGONAL_LINES ? left : BW_TRIDIAGONAL_LINES,
+          .pitch = g->stride[1],
+          .shift = q->no_shift,
+          .scale = 1};
+      if (finish)
+        bw_tridiagonal_finish(q->lines, &batch, u + bw_at(g, i, 1, k));
+      else
+        bw_tridiagonal_reduce(q->lines, &batch, u + bw_at(g, i, 1, k));
+    }
 }
 
 void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt)
 {
-  const bw_real kappa = (bw_real)(0.5 * gamma_dt * ns->config.nu);
+  const bw_grid_view *g = ns->g;
+  bw_ns_implicit *q = ns->implicit;
   for (int c = 0; c < ns->components; c++) {
-    const tridiagonal t = eliminate(ns, c, kappa);
-    for (int k = 1; k <= ns->g->m[2]; k++)
-      solve_plane(ns, c, k, &t, kappa);
+    coefficients(ns, c, 0.5 * gamma_dt * ns->config.nu, q);
+    if (q->lines == NULL) eliminate(g->n[1], q);
+    for (int k = 1; k <= g->m[2]; k++) {
+      boundaries(ns, c, k);
+      if (q->lines == NULL) solve_plane(g, k, q, ns->u[c]);
+    }
+    if (q->lines == NULL) continue;
+    bw_tridiagonal_set(q->lines, q->lower, q->diagonal, q->upper, g->periodic[1]);
+    each_batch(g, q, false, ns->u[c]);
+    bw_tridiagonal_join(q->lines);
+    each_batch(g, q, true, ns->u[c]);
   }
 }

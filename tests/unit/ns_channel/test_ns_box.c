@@ -27,7 +27,7 @@ static bw_ns_channel *solver_of(int which)
   gc.y_stretch = BW_STRETCH_TANH;
   if (which == 3) {
     c.viscous = BW_VISCOUS_IMPLICIT_Y;
-    gc.ranks[0] = 1, gc.ranks[1] = bw_comm_size(bw_check_world());
+    gc.ranks[0] = bw_comm_size(bw_check_world()), gc.ranks[1] = 1;
   }
   if (which == 4) gc.n[2] = 1;
   bw_grid *grid = NULL;

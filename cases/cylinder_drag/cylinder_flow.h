@@ -37,6 +37,7 @@ typedef struct {
   bw_ns_channel *fluid;
   bw_ibm_mdf *body;
   bw_probe *probe[2];
+  bw_real *pressure; /* of the last step, see cylinder_step */
   double dt, h;
   size_t n;                          /* surface points of this rank: all of them on rank 0 */
   double *point, *normal, *traction; /* (n,3) on the nominal surface */
@@ -59,6 +60,7 @@ static inline cylinder_config cylinder_config_default(void)
 
 static inline void cylinder_destroy(cylinder_flow *f)
 {
+  bw_release(&f->pressure);
   bw_release(&f->point);
   bw_release(&f->normal);
   bw_release(&f->traction);
@@ -185,18 +187,28 @@ static inline bw_status cylinder_create(const bw_comm *comm, const cylinder_conf
   *f = (cylinder_flow){.config = *config};
   BW_TRY(cylinder_make_fluid(comm, f));
   BW_TRY(cylinder_make_body(comm, f));
+  BW_TRY(bw_field_create(f->grid, &f->pressure));
   return cylinder_make_probes(comm, f);
 }
 
-/* One step of f->dt. Collective. */
+/* One step of f->dt. Collective.
+ * The body takes its momentum with the full dt in every sub-step while pressure acts for gamma_r
+ * dt only, so as long as slip remains p swings from sub-step to sub-step (by 20 % of the drag
+ * with two iterations). What acted over the step is the mean sum gamma_r p_r: kept for the
+ * probes. */
 static inline bw_status cylinder_step(cylinder_flow *f)
 {
+  static const double gamma[3] = {8.0 / 15.0, 2.0 / 15.0, 1.0 / 3.0}; /* bw_ns_channel.h */
+  const bw_real *p = bw_ns_channel_pressure(f->fluid);
+  const size_t size = bw_grid_look(f->grid)->size;
   BW_TRY(bw_ns_channel_check(f->fluid, f->dt));
   bw_ibm_mdf_begin_step(f->body);
   for (int r = 0; r < 3; r++) {
     bw_ns_channel_predict(f->fluid, r, f->dt);
     bw_ibm_mdf_force(f->body, bw_ns_channel_velocity(f->fluid), f->dt);
     bw_ns_channel_project(f->fluid, r, f->dt);
+    for (size_t q = 0; q < size; q++)
+      f->pressure[q] = (r == 0 ? 0 : f->pressure[q]) + (bw_real)gamma[r] * p[q];
   }
   return BW_OK;
 }
@@ -212,7 +224,7 @@ static inline cylinder_drag cylinder_measure(cylinder_flow *f)
   bw_ns_channel_control_volume(f->fluid, box);
   drag.control_volume = -scale * box[0];
   for (int p = 0; p < 2; p++) {
-    bw_probe_traction(f->probe[p], u, bw_ns_channel_pressure(f->fluid), NULL, f->traction, NULL);
+    bw_probe_traction(f->probe[p], u, f->pressure, NULL, f->traction, NULL);
     for (size_t q = 0; q < f->n; q++)
       drag.probe[p] += scale * f->area * f->traction[3 * q];
   }

@@ -1,0 +1,107 @@
+#include "cylinder_case.h"
+
+#include "bw_vtk.h"
+#include <stdio.h>
+
+#define V BW_CONFIG_VALUE
+static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, "three nodes"},
+                                              {"peskin4", BW_KERNEL_PESKIN4, "four nodes"},
+                                              {"hat2", BW_KERNEL_HAT2, "two nodes"},
+                                              {NULL, 0, NULL}};
+static const bw_config_field cylinder_fields[] = {
+    V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE(0), "-", "Re_d = U_b d/nu"),
+    V(cylinder_config, blockage, BW_OPTIONAL, BW_FROM_TO(0.02, 0.8), "-", "d over channel height"),
+    V(cylinder_config, upstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "inflow to centre"),
+    V(cylinder_config, downstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "centre to outflow"),
+    V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "", "resolution"),
+    V(cylinder_config, retraction, BW_OPTIONAL, BW_FROM_TO(0, 2), "h", "of the markers"),
+    V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "", "forcing iterations"),
+    BW_CONFIG_WORD(cylinder_config, kernel, BW_OPTIONAL, kernel_words, "of the markers"),
+    V(cylinder_config, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "h", "of the normal probes"),
+    V(cylinder_config, dt_fraction, BW_OPTIONAL, BW_FROM_TO(0.01, 0.7), "",
+      "time step over the largest stable one of the empty channel"),
+    BW_CONFIG_END};
+static const bw_config_field until_fields[] = {
+    V(cylinder_until, steady, BW_OPTIONAL, BW_ABOVE(0), "1/(d/U_b)", "relative change of the drag"),
+    V(cylinder_until, latest, BW_OPTIONAL, BW_ABOVE(0), "d/U_b", "end of the run at the latest"),
+    V(cylinder_until, interval, BW_OPTIONAL, BW_ABOVE(0), "d/U_b", "between samples"),
+    BW_CONFIG_END};
+const bw_config_field cylinder_case_fields[] = {
+    BW_CONFIG_MAP(cylinder_case, cylinder, cylinder_fields, "the flow and its discretisation"),
+    BW_CONFIG_MAP(cylinder_case, until, until_fields, "when to stop"), BW_CONFIG_END};
+
+cylinder_case cylinder_case_default(void)
+{
+  return (cylinder_case){cylinder_config_default(),
+                         {.steady = 1.0e-5, .latest = 60.0, .interval = 0.5}};
+}
+
+void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log)
+{
+  const bw_grid_view *g = bw_grid_look(f->grid);
+  const double cells = (double)g->n[0] * g->n[1];
+  /* 60 ns per cell and sub-step: measured, one core, this case */
+  bw_log_info(log,
+              "Re_d = %g, blockage %g, %d x %d cells, dt = %.3g d/U_b\n"
+              "fields %.1f MB; at most %.0f steps, about %.0f s",
+              c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1], f->dt,
+              8.0 * (double)g->size * sizeof(bw_real) / 1.0e6, c->until.latest / f->dt,
+              c->until.latest / f->dt * cells * 3.0 * 60.0e-9);
+}
+
+bw_status cylinder_open_history(const bw_comm *comm, const bw_case *run, bw_history **out)
+{
+  static const char *const names[] = {"time[d/U_b]",           "Cd_reaction[-]",
+                                      "Cd_control_volume[-]",  "Cd_probe_linear[-]",
+                                      "Cd_probe_quadratic[-]", "slip[U_b]"};
+  char *path = NULL;
+  bw_status st = bw_case_path(run, "history.csv", &path);
+  BW_THEN(st, bw_history_create(comm, path, sizeof names / sizeof *names, names, NAN, out));
+  bw_release(&path);
+  return st;
+}
+
+void cylinder_sample(bw_history *history, double t, const cylinder_drag *d)
+{
+  const double row[] = {t, d->reaction, d->control_volume, d->probe[0], d->probe[1], d->slip};
+  bw_history_append(history, row);
+}
+
+/* Angle from the front stagnation point, pressure and shear, as in the reference's table. */
+static bw_status write_wall(cylinder_flow *f, const char *path)
+{
+  FILE *out = fopen(path, "w");
+  BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s", path);
+  fprintf(out, "theta[deg],p[rho U_b^2],tau[rho U_b^2]\n");
+  for (size_t q = 0; q < f->n; q++) {
+    const double *n = f->normal + 3 * q, *t = f->traction + 3 * q;
+    fprintf(out, "%.4f,%.8g,%.8g\n", atan2(n[1], -n[0]) * 180.0 / acos(-1.0),
+            -(t[0] * n[0] + t[1] * n[1]), t[0] * n[1] - t[1] * n[0]);
+  }
+  BW_REQUIRE(fclose(out) == 0, BW_EIO, "cannot write %s", path);
+  return BW_OK;
+}
+
+bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
+{
+  const bw_comm *comm = bw_grid_comm(f->grid);
+  bw_real *const *u = bw_ns_channel_velocity(f->fluid), *p = f->pressure;
+  const bw_vtk_field fields[] = {{.name = "velocity", .data = {u[0], u[1]}, .staggered = true},
+                                 {.name = "pressure", .data = {p}}};
+  char *wall = NULL, *fluid = NULL, *body = NULL;
+  bw_status st = bw_case_path(run, "wall.csv", &wall);
+  BW_THEN(st, bw_case_path(run, "fluid.vti", &fluid));
+  BW_THEN(st, bw_case_path(run, "body.vtp", &body));
+  if (st == BW_OK) {
+    bw_probe_traction(f->probe[BW_PROBE_QUADRATIC], u, p, NULL, f->traction, NULL);
+    if (bw_comm_rank(comm) == 0) st = write_wall(f, wall);
+    st = bw_comm_agree(comm, st);
+  }
+  const bw_vtk_array traction = {"traction", BW_VTK_FLOAT64, 3, f->traction};
+  BW_THEN(st, bw_vtk_write_grid(f->grid, fluid, 2, fields));
+  BW_THEN(st, bw_vtk_write_points(comm, body, f->n, f->point, 1, &traction));
+  bw_release(&wall);
+  bw_release(&fluid);
+  bw_release(&body);
+  return st;
+}

@@ -1,0 +1,29 @@
+/* cylinder_case.h -- what cylinder_drag.yaml may say, and what the case writes. */
+#pragma once
+#include "bw_case.h"
+#include "bw_history.h"
+#include "cylinder_flow.h"
+
+typedef struct {
+  double steady;   /* end when the drag changes by less than this part per d/U_b */
+  double latest;   /* end at this time [d/U_b] at the latest */
+  double interval; /* between samples [d/U_b] */
+} cylinder_until;
+
+typedef struct {
+  cylinder_config cylinder;
+  cylinder_until until;
+} cylinder_case;
+
+extern const bw_config_field cylinder_case_fields[];
+cylinder_case cylinder_case_default(void);
+
+/* The sizes, the groups and an estimate of the time, as lines of the log. */
+void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log);
+
+bw_status cylinder_open_history(const bw_comm *comm, const bw_case *run,
+                                bw_history **out) BW_MUST_CHECK;
+void cylinder_sample(bw_history *history, double t, const cylinder_drag *d);
+
+/* wall.csv (stress around the cylinder), fluid.vti and body.vtp. Collective. */
+bw_status cylinder_write(cylinder_flow *f, const bw_case *run) BW_MUST_CHECK;

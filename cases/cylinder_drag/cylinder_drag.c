@@ -1,0 +1,77 @@
+/* Drag of a cylinder in a plane channel by three routes (FSI, table 1; ERRATA 21, 23, 24).
+ *
+ * Run:   build/bin/cylinder_drag cases/cylinder_drag/cylinder_drag.yaml --out out/cylinder
+ * BUILD modules=ns_channel,ibm_mdf,probe,vtk */
+#include "bw_stop.h"
+#include "cylinder_case.h"
+
+/* Until the drag is steady, the time is over or somebody asks to stop. */
+static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case *run,
+                         bw_history *history)
+{
+  const bw_comm *comm = bw_grid_comm(f->grid);
+  bw_progress *line = NULL;
+  bw_progress_config about = bw_progress_config_default();
+  about.time_end = c->until.latest, about.time_unit = "d/U_b";
+  bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  double t = 0.0, last = HUGE_VAL;
+  for (bool steady = false; st == BW_OK && !steady && t < c->until.latest;) {
+    st = cylinder_advance(f, c->until.interval);
+    if (st != BW_OK || bw_stop_requested(comm)) break;
+    const cylinder_drag d = cylinder_measure(f);
+    t = bw_ns_channel_time(f->fluid);
+    cylinder_sample(history, t, &d);
+    steady = fabs(d.reaction - last) < c->until.steady * c->until.interval * fabs(d.reaction);
+    last = d.reaction;
+    bw_progress_update(line, (int64_t)lround(t / f->dt), t, "Cd %.4f", d.reaction);
+  }
+  bw_progress_finish(&line);
+  return st;
+}
+
+static void report(cylinder_flow *f, bw_log *log)
+{
+  const cylinder_drag d = cylinder_measure(f);
+  bw_log_info(log,
+              "drag coefficient at t = %.2f d/U_b\n  force of the markers      %.4f\n"
+              "  momentum of the box       %.4f\n  probes, linear profile    %.4f\n"
+              "  probes, parabola to wall  %.4f\nslip at the markers %.1e U_b",
+              bw_ns_channel_time(f->fluid), d.reaction, d.control_volume, d.probe[0], d.probe[1],
+              d.slip);
+}
+
+static bw_status simulate(const bw_comm *comm, const cylinder_case *c, const bw_case *run)
+{
+  const bw_case_args *args = bw_case_args_of(run);
+  bw_history *history = NULL;
+  cylinder_flow f;
+  BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
+             "--restart: this case takes seconds and writes no checkpoints; run it from the start");
+  bw_status st = cylinder_create(comm, &c->cylinder, &f);
+  if (st == BW_OK) cylinder_describe(&f, c, bw_case_log(run));
+  if (st == BW_OK && !args->check) {
+    bw_stop_install();
+    st = cylinder_open_history(comm, run, &history);
+    BW_THEN(st, advance(&f, c, run, history));
+    BW_THEN(st, cylinder_write(&f, run));
+    if (st == BW_OK) report(&f, bw_case_log(run));
+    const bw_status closed = bw_history_close(comm, &history);
+    BW_THEN(st, closed);
+  }
+  cylinder_destroy(&f);
+  return st;
+}
+
+int main(int argc, char **argv)
+{
+  cylinder_case config = cylinder_case_default();
+  const bw_case_about about = {"cylinder_drag", "the drag of a cylinder in a channel, three ways",
+                               cylinder_case_fields, sizeof config};
+  bw_comm *world = NULL;
+  bw_case *run = NULL;
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &run));
+  if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(world, &config, run);
+  st = bw_case_end(world, &run, st);
+  return bw_finish(&world, st);
+}

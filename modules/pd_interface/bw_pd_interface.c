@@ -16,6 +16,8 @@ static bw_status check_config(const bw_pd_interface_config *c, int sectors)
 {
   BW_REQUIRE(isfinite(c->threshold) && c->threshold > 0.0, BW_EINPUT,
              "interface: threshold = %g has to be positive (1 is the horizon)", c->threshold);
+  BW_REQUIRE(c->area == BW_PD_AREA_OPEN_SIDES || c->area == BW_PD_AREA_EQUAL, BW_EINPUT,
+             "interface: area = %d is neither open sides nor equal", (int)c->area);
   BW_REQUIRE(c->n_empty >= 0 && c->n_empty <= sectors, BW_EINPUT,
              "interface: n_empty = %d has to be 1 to %d, or 0 for the default", c->n_empty,
              sectors);
@@ -49,6 +51,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->all_velocity, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->own_normal, pi->config.smooth_normals ? 3 * n : 0));
   BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
@@ -114,6 +117,7 @@ static void measure_reference(bw_pd_interface *pi)
   const bw_pd_bond_config *c = bw_pd_bond_settings(pi->pd);
   const double ds = c->ds;
   pi->area_new = pi->stencil.dims == 2 ? ds * c->thickness : ds * ds;
+  const double least = 0.25 * pi->area_new; /* ridges of one particle still are markers */
   double total[2] = {0.0, 0.0};
   for (size_t h = 0; h < pi->n; h++) {
     bw_pd_interface__resolve(pi, h, NULL);
@@ -121,11 +125,16 @@ static void measure_reference(bw_pd_interface *pi)
     pi->surface[h] = pi->first[h];
     if (pi->outside[h]) continue;
     total[0] += bw_pd_interface__open_area(pi);
-    total[1] += pi->first[h] ? 1.0 : 0.0;
+    if (!pi->first[h]) continue;
+    double n[3] = {0.0, 0.0, 0.0};
+    const bool known = bw_pd_interface__normal(pi, n); /* a sheet open on both sides: one of them */
+    pi->area_first[h] = known ? fmax(bw_pd_interface__facing_area(pi, n), least) : pi->area_new;
+    total[1] += 1.0;
   }
   bw_comm_sum(bw_pd_bond_comm(pi->pd), 2, total);
   pi->area_total = total[0];
-  pi->area_first = total[1] > 0.0 ? total[0] / total[1] : 0.0;
+  for (size_t h = 0; pi->config.area == BW_PD_AREA_EQUAL && h < pi->n; h++)
+    pi->area_first[h] = total[0] / total[1];
 }
 
 /* Own particles with a broken bond, anew. */
@@ -188,7 +197,7 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
                     (void **)&p->position,   (void **)&p->velocity,    (void **)&p->all_velocity,
                     (void **)&p->area,       (void **)&p->list_normal, (void **)&p->link,
                     (void **)&p->state,      (void **)&p->place,       (void **)&p->off,
-                    (void **)&p->own_normal, (void **)&p->all_normal};
+                    (void **)&p->area_first, (void **)&p->own_normal,  (void **)&p->all_normal};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   bw_release(pi);
@@ -199,7 +208,7 @@ static void append(bw_pd_interface *pi, size_t h, const bw_real *X)
 {
   const size_t row = pi->n_list++;
   pi->list[row] = (int32_t)h;
-  pi->area[row] = pi->first[h] ? pi->area_first : pi->area_new;
+  pi->area[row] = pi->first[h] ? pi->area_first[h] : pi->area_new;
   for (size_t d = 0; d < 3; d++) {
     pi->position[3 * row + d] = (double)X[3 * h + d];
     pi->velocity[3 * row + d] = pi->all_velocity[3 * h + d];

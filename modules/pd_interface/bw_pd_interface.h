@@ -10,10 +10,13 @@
  * particles with an open side on the lattice. Normals by 3.45-3.46 (outward: into the fluid);
  * where the neighbours balance (thin sheets, single particles) the normal is the last one that
  * could be told, at the start the direction of the empty sectors.
- * Areas: particles that were surface in the reference shape share its area
- *   ds^2 sum over open lattice faces f of |n_f.e_f|, n_f the normal at the face's middle
- * in equal parts (figures in README); new crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in
- * both). Sides of the domain against which the solid leans (a wall of the channel) are not surface:
+ * Areas of particles that were surface in the reference shape, one of
+ *   open sides (default): ds^2 sum over the open lattice faces f of e_f.n_h, at least ds^2/4, so
+ *     that sum A n is a closed surface (uniform pressure gives no net force) and sum A n.x each
+ *     time the volume (figures in README);
+ *   equal: as with POROUS 3.96, the body's area over their number.
+ * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
+ * Sides of the domain against which the solid leans (a wall of the channel) are not surface:
  * give them as planes in the config. There partners are taken as mirrored in the plane, until the
  * particle has moved from the wall by more than the threshold or its bonds across it broke.
  * Particles beyond such a plane (ghost layers) are never surface.
@@ -24,10 +27,13 @@
 
 typedef struct bw_pd_interface bw_pd_interface;
 
+typedef enum { BW_PD_AREA_OPEN_SIDES, BW_PD_AREA_EQUAL } bw_pd_area;
+
 typedef struct {
   double threshold;    /* mean distance over horizon that opens a sector [-]   default 1 */
   int n_empty;         /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
                           POROUS), 1 in 3D                                     default 0 */
+  bw_pd_area area;     /* of surface particles, above                  default open sides */
   bool smooth_normals; /* average 3.45 over the surface within the horizon (normals that differ
                           by more than 60 degrees apart); one exchange per update. Default false */
   bool walled[3][2];   /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
@@ -54,7 +60,8 @@ typedef struct {
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
 
-/* Area of the reference shape [L^2], all ranks. Local. */
+/* Area of the reference shape [L^2], all ranks: ds^2 sum over its open lattice faces f of
+ * |n_f.e_f|, n_f the normal at the face's own middle. Local. */
 double bw_pd_interface_reference_area(const bw_pd_interface *pi);
 
 typedef struct {

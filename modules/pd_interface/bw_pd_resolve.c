@@ -123,13 +123,14 @@ bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3])
   return true;
 }
 
-/* |n.e| of the open face at c (half a step along e): n from the centroid of the solid in a ball
+/* |n.e| of the open face half a step along e: n from the centroid of the solid in a ball
  * about the face itself, cut off linearly over the last ds. Half in the solid and half outside it
  * sees no bias from curvature (a normal at the particle has one of 0.2 ds times the sum of the
  * principal curvatures); with m = 3 the ball just fits into the family. */
-static double face_projection(const bw_pd_interface *pi, const double c[3], const double e[3])
+static double face_projection(const bw_pd_interface *pi, const double e[3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
+  const double half = 0.5 * s->ds, c[3] = {half * e[0], half * e[1], half * e[2]};
   const double radius = s->family - 0.5 * s->ds;
   double v[3] = {-c[0] * s->ds, -c[1] * s->ds, -c[2] * s->ds}; /* the particle itself, weight ds */
   for (int q = 0; q < s->slots; q++) {
@@ -144,17 +145,39 @@ static double face_projection(const bw_pd_interface *pi, const double c[3], cons
   return fabs(v[0] * e[0] + v[1] * e[1] + v[2] * e[2]) / length;
 }
 
-double bw_pd_interface__open_area(const bw_pd_interface *pi)
+/* The open sides of the particle resolved last: outward unit normals e, (6,3) at most. */
+static int open_sides(const bw_pd_interface *pi, double e[][3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  double area = 0.0;
+  int open = 0;
   for (int r = 0; r < s->dims; r++)
     for (int side = -1; side <= 1; side += 2) {
-      const double *e = s->axes[r], step = side * s->ds;
-      const double xi[3] = {step * e[0], step * e[1], step * e[2]};
-      const double face[3] = {0.5 * xi[0], 0.5 * xi[1], 0.5 * xi[2]};
+      double xi[3];
+      for (int d = 0; d < 3; d++)
+        xi[d] = side * s->ds * s->axes[r][d];
       const int q = bw_pd_interface__slot_of(s, xi);
-      if (q >= 0 && pi->state[q] == BW_PD_INTERFACE__ABSENT) area += face_projection(pi, face, e);
+      if (q < 0 || pi->state[q] != BW_PD_INTERFACE__ABSENT) continue;
+      for (int d = 0; d < 3; d++)
+        e[open][d] = xi[d] / s->ds;
+      open++;
     }
+  return open;
+}
+
+double bw_pd_interface__open_area(const bw_pd_interface *pi)
+{
+  double e[6][3], area = 0.0;
+  const int open = open_sides(pi, e);
+  for (int f = 0; f < open; f++)
+    area += face_projection(pi, e[f]);
+  return area * pi->area_new;
+}
+
+double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3])
+{
+  double e[6][3], area = 0.0;
+  const int open = open_sides(pi, e);
+  for (int f = 0; f < open; f++)
+    area += e[f][0] * n[0] + e[f][1] * n[1] + e[f][2] * n[2];
   return area * pi->area_new;
 }

@@ -34,16 +34,17 @@ struct bw_pd_interface {
   bw_pd_bond *pd; /* borrowed */
   bw_pd_interface_config config;
   bw_pd_interface__stencil stencil;
-  size_t n;                    /* own particles */
-  double opening;              /* mean distance that opens a sector [L] */
-  double area_total;           /* of the reference shape [L^2] */
-  double area_first, area_new; /* per particle: surface from the start, crack face [L^2] */
-  int64_t events;              /* of pd when `damaged` was made */
-  bool *surface;               /* (n) now */
-  bool *first;                 /* (n) in the reference shape */
-  bool *outside;               /* (n) beyond a wall: never surface */
-  int32_t *damaged;            /* (n_damaged) own particles with broken bonds */
-  int32_t *leaning;            /* (n_leaning) own particles whose family reaches beyond a wall */
+  size_t n;           /* own particles */
+  double opening;     /* mean distance that opens a sector [L] */
+  double area_total;  /* of the reference shape [L^2] */
+  double area_new;    /* of a crack face, one side of a particle [L^2] */
+  double *area_first; /* (n) of those that are surface in the reference shape [L^2] */
+  int64_t events;     /* of pd when `damaged` was made */
+  bool *surface;      /* (n) now */
+  bool *first;        /* (n) in the reference shape */
+  bool *outside;      /* (n) beyond a wall: never surface */
+  int32_t *damaged;   /* (n_damaged) own particles with broken bonds */
+  int32_t *leaning;   /* (n_leaning) own particles whose family reaches beyond a wall */
   size_t n_damaged, n_leaning;
   bool *leans;           /* (n) is it in `leaning`? */
   bool *off;             /* (n) it leans no more: has moved from the wall */
@@ -73,6 +74,9 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, const bw_real *X);
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi);
 bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3]);
 double bw_pd_interface__open_area(const bw_pd_interface *pi);
+
+/* ds^2 sum over the open sides f of the particle resolved last of e_f.n [L^2]. Local. */
+double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]);
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X);

@@ -193,6 +193,19 @@ function(bw_validations)
   endforeach()
 endfunction()
 
+# bench/NAME.c: build/bin/bench_NAME, run by `./run bench NAME`; no test fails on a clock
+function(bw_benches)
+  add_library(bw_bench STATIC bench/support/bw_bench.c)
+  target_include_directories(bw_bench PUBLIC bench/support)
+  target_link_libraries(bw_bench PUBLIC bw_core PRIVATE bw_flags)
+  file(GLOB heads CONFIGURE_DEPENDS bench/*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    _bw_program(bench_${name} "" ${head})
+    target_link_libraries(bench_${name} PRIVATE bw_bench)
+  endforeach()
+endfunction()
+
 # docs/examples/*.c: what a user's program looks like; run as tests
 function(bw_examples)
   file(GLOB heads CONFIGURE_DEPENDS docs/examples/*.c)

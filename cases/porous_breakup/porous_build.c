@@ -102,6 +102,8 @@ static bw_status build_coupler(porous_run *p)
   c.n_iter = q->coupling.iterations;
   c.retraction = q->coupling.retraction;
   c.probe_length = q->coupling.probe_length;
+  c.profile = (bw_probe_profile)q->coupling.probe_profile;
+  c.load_relaxation = q->coupling.load_relaxation;
   c.solid_safety = q->coupling.solid_safety;
   c.walled[1][0] = c.walled[1][1] = true;
   return bw_coupler_create(&c, p->fluid, p->solid, &p->coupler);

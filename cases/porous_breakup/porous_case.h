@@ -24,8 +24,8 @@ typedef struct {
   int clamped_layers;
 } porous_medium;
 typedef struct {
-  int kernel, iterations;
-  double retraction, probe_length, solid_safety;
+  int kernel, iterations, probe_profile;
+  double retraction, probe_length, solid_safety, load_relaxation;
 } porous_coupling;
 typedef struct {
   double time_step, settled, settling_rate;

@@ -54,12 +54,20 @@ static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
                                               {"peskin4", BW_KERNEL_PESKIN4, NULL},
                                               {"hat2", BW_KERNEL_HAT2, NULL},
                                               {NULL, 0, NULL}};
+static const bw_config_word profile_words[] = {
+    {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
+    {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
+    {NULL, 0, NULL}};
 static const bw_config_field coupling_fields[] = {
     BW_CONFIG_WORD(porous_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
     V(porous_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
     V(porous_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
       "of the markers, inwards from the nominal surface"),
     V(porous_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
+    BW_CONFIG_WORD(porous_coupling, probe_profile, BW_OPTIONAL, profile_words,
+                   "of the velocity along a probe"),
+    V(porous_coupling, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "share of the new fluid load in each step; 1: plain explicit coupling"),
     V(porous_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "solid sub-step over its stability limit"),
     BW_CONFIG_END};
@@ -120,7 +128,9 @@ porous_config porous_config_default(void)
                                       .iterations = 2,
                                       .retraction = 0.5,
                                       .probe_length = 2.0,
-                                      .solid_safety = 0.8},
+                                      .probe_profile = BW_PROBE_QUADRATIC,
+                                      .solid_safety = 0.8,
+                                      .load_relaxation = 0.1},
                          .flow = phase,
                          .deformation = phase,
                          .breakage = phase,

@@ -13,7 +13,9 @@ bw_coupler_config bw_coupler_config_default(void)
                              .n_iter = 2,
                              .retraction = 0.5,
                              .probe_length = 2.0,
-                             .solid_safety = 0.8};
+                             .profile = BW_PROBE_QUADRATIC,
+                             .solid_safety = 0.8,
+                             .load_relaxation = 0.1};
 }
 
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
@@ -22,6 +24,8 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
   BW_REQUIRE(q->nu > 0.0, BW_EINPUT, "coupler: nu = %g: the viscosity must be > 0", q->nu);
   BW_REQUIRE(q->solid_safety > 0.0 && q->solid_safety <= 1.0, BW_EINPUT,
              "coupler: solid_safety = %g: must lie in (0, 1]", q->solid_safety);
+  BW_REQUIRE(q->load_relaxation > 0.0 && q->load_relaxation <= 1.0, BW_EINPUT,
+             "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
   BW_REQUIRE(fabs(q->retraction) <= 2.0, BW_EINPUT,
              "coupler: retraction = %g grid spacings: must lie in [-2, 2]", q->retraction);
   BW_REQUIRE(g->uniform_y && g->halo[1] >= 2, BW_EINPUT,
@@ -39,10 +43,12 @@ static bw_status create_parts(bw_coupler *c)
   ibm.kernel = probe.kernel = c->config.kernel;
   ibm.n_iter = c->config.n_iter;
   probe.length = c->config.probe_length;
+  probe.profile = c->config.profile;
   probe.rho = c->config.rho;
   probe.nu = c->config.nu;
   memcpy(surface.walled, c->config.walled, sizeof surface.walled);
   memcpy(surface.upper, g->length, sizeof surface.upper);
+  memset(surface.lower, 0, sizeof surface.lower);
   BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->ibm));
   BW_TRY(bw_probe_create(grid, &probe, &c->probe));
   return bw_pd_interface_create(c->solid, &surface, &c->interface);

@@ -5,7 +5,14 @@
  *   load     probes give the traction t on each surface particle; F_h = t A_h/V_h
  *   solid    K sub-steps of dt/K, K the smallest whole number that keeps the solid stable
  *   surface  interface, markers, probe points follow the solid
- * The explicit coupling needs a solid denser than the fluid (POROUS: rho_s/rho_f > 1).
+ *
+ * Added mass. The fluid answers to the acceleration a of the surface with a pressure that acts on
+ * the solid one step later: m_s a' = F - m_a a, which grows by m_a/m_s in every step, however small
+ * dt is. In a medium that fills a channel m_a exceeds the solid's own mass (POROUS asks for a
+ * density ratio above 1; measured: README). The load is therefore relaxed, F' = (1 - w) F + w
+ * (traction of the flow),   stable for w < 2/(1 + m_a/m_s), a filter of time dt/w: steady loads are
+ * exact, the error in time is of first order, and a delayed added mass damps. w = 1 is POROUS's
+ * plain explicit scheme.
  *
  * Where the surface is: a particle is a cube of edge ds, so the nominal surface lies ds/2 outside
  * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
@@ -32,7 +39,9 @@ typedef struct {
   int n_iter;                /* forcing iterations [-]                      default 2 */
   double retraction;         /* of the markers, in grid spacings [-]        default 0.5 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
+  bw_probe_profile profile;  /* of the velocity along a probe               default quadratic */
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
+  double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
   bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
 

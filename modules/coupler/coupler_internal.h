@@ -6,11 +6,11 @@
 typedef struct {
   bool filled;
   double fluid_numbers[2]; /* time, gradient of the forcing */
-  bw_real *field[4]; /* u, v, w, p; NULL where the fluid has none */
-  double *rows;      /* (n,9) of bw_pd_bond_get_restart */
+  bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
+  double *rows;            /* (n,9) of bw_pd_bond_get_restart */
   double sums[4];
   uint8_t *bits;    /* (n, bits_bytes) */
-  double *V_before; /* (n,3) */
+  double *V_before, *F;  /* (n,3) */
 } bw_coupler__state;
 
 struct bw_coupler {
@@ -34,7 +34,7 @@ struct bw_coupler {
   double force_probe[3];                   /* of this rank, last load */
   bw_real *inside;                         /* field: 1 in cells that hold a particle */
   double *X, *X_inside;                    /* (n,3) positions now, and when `inside` was computed */
-  bool inside_known;
+  bool inside_known, markers_moved;
   bw_timer *timer;
   double bonds; /* intact ends of this rank at the start: work of one force evaluation */
   bw_coupler__state kept;
@@ -42,6 +42,9 @@ struct bw_coupler {
 
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
+/* Hand the markers over if the surface has moved. At the beginning of a step, so that the forces
+ * of the last one can be asked for until then. Collective. */
+bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
 /* Fluid stress on the surface particles -> external force density of the solid. Collective. */
 bw_status bw_coupler__load(bw_coupler *c, double dt) BW_MUST_CHECK;
 void bw_coupler__state_release(bw_coupler__state *s);

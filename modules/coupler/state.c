@@ -15,6 +15,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->rows);
   bw_release(&s->bits);
   bw_release(&s->V_before);
+  bw_release(&s->F);
   s->filled = false;
 }
 
@@ -34,7 +35,8 @@ static bw_status state_create(const bw_coupler *c, bw_coupler__state *s)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
   BW_TRY(BW_ALLOCATE(&s->rows, ROW * c->n));
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_pd_bond_bits_bytes(c->solid)));
-  return BW_ALLOCATE(&s->V_before, 3 * c->n);
+  BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
+  return BW_ALLOCATE(&s->F, 3 * c->n);
 }
 
 static void capture(const bw_coupler *c, bw_coupler__state *s)
@@ -49,6 +51,7 @@ static void capture(const bw_coupler *c, bw_coupler__state *s)
   bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
   bw_pd_bond_get_bits(c->solid, s->bits);
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
+  memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   s->filled = true;
 }
 
@@ -72,6 +75,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
+  BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -88,6 +92,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
+  BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -105,6 +110,7 @@ static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
+  memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   return bw_coupler__follow_surface(c);
 }
 

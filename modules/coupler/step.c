@@ -13,7 +13,11 @@ int bw_coupler_substeps(const bw_coupler *c, double dt)
 static bw_status advance_fluid(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  bw_timer_start(c->timer, BW_PART_FORCING);
+  const bw_status st = bw_coupler__place_markers(c);
   bw_ibm_mdf_begin_step(c->ibm);
+  bw_timer_stop(c->timer, BW_PART_FORCING);
+  if (st != BW_OK) return st;
   for (int r = 0; r < 3; r++) {
     bw_timer_start(c->timer, BW_PART_MOMENTUM);
     bw_ns_channel_predict(c->fluid, r, dt); /* u*: convection, diffusion, old pressure */

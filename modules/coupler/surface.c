@@ -106,7 +106,15 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
 {
   BW_TRY(bw_pd_interface_update(c->interface));
   place(c);
+  c->markers_moved = true;
   bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
+  return BW_OK;
+}
+
+bw_status bw_coupler__place_markers(bw_coupler *c)
+{
+  if (!c->markers_moved) return BW_OK;
+  c->markers_moved = false;
   return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
 }
 
@@ -122,6 +130,22 @@ static void surface_acceleration(bw_coupler *c, double dt)
   }
 }
 
+/* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */
+static void relax_load(bw_coupler *c)
+{
+  const double w = c->held ? 1.0 : c->config.load_relaxation;
+  const double volume = bw_pd_bond_volume(c->solid);
+  memset(c->force_probe, 0, sizeof c->force_probe);
+  for (size_t i = 0; i < 3 * c->n; i++)
+    c->F[i] *= 1.0 - w;
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++) {
+      const double force = c->traction[3 * q + d] * c->area[q];
+      c->F[3 * (size_t)c->particle[q] + d] += w * force / volume;
+      c->force_probe[d] += force;
+    }
+}
+
 bw_status bw_coupler__load(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
@@ -129,19 +153,11 @@ bw_status bw_coupler__load(bw_coupler *c, double dt)
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
+  bw_probe_set_velocity(c->probe, c->marker_V);
   surface_acceleration(c, dt);
   bw_probe_traction(c->probe, u, bw_ns_channel_pressure(c->fluid), c->accel, c->traction, c->flag);
   bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
 
-  /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10 */
-  const double volume = bw_pd_bond_volume(c->solid);
-  memset(c->F, 0, 3 * c->n * sizeof *c->F);
-  memset(c->force_probe, 0, sizeof c->force_probe);
-  for (size_t q = 0; q < c->n_surface; q++)
-    for (int d = 0; d < 3; d++) {
-      const double force = c->traction[3 * q + d] * c->area[q];
-      c->F[3 * (size_t)c->particle[q] + d] = force / volume;
-      c->force_probe[d] += force;
-    }
+  relax_load(c);
   return BW_OK;
 }

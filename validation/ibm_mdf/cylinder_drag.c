@@ -5,7 +5,7 @@
  *            the middle): data/confined_cylinder; FSI's printed figures are reported beside.
  * Measured   force of the markers; momentum balance of a box of 2 d; normal probes on the nominal
  *            surface. Steady: the drag changes by less than 1e-5 per d/U_b.
- * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e-8.
+ * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e4 eps.
  *            reaction against the reference: 0.1 h of doubt about where the smeared wall is
  *            (Breugem 2012 has 0.2 to 0.4 best, by shape) moves the drag as 0.2 h/d of blockage
  *            and size do, 1.6 % at 15 cells; with second-order errors of the grid: 2 %.
@@ -84,10 +84,11 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
   const double over = c->probe_length / c->cells_per_diameter * sqrt(c->reynolds);
   const double doubt = 2.0 * 0.1 / c->probe_length, none = INFINITY;
   const double second = 0.5 * over * over + doubt;
+  const double round_off = 1.0e4 * BW_REAL_EPSILON; /* sums over 120 faces, 3 sub-steps */
   static const char fem[] = "independent finite elements, data/confined_cylinder";
   const row rows[] = {
       {"Cd_reaction", d.reaction, Cd, claimed ? 0.02 : none, BW_INDEPENDENT_CODE, fem},
-      {"Cd_control_volume", d.control_volume, d.reaction, 1.0e-8, BW_CONSERVATION,
+      {"Cd_control_volume", d.control_volume, d.reaction, round_off, BW_CONSERVATION,
        "momentum balance of the box against the force of the markers"},
       {"Cd_probe", d.probe[1], Cd, claimed ? FRICTION_SHARE * second : none, BW_INDEPENDENT_CODE,
        fem},

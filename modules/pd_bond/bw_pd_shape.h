@@ -14,10 +14,10 @@
 #include <stdint.h>
 
 typedef enum {
-  BW_SHAPE_BOX,        /* lower, upper */
-  BW_SHAPE_SPHERE,     /* centre, radius */
-  BW_SHAPE_CYLINDER,   /* centre, radius, axis (0, 1, 2), endless */
-  BW_SHAPE_PORES_SC,   /* centre (of one pore), radius, pitch */
+  BW_SHAPE_BOX,      /* lower, upper */
+  BW_SHAPE_SPHERE,   /* centre, radius */
+  BW_SHAPE_CYLINDER, /* centre, radius, axis (0, 1, 2), endless */
+  BW_SHAPE_PORES_SC, /* centre (of one pore), radius, pitch */
   BW_SHAPE_PORES_BCC,
   BW_SHAPE_PORES_FCC,
   BW_SHAPE_COUNT
@@ -25,7 +25,7 @@ typedef enum {
 
 typedef struct {
   bw_shape_kind kind;
-  bool remove;          /* false: add */
+  bool remove;                                         /* false: add */
   double lower[3], upper[3], centre[3], radius, pitch; /* [L]; unused ones ignored */
   int axis;
   uint8_t particle_kind; /* BW_PD_FREE, ... given to the sites it adds */
@@ -34,7 +34,7 @@ typedef struct {
 const char *bw_shape_name(bw_shape_kind kind); /* "pores_sc": the word used in YAML. Local. */
 
 /* All sites inside the body, x fastest, then y, then z: site (n,3), kind (n); owned by the
- * caller (bw_release). `planar`: only site[2] = 0, and z of the shapes is ignored. BW_EINPUT for an invalid shape (named by its number) or an empty body.
- * Local. */
+ * caller (bw_release). `planar`: only site[2] = 0, and z of the shapes is ignored. BW_EINPUT for an
+ * invalid shape (named by its number) or an empty body. Local. */
 bw_status bw_pd_shape_fill(int count, const bw_shape shape[], double ds, const double origin[3],
                            bool planar, int64_t *n, int32_t **site, uint8_t **kind) BW_MUST_CHECK;

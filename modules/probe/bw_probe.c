@@ -82,18 +82,17 @@ typedef struct {
 } wall_end;
 
 /* f = wall + a eta + b eta^2 with the value and slope that the tip's weights see of it:
- *   value = wall + a dl + b (dl^2 + square),  slope = a + b (2 dl + square_slope). */
+ *   value = wall + a dl + b (dl^2 + square),  slope = a + 2 b dl. */
 static wall_end parabola_through(const bw_probe__along *f, double wall, double dl)
 {
-  const double lever = 2.0 * dl + f->square_slope;
-  const double b = (f->slope * dl - (f->value - wall)) / (dl * lever - dl * dl - f->square);
-  return (wall_end){f->slope - b * lever, 2.0 * b};
+  const double b = (f->slope * dl - (f->value - wall)) / (dl * dl - f->square);
+  return (wall_end){f->slope - 2.0 * b * dl, 2.0 * b};
 }
 
 /* p on the wall, where its slope is known; the same parabola. */
 static double wall_pressure(const bw_probe__along *p, double slope, double dl)
 {
-  const double b = (p->slope - slope) / (2.0 * dl + p->square_slope);
+  const double b = (p->slope - slope) / (2.0 * dl);
   return p->value - slope * dl - b * (dl * dl + p->square);
 }
 

@@ -16,14 +16,13 @@ static int weights_of(const bw_probe *probe, const double x[3], int place, int d
   int first = (int)floor(s - 0.5 - k->radius) + 1;
   if (first > g->m[d] + g->halo[d] - PROBE_WIDTH + 1)
     first = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
-  w->square = w->square_slope = 0.0;
+  w->square = 0.0;
   for (int q = 0; q < PROBE_WIDTH; q++) {
     const double r = s - (double)(first + q), above = k->phi(r + 0.5), below = k->phi(r - 0.5);
     w->at[q] = k->phi(r);
     w->mean[q] = 0.5 * (above + below);
     w->slope[q] = (above - below) / h;
     w->square += w->at[q] * r * r * h * h;
-    w->square_slope += w->slope[q] * r * r * h * h;
   }
   return first;
 }
@@ -56,21 +55,19 @@ bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int
   bw_probe__sample s = {
       .value = dot(sum[0], w[0].at),
       .grad = {dot(sum[1], w[0].slope), dot(sum[2], w[0].mean), dot(sum[3], w[0].mean)}};
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < 3; d++)
     s.square[d] = w[d].square;
-    s.square_slope[d] = w[d].square_slope;
-  }
   return s;
 }
 
-/* First moments vanish, so of ((x - tip).n)^2 only the squares of each direction remain. */
+/* First moments vanish, so of ((x - tip).n)^2 only the squares of each direction remain; its slope
+ * is exactly 0, because the two ends of a difference are a whole cell apart: same weights. */
 static bw_probe__along along_normal(const bw_probe__sample *s, const double n[3])
 {
   bw_probe__along a = {.value = s->value};
   for (int d = 0; d < 3; d++) {
     a.slope += s->grad[d] * n[d];
     a.square += s->square[d] * n[d] * n[d];
-    a.square_slope += s->square_slope[d] * n[d] * n[d] * n[d];
   }
   return a;
 }

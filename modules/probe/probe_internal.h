@@ -7,15 +7,15 @@ enum { PROBE_CENTRE, PROBE_FACE, PROBE_PLACES }; /* where nodes sit in one direc
 enum { PROBE_WIDTH = 4 };                        /* nodes per direction, padded with zeros */
 
 /* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2); and
- * what they make of (x - tip)^2, for which the true value and slope are 0. */
+ * what `at` makes of (x - tip)^2, whose true value is 0. */
 typedef struct {
   double at[PROBE_WIDTH], mean[PROBE_WIDTH], slope[PROBE_WIDTH]; /* slope [1/L] */
-  double square, square_slope;                                   /* [L^2], [L] */
+  double square;                                                 /* [L^2] */
 } bw_probe__weights;
 
-/* A field and its gradient at a tip, and the two moments of each direction. */
+/* A field and its gradient at a tip, and the second moment of each direction. */
 typedef struct {
-  double value, grad[3], square[3], square_slope[3];
+  double value, grad[3], square[3];
 } bw_probe__sample;
 
 /* What travels to the tip's rank, and what comes back. */
@@ -24,8 +24,8 @@ typedef struct {
 } bw_probe__item;
 
 typedef struct {
-  double value, slope;         /* at the tip, and its derivative along n */
-  double square, square_slope; /* the same for the function eta^2 of the distance from the tip */
+  double value, slope; /* at the tip, and its derivative along n */
+  double square;       /* the value for the function eta^2 of the distance from the tip along n */
 } bw_probe__along;
 
 typedef struct {

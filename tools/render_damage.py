@@ -2,8 +2,9 @@
 """Pictures of the solid, coloured by damage, in the box of the fluid.
 
 usage: render_damage.py FOLDER [--all]
-Reads the last solid-*.vtp of a case's folder (all of them with --all) and, when there is one, a
-fluid-*.vti for the box; writes FOLDER/figures/damage*.png. VTK renders through OpenGL, so that a
+Reads the last file of each series NAME-STEP.vtp in a case's folder that has an array "damage" (all
+files with --all) and, when there is one, a fluid-*.vti for the box; writes FOLDER/figures/NAME.png
+and, in three dimensions, NAME-cut.png. VTK renders through OpenGL, so that a
 display is needed: xvfb-run -a /usr/bin/python3 tools/render_damage.py FOLDER
 """
 import sys
@@ -93,7 +94,8 @@ def particles(points, table, edge, cut):
     glyph.SetScaleModeToDataScalingOff()
     glyph.SetColorModeToColorByScalar()
     actor = actor_of(glyph, table)
-    actor.GetProperty().SetAmbient(0.25)
+    actor.GetProperty().SetAmbient(1.0 if flat else 0.25)
+    actor.GetProperty().SetDiffuse(0.0 if flat else 0.75)
     return actor
 
 
@@ -158,28 +160,42 @@ def box_of(folder, points):
     return read(vtkXMLImageDataReader(), fluid[-1]).GetBounds() if fluid else points.GetBounds()
 
 
+def series_of(folder):
+    """{NAME: its files in order of the step}"""
+    series = {}
+    for file in sorted(folder.glob("*-*.vtp")):
+        series.setdefault(file.stem.rpartition("-")[0], []).append(file)
+    return series
+
+
+def draw(folder, file, name):
+    """Pictures of one file; how many."""
+    points = read(vtkXMLPolyDataReader(), file)
+    if points.GetNumberOfPoints() == 0 or not points.GetPointData().HasArray("damage"):
+        return 0
+    box = box_of(folder, points)
+    title = f"step {file.stem.rpartition('-')[2].lstrip('0') or '0'}"
+    picture(points, box, title, folder / "figures" / f"{name}.png")
+    if box[5] - box[4] <= 0.05 * (box[1] - box[0]):
+        return 1
+    picture(points, box, f"{title}, cut in the middle of z", folder / "figures" / f"{name}-cut.png",
+            (box[4] + box[5]) / 2)
+    return 2
+
+
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--all"]
     if len(arguments) != 1:
         sys.exit(__doc__)
     folder = Path(arguments[0])
-    files = sorted(folder.glob("solid-*.vtp"))
-    if not files:
-        sys.exit(f"render_damage.py: no solid-*.vtp in {folder}")
-    figures = folder / "figures"
-    figures.mkdir(exist_ok=True)
-    for file in files if "--all" in sys.argv else files[-1:]:
-        points = read(vtkXMLPolyDataReader(), file)
-        if points.GetNumberOfPoints() == 0 or not points.GetPointData().HasArray("damage"):
-            sys.exit(f"render_damage.py: {file} has no points with damage")
-        box = box_of(folder, points)
-        step = file.stem.partition("-")[2].lstrip("0") or "0"
-        last = "" if "--all" not in sys.argv else f"-{file.stem.partition('-')[2]}"
-        picture(points, box, f"step {step}", figures / f"damage{last}.png")
-        if box[5] > box[4]:
-            picture(points, box, f"step {step}, cut in the middle of z",
-                    figures / f"damage-cut{last}.png", (box[4] + box[5]) / 2)
-        print(f"{file.name}: {figures}/damage{last}.png")
+    (folder / "figures").mkdir(exist_ok=True)
+    count = 0
+    for name, files in series_of(folder).items():
+        if "--all" in sys.argv:
+            count += sum(draw(folder, file, file.stem) for file in files)
+        else:
+            count += draw(folder, files[-1], name)
+    print(f"{count} pictures of damage in {folder / 'figures'}")
 
 
 main()

@@ -140,6 +140,9 @@ void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, voi
  * mend): unchanged means nothing to update. Local. */
 int64_t bw_pd_bond_events(const bw_pd_bond *pd);
 
+/* broken[count] <- broken bonds of each own particle (never falls, but by set_bits). Local. */
+void bw_pd_bond_get_broken(const bw_pd_bond *pd, uint16_t broken[]);
+
 typedef struct {
   double kinetic, elastic;         /* [M L^2/T^2] present */
   double contact;                  /* elastic energy of contact, present */

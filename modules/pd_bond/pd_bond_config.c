@@ -140,6 +140,7 @@ void bw_pd_bond__constants(bw_pd_bond *pd)
     for (int k = 0; k < 3; k++)
       row[BW_PD_XI + k] = (bw_real)s->xi[3 * q + k];
     row[BW_PD_R0] = (bw_real)r0;
+    row[BW_PD_MINUS_R0] = (bw_real)-r0;
     row[BW_PD_STIFFNESS] = (bw_real)(factor[pd->config.surface_correction] * pd->c0 *
                                      s->fraction[q] * pd->dv / (pd->config.rho * r0));
     row[BW_PD_LIMIT2] = (bw_real)(limit * limit);

@@ -7,6 +7,10 @@
 
 #include <math.h>
 
+/* The sweeps are compiled once per geometry, correction and check: nothing of that is decided
+ * inside their loops. */
+#define INLINE static inline __attribute__((always_inline))
+
 typedef struct {
   const bw_pd_block *block;
   const bw_pd_slot *slot;
@@ -19,8 +23,8 @@ typedef struct {
 } bond;
 
 /* Present bond vectors of a slot, with the block's displacement uh. */
-static inline bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real *row,
-                           const vec uh[3], int dimension)
+INLINE bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real *row, const vec uh[3],
+                    int dimension)
 {
   bond x;
   for (int k = 0; k < dimension; k++)
@@ -32,22 +36,22 @@ static inline bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real
 }
 
 /* Force coefficient: acceleration = coefficient times bond vector. */
-static inline vec coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row, vec r2,
-                              vec wh, bw_pd_surface_correction surface)
+INLINE vec coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row, vec r2, vec wh,
+                       bw_pd_surface_correction surface)
 {
-  const vec k = vec_all(row[BW_PD_STIFFNESS]), r0 = vec_all(row[BW_PD_R0]);
+  const vec k = vec_all(row[BW_PD_STIFFNESS]), minus_r0 = vec_all(row[BW_PD_MINUS_R0]);
   if (surface == BW_PD_SURFACE_VOLUME) {
     const vec sum = wh + vec_load(s->w + slot->base), t = r2 * sum;
     const vec q = vec_rsqrt(t * sum);
-    return k * q * vec_fma(q, t, -r0);
+    return k * q * vec_fma(q, t, minus_r0);
   }
-  const vec q = vec_rsqrt(r2), c = k * vec_fnma(r0, q, vec_all(1));
+  const vec q = vec_rsqrt(r2), c = k * vec_fma(minus_r0, q, vec_all(1));
   return surface == BW_PD_SURFACE_NONE ? c : c * (wh + vec_load(s->w + slot->base));
 }
 
 /* Acceleration of one block's owners; returns whether a bond that holds is beyond s0. */
-static inline bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
-                               bw_pd_surface_correction surface, bool check)
+INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
+                        bw_pd_surface_correction surface, bool check)
 {
   vec uh[3], sum[3], wh = vec_load(s->w + block->first);
   lanes beyond = lanes_of(0);
@@ -72,9 +76,8 @@ static inline bool block_force(const sweep *s, const bw_pd_block *block, int dim
 }
 
 /* All blocks, or those of a list; returns how many were noted in hit. */
-static inline __attribute__((always_inline)) size_t
-sweep_blocks(const sweep *s, size_t n, const uint32_t list[], int dimension,
-             bw_pd_surface_correction surface, bool check, uint32_t hit[])
+INLINE size_t sweep_blocks(const sweep *s, size_t n, const uint32_t list[], int dimension,
+                           bw_pd_surface_correction surface, bool check, uint32_t hit[])
 {
   size_t n_hit = 0;
   for (size_t q = 0; q < n; q++) {

@@ -40,7 +40,8 @@ enum {
   BW_PD_R0 = 3,        /* |xi| */
   BW_PD_STIFFNESS = 4, /* c0 Gamma dV / (rho |xi|), times 2 (volume) or 1/2 (energy correction) */
   BW_PD_LIMIT2 = 5,    /* (|xi| (1 + s0))^2 */
-  BW_PD_WEIGHT = 6     /* Gamma dV */
+  BW_PD_WEIGHT = 6,    /* Gamma dV */
+  BW_PD_MINUS_R0 = 7   /* -|xi| */
 };
 
 typedef struct {
@@ -126,6 +127,7 @@ struct bw_pd_bond {
   int32_t *prescribed;  /* (n_prescribed) own particles */
   double *prescribed_v; /* (n_prescribed,3) */
   bool current;         /* copies and a are those of u, v */
+  bool loaded;          /* extra may differ from zero */
   bool restored;        /* a was given by set_restart */
   bw_pd_contact *contact;
 

@@ -76,5 +76,6 @@ bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const doub
   bw_pd_bond__refresh(pd, true);
   if (bw_pd_bond__damped(pd)) bw_pd_bond__damping(pd, 0, NULL); /* for the book only */
   pd->current = pd->restored = true;
+  pd->loaded = pd->config.contact || bw_pd_bond__damped(pd);
   return BW_OK;
 }

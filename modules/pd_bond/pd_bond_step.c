@@ -8,6 +8,7 @@
 #include "pd_bond_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 double bw_pd_bond_dt_max(const bw_pd_bond *pd)
 {
@@ -42,9 +43,10 @@ bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check)
   bw_pd_bond__refresh(pd, pd->damping_pair > 0 || pd->damping_mean > 0);
   bw_pd_bond__force(pd, 0, NULL, check);
   if (damped) bw_pd_bond__damping(pd, 0, NULL);
-  for (int k = 0; k < pd->dimension; k++)
-    for (size_t i = 0; i < pd->n; i++)
-      pd->extra[k][i] = 0;
+  if (pd->config.contact || damped || pd->loaded)
+    for (int k = 0; k < pd->dimension; k++)
+      memset(pd->extra[k], 0, pd->n * sizeof(bw_real));
+  pd->loaded = pd->config.contact || damped;
   if (pd->config.contact) {
     BW_TRY(bw_pd_bond__contact_update(pd));
     bw_pd_bond__contact_force(pd);
@@ -87,11 +89,11 @@ static void prescribed_work(bw_pd_bond *pd, double dt)
   pd->done_external += dt * pd->config.rho * pd->dv * power;
 }
 
-/* v += h (a + extra + f) for the free ones. The work of a force in a kick is its product with the
- * mean of the velocities before and after: the kinetic energy changes by exactly their sum. */
-static void kick(bw_pd_bond *pd, double h)
+/* v += h (a + extra + f) for the free ones; adds to work[]: external, damping. Without contact and
+ * damping (`loaded`) extra is not read. */
+static inline __attribute__((always_inline)) void kick_all(bw_pd_bond *pd, bw_real h, bool loaded,
+                                                           double work[2])
 {
-  const bool damped = bw_pd_bond__damped(pd);
   const bw_real *mobile = pd->mobile;
   double external = 0, damping = 0;
   for (int k = 0; k < pd->dimension; k++) {
@@ -99,15 +101,28 @@ static void kick(bw_pd_bond *pd, double h)
     const bw_real *a = pd->a[k], *extra = pd->extra[k], *f = pd->f[k], *damp = pd->damp[k];
 #pragma omp simd reduction(+ : external, damping)
     for (size_t i = 0; i < pd->n; i++) {
-      const bw_real before = v[i];
-      v[i] = before + mobile[i] * ((bw_real)h * (a[i] + extra[i] + f[i]));
+      const bw_real before = v[i], internal = loaded ? a[i] + extra[i] : a[i];
+      v[i] = before + mobile[i] * (h * (internal + f[i]));
       external += (double)(mobile[i] * f[i] * (before + v[i]));
-      damping -= (double)(damp[i] * (before + v[i]));
+      if (loaded) damping -= (double)(damp[i] * (before + v[i]));
     }
   }
+  work[0] = external;
+  work[1] = damping;
+}
+
+/* The work of a force in a kick is its product with the mean of the velocities before and after:
+ * the kinetic energy changes by exactly their sum. */
+static void kick(bw_pd_bond *pd, double h)
+{
+  double work[2];
+  if (pd->loaded)
+    kick_all(pd, (bw_real)h, true, work);
+  else
+    kick_all(pd, (bw_real)h, false, work);
   const double scale = 0.5 * h * pd->config.rho * pd->dv;
-  pd->done_external += scale * external;
-  if (damped) pd->done_damping += scale * damping;
+  pd->done_external += scale * work[0];
+  if (bw_pd_bond__damped(pd)) pd->done_damping += scale * work[1];
   if (pd->n_prescribed > 0) prescribed_work(pd, h);
 }
 

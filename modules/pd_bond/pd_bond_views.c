@@ -8,6 +8,8 @@ void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on)
 
 void bw_pd_bond_set_damping(bw_pd_bond *pd, double pair, double mean, double absolute)
 {
+  if (pd->damping_pair == pair && pd->damping_mean == mean && pd->damping_absolute == absolute)
+    return; /* forces, and those of a restart, stay valid */
   pd->damping_pair = pair;
   pd->damping_mean = mean;
   pd->damping_absolute = absolute;

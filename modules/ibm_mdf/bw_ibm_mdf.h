@@ -28,7 +28,9 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib); /* NULL is fine. Collective. */
 
 /* Replace the marker set: position X [L], velocity V of the boundary [L/T], volume dV [L^3]
  * (surface area per marker times the grid spacing). Copied. Markers outside the box in a
- * direction that is not periodic are left out and counted. Computes all weights. Collective. */
+ * direction that is not periodic are left out and counted; what a marker near such a side would
+ * spread beyond it is lost. Computes all weights; the force of the step is zero again.
+ * BW_EINPUT for values that are not finite and negative volumes, on all ranks. Collective. */
 bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], const double V[],
                                  const double dV[]) BW_MUST_CHECK;
 

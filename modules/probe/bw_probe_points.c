@@ -116,8 +116,11 @@ static bw_status avoid_obstacles(bw_probe *b, const double X[])
     if (b->length[i] > 0.0) send_tip(b, i, X + 3 * i, b->h);
   }
   BW_TRY(route(b));
-  for (size_t q = 0; q < b->held; q++)
-    b->reply[q].p.value = bw_probe__evaluate(b, b->obstacles, 3, b->received[q].tip).value;
+  for (size_t q = 0; q < b->held; q++) {
+    bw_probe__tip tip;
+    bw_probe__weigh(b, b->received[q].tip, &tip);
+    b->reply[q].p.value = bw_probe__evaluate(b, b->obstacles, 3, &tip).value;
+  }
   bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
   /* the first free tip of a point, the long one coming first */
   for (size_t i = 0, s = 0; i < b->n; i++) {

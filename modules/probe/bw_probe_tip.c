@@ -3,61 +3,80 @@
 
 #include <math.h>
 
-/* Weights of direction d; returns the lowest local node. The average over the stencil's four
- * edges along a direction of differences is the product of one slope and two means. */
-static int weights_of(const bw_probe *probe, const double x[3], int place, int d,
-                      bw_probe__weights *w)
+/* Weights of direction d. The average over the stencil's four edges along a direction of
+ * differences is the product of one slope and two means; both ends of a difference are a cell
+ * apart, so that the lower end's weights are the upper end's, one node on. */
+static void weights_of(const bw_probe *probe, const double x[3], int place, int d,
+                       bw_probe__weights *w)
 {
   const bw_grid_view *g = probe->g;
   const bw_kernel_delta *k = probe->kernel;
   const double h = g->spacing[d];
   const double local = fmin(fmax(x[d] / h - g->lo[d], 0.0), (double)g->m[d]);
   const double s = local + (place == PROBE_CENTRE ? 0.5 : 0.0);
+  const int highest = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
   int first = (int)floor(s - 0.5 - k->radius) + 1;
-  if (first > g->m[d] + g->halo[d] - PROBE_WIDTH + 1)
-    first = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
+  if (first > highest) first = highest;
+  double end[PROBE_WIDTH + 1];
+  for (int q = 0; q <= PROBE_WIDTH; q++)
+    end[q] = k->phi(s + 0.5 - (double)(first + q));
+  w->first = first;
   w->square = 0.0;
   for (int q = 0; q < PROBE_WIDTH; q++) {
-    const double r = s - (double)(first + q), above = k->phi(r + 0.5), below = k->phi(r - 0.5);
+    const double r = s - (double)(first + q);
     w->at[q] = k->phi(r);
-    w->mean[q] = 0.5 * (above + below);
-    w->slope[q] = (above - below) / h;
+    w->mean[q] = 0.5 * (end[q] + end[q + 1]);
+    w->slope[q] = (end[q] - end[q + 1]) / h;
     w->square += w->at[q] * r * r * h * h;
   }
-  return first;
 }
 
-static double dot(const double a[PROBE_WIDTH], const double b[PROBE_WIDTH])
+void bw_probe__weigh(const bw_probe *probe, const double x[3], bw_probe__tip *tip)
 {
-  return a[0] * b[0] + a[1] * b[1] + (a[2] * b[2] + a[3] * b[3]);
+  static const bw_probe__weights one_cell = {.first = 1, .at = {1.0}, .mean = {1.0}};
+  const int dims = probe->g->n[2] == 1 ? 2 : 3;
+  for (int place = 0; place < PROBE_PLACES; place++) {
+    for (int d = 0; d < dims; d++)
+      weights_of(probe, x, place, d, &tip->w[place][d]);
+    if (dims == 2) tip->w[place][2] = one_cell;
+  }
+}
+
+/* Four nodes of x at once. Explicit, because compilers give up on rows of four in nested loops. */
+typedef double row __attribute__((vector_size(PROBE_WIDTH * sizeof(double))));
+
+static inline row load(const bw_real *p)
+{
+  return (row){(double)p[0], (double)p[1], (double)p[2], (double)p[3]};
+}
+
+static double dot(row a, const double b[PROBE_WIDTH])
+{
+  return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
 }
 
 bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int component,
-                                    const double x[3])
+                                    const bw_probe__tip *tip)
 {
   const bw_grid_view *g = probe->g;
   const int depth = g->n[2] == 1 ? 1 : PROBE_WIDTH;
-  bw_probe__weights w[3] = {{.at = {0}}, {.at = {0}}, {.at = {1.0}, .mean = {1.0}}};
-  int first[3] = {1, 1, 1};
-  for (int d = 0; d < (depth == 1 ? 2 : 3); d++)
-    first[d] = weights_of(probe, x, d == component ? PROBE_FACE : PROBE_CENTRE, d, &w[d]);
+  const bw_probe__weights *w[3];
+  for (int d = 0; d < 3; d++)
+    w[d] = &tip->w[d == component ? PROBE_FACE : PROBE_CENTRE][d];
 
-  double sum[4][PROBE_WIDTH] = {{0.0}};
+  row at = {0}, dx = {0}, dy = {0}, dz = {0};
   for (int k = 0; k < depth; k++)
     for (int j = 0; j < PROBE_WIDTH; j++) {
-      const bw_real *row = f + bw_at(g, first[0], first[1] + j, first[2] + k);
-      const double factor[4] = {w[1].at[j] * w[2].at[k], w[1].mean[j] * w[2].mean[k],
-                                w[1].slope[j] * w[2].mean[k], w[1].mean[j] * w[2].slope[k]};
-      for (int q = 0; q < PROBE_WIDTH; q++)
-        for (int a = 0; a < 4; a++)
-          sum[a][q] += factor[a] * (double)row[q];
+      const row v = load(f + bw_at(g, w[0]->first, w[1]->first + j, w[2]->first + k));
+      at += w[1]->at[j] * w[2]->at[k] * v;
+      dx += w[1]->mean[j] * w[2]->mean[k] * v;
+      dy += w[1]->slope[j] * w[2]->mean[k] * v;
+      dz += w[1]->mean[j] * w[2]->slope[k] * v;
     }
-  bw_probe__sample s = {
-      .value = dot(sum[0], w[0].at),
-      .grad = {dot(sum[1], w[0].slope), dot(sum[2], w[0].mean), dot(sum[3], w[0].mean)}};
-  for (int d = 0; d < 3; d++)
-    s.square[d] = w[d].square;
-  return s;
+  return (bw_probe__sample){
+      .value = dot(at, w[0]->at),
+      .grad = {dot(dx, w[0]->slope), dot(dy, w[0]->mean), dot(dz, w[0]->mean)},
+      .square = {w[0]->square, w[1]->square, w[2]->square}};
 }
 
 /* First moments vanish, so of ((x - tip).n)^2 only the squares of each direction remain; its slope
@@ -75,10 +94,12 @@ static bw_probe__along along_normal(const bw_probe__sample *s, const double n[3]
 bw_probe__reply bw_probe__at_tip(const bw_probe *probe, bw_real *const u[3], const bw_real *p,
                                  const bw_probe__item *item)
 {
-  const bw_probe__sample s = bw_probe__evaluate(probe, p, 3, item->tip);
+  bw_probe__tip tip;
+  bw_probe__weigh(probe, item->tip, &tip);
+  const bw_probe__sample s = bw_probe__evaluate(probe, p, 3, &tip);
   bw_probe__reply r = {.p = along_normal(&s, item->normal)};
   for (int c = 0; c < 3 && u[c] != NULL; c++) {
-    const bw_probe__sample v = bw_probe__evaluate(probe, u[c], c, item->tip);
+    const bw_probe__sample v = bw_probe__evaluate(probe, u[c], c, &tip);
     r.u[c] = along_normal(&v, item->normal);
     for (int d = 0; d < 3; d++)
       r.gtn[d] += v.grad[d] * item->normal[c]; /* (du_c/dx_d) n_c */

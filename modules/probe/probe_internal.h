@@ -11,7 +11,12 @@ enum { PROBE_WIDTH = 4 };                        /* nodes per direction, padded 
 typedef struct {
   double at[PROBE_WIDTH], mean[PROBE_WIDTH], slope[PROBE_WIDTH]; /* slope [1/L] */
   double square;                                                 /* [L^2] */
+  int first;                                                     /* lowest local node */
 } bw_probe__weights;
+
+typedef struct {
+  bw_probe__weights w[PROBE_PLACES][3];
+} bw_probe__tip;
 
 /* A field and its gradient at a tip, and the second moment of each direction. */
 typedef struct {
@@ -59,10 +64,12 @@ struct bw_probe {
   bw_probe__reply *reply;   /* (held) */
 };
 
-/* f and grad f at the tip x, which lies in a cell of this rank. component 0..2: a velocity;
- * 3: a scalar. Pure. */
+/* The weights of a tip x, which lies in a cell of this rank. Pure. */
+void bw_probe__weigh(const bw_probe *probe, const double x[3], bw_probe__tip *tip);
+
+/* f and grad f at a tip. component 0..2: a velocity; 3: a scalar. Pure. */
 bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int component,
-                                    const double x[3]);
+                                    const bw_probe__tip *tip);
 
 /* Everything the surface needs from one tip. Pure. */
 bw_probe__reply bw_probe__at_tip(const bw_probe *probe, bw_real *const u[3], const bw_real *p,

@@ -15,7 +15,8 @@ enum { LINE = 64 / (int)sizeof(bw_real) };
 struct bw_poisson {
   bw_grid *grid;
   const bw_poisson__kind *kind[3];
-  bool singular, coupled; /* coupled: the lines in y need all ranks in y, or are cyclic */
+  bool singular, real_x; /* real_x: x-entries are no complex numbers */
+  bool coupled;          /* coupled: the lines in y need all ranks in y, or are cyclic */
   double removed_mean;
   bw_poisson__transform x, z[2]; /* z: of blocks of full width, of the last one */
   bw_transpose *transpose;
@@ -97,10 +98,9 @@ static bw_status plan_z(bw_poisson *p)
   if (n == 1 || blocks == 0) return BW_OK;
   const int wide = bw_transpose_columns(p->transpose, 0).width;
   const int narrow = bw_transpose_columns(p->transpose, blocks - 1).width;
-  const bool complex_numbers = p->kind[0]->periodic;
-  BW_TRY(bw_poisson__columns_along_z(p->kind[2], n, wide, complex_numbers, &p->z[0]));
+  BW_TRY(bw_poisson__columns_create(p->kind[2], n, wide, p->real_x, &p->z[0]));
   if (narrow == wide) return BW_OK;
-  return bw_poisson__columns_along_z(p->kind[2], n, narrow, complex_numbers, &p->z[1]);
+  return bw_poisson__columns_create(p->kind[2], n, narrow, p->real_x, &p->z[1]);
 }
 
 static size_t count_lines(const bw_poisson *p)
@@ -109,6 +109,18 @@ static size_t count_lines(const bw_poisson *p)
   for (int b = 0; b < bw_transpose_blocks(p->transpose); b++)
     n += (size_t)bw_transpose_columns(p->transpose, b).width;
   return n * (size_t)bw_grid_look(p->grid)->n[2];
+}
+
+static void fill_eigenvalues(bw_poisson *p, int columns)
+{
+  const bw_grid_view *v = bw_grid_look(p->grid);
+  for (int c = 0; c < columns; c++) {
+    const int entry = c < v->n[0] ? c : v->n[0] - 1; /* a zero behind the reals: any will do */
+    p->lambda_x[c] =
+        bw_poisson__eigenvalue(p->kind[0], v->n[0], v->spacing[0], p->real_x ? entry : c / 2);
+  }
+  for (int k = 0; v->n[2] > 1 && k < v->n[2]; k++)
+    p->lambda_z[k] = bw_poisson__eigenvalue(p->kind[2], v->n[2], v->spacing[2], k);
 }
 
 static bw_status build(bw_poisson *p, const bw_poisson_side side[3][2])
@@ -120,15 +132,13 @@ static bw_status build(bw_poisson *p, const bw_poisson_side side[3][2])
     for (int e = 0; e < 2; e++)
       p->singular = p->singular && side[d][e] != BW_POISSON_DIRICHLET;
   }
-  p->coupled = v->ranks[1] > 1 || p->kind[1]->periodic;
+  p->real_x = p->kind[0]->family != BW_POISSON__FOURIER;
+  p->coupled = v->ranks[1] > 1 || v->periodic[1];
   const int columns = bw_poisson__columns(p->kind[0], v->n[0]);
   BW_TRY(allocate(p, columns));
-  bw_poisson__eigenvalues_x(p->kind[0], v->n[0], v->spacing[0], p->lambda_x);
-  if (v->n[2] > 1)
-    bw_poisson__eigenvalues_z(p->kind[2], v->n[2], v->spacing[2], p->kind[0]->periodic,
-                              p->lambda_z);
+  fill_eigenvalues(p, columns);
   second_difference(v, side[1], p->lower, p->diagonal, p->upper);
-  return bw_poisson__rows(p->kind[0], v->n[0], &p->x);
+  return bw_poisson__rows_create(p->kind[0], v->n[0], &p->x);
 }
 
 bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2], bw_poisson **out)
@@ -142,11 +152,9 @@ bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2], bw_
     st = build(p, side);
   }
   st = bw_comm_agree(comm, st);
-  if (st == BW_OK) {
-    const bool periodic = p->kind[0]->periodic;
-    st = bw_transpose_create(grid, bw_poisson__columns(p->kind[0], bw_grid_look(grid)->n[0]),
-                             periodic ? 2 : 1, &p->transpose);
-  }
+  if (st == BW_OK)
+    st = bw_transpose_create(grid, bw_poisson__columns(p->kind[0], bw_grid_look(grid)->n[0]), 2,
+                             &p->transpose);
   BW_THEN(st, bw_tridiagonal_create(grid, count_lines(p), &p->tridiagonal));
   if (st == BW_OK) st = bw_comm_agree(comm, plan_z(p));
   if (st != BW_OK) bw_poisson_destroy(&p);
@@ -235,9 +243,9 @@ static void transform_z(const bw_poisson *p, const visit *b, bool forward)
   const bw_poisson__transform *z = &p->z[wide ? 0 : 1];
   for (int j = 0; j < v->m[1]; j++)
     if (forward)
-      bw_poisson__column_forward(z, b->at + j * b->plane);
+      bw_poisson__columns_forward(z, b->at + j * b->plane);
     else
-      bw_poisson__column_backward(z, b->at + j * b->plane);
+      bw_poisson__columns_backward(z, b->at + j * b->plane);
 }
 
 static double norm(const bw_poisson *p, int d)
@@ -262,9 +270,9 @@ static bw_tridiagonal_batch batch(const bw_poisson *p, const operator_ *op, cons
                                 .pitch = b->plane,
                                 .shift = shift,
                                 .scale = (bw_real)(1.0 / (norm(p, 0) * norm(p, 2))),
-                                .pinned = !mean_mode             ? 0
-                                          : p->kind[0]->periodic ? 2
-                                                                 : 1};
+                                .pinned = !mean_mode  ? 0
+                                          : p->real_x ? 1
+                                                      : 2};
 }
 
 /* The mean mode without the mean of f. */
@@ -349,7 +357,7 @@ static void set_operator(bw_poisson *p, const operator_ *op)
     p->operator_upper[j] = op->factor * p->upper[j];
   }
   bw_tridiagonal_set(p->tridiagonal, p->operator_lower, p->operator_diagonal, p->operator_upper,
-                     p->kind[1]->periodic);
+                     bw_grid_look(p->grid)->periodic[1]);
 }
 
 static void solve(bw_poisson *p, const operator_ *op, bw_real *phi)

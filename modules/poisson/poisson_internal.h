@@ -9,45 +9,78 @@
 #define BW_FFTW(name) fftw_##name
 #endif
 
+/* Plans are those FFTW chooses without measuring: the same bits in every run, which a measured
+ * choice is not, for 0 to 10 % of the time of a solve. */
+#define BW_POISSON__EFFORT ((unsigned)FFTW_ESTIMATE)
+
+typedef enum {
+  BW_POISSON__FOURIER,
+  BW_POISSON__COSINE, /* by a Fourier transform of the same length, poisson_cosine.c */
+  BW_POISSON__OTHER   /* by FFTW's own real transform */
+} bw_poisson__family;
+
 /* How the pair of conditions in x or z is diagonalised; a row of the table in
  * poisson_transform.c. */
 typedef struct {
   bw_poisson_side side[2];
-  bool periodic;
-  BW_FFTW(r2r_kind) forward, backward; /* unused where complex transforms serve */
-  int norm;                            /* backward(forward(f)) = norm n f */
-  double turns; /* lambda_k = -(2 sin(theta_k/2) / spacing)^2, theta_k = turns pi (k + offset)/n */
-  double offset;
+  bw_poisson__family family;
+  BW_FFTW(r2r_kind) real; /* OTHER: its own inverse */
+  bw_real odd;            /* COSINE: factor of every second value (-1 makes it a sine) */
+  int norm;               /* backward(forward(f)) = norm n f */
+  double turns, offset;   /* lambda_k = -(2 sin(theta_k/2) / spacing)^2 */
+  bool reversed;          /* theta_k = turns pi (q + offset)/n, q = k or n-1-k */
 } bw_poisson__kind;
 
 /* NULL when the pair is not in the table. */
 const bw_poisson__kind *bw_poisson__find(const bw_poisson_side side[2]);
 
-/* Transforms of one direction; plans for in-place or out-of-place rows, see the makers. */
+/* One direction, for arrays of one shape. */
 typedef struct {
+  const bw_poisson__kind *kind;
+  int n, width;  /* length; reals side by side (1 along x) */
+  bool separate; /* z, FOURIER: the pairs of reals are two columns, not a complex number */
   BW_FFTW(plan) forward, backward;
-  bool complex_numbers; /* forward/backward are r2c/c2r (rows) or c2c (columns) */
+  bw_real *twiddle; /* COSINE: cos, sin of pi k / 2n, k = 0..n/2 */
+  bw_real *work;    /* COSINE: one array of the shape, and a spectrum */
+  bw_real *spectrum;
 } bw_poisson__transform;
 
-/* Rows along x: n reals -> columns entries (2 (n/2+1), interleaved, when periodic; n else), out
- * of place between 64-byte aligned rows. Local. */
-bw_status bw_poisson__rows(const bw_poisson__kind *kind, int n, bw_poisson__transform *out);
+/* Rows along x: n reals to columns entries, out of place, 64-byte aligned rows. The columns are
+ * an even number: complex numbers, or reals with a zero behind them. Local. */
 int bw_poisson__columns(const bw_poisson__kind *kind, int n);
-
-/* Columns along z of an array [n][width], in place; `complex_numbers` when pairs of entries are
- * complex (x was periodic). Local. */
-bw_status bw_poisson__columns_along_z(const bw_poisson__kind *kind, int n, int width,
-                                      bool complex_numbers, bw_poisson__transform *out);
-
-void bw_poisson__transform_destroy(bw_poisson__transform *t);
+bw_status bw_poisson__rows_create(const bw_poisson__kind *kind, int n, bw_poisson__transform *t);
 void bw_poisson__row_forward(const bw_poisson__transform *t, bw_real *in, bw_real *out);
 void bw_poisson__row_backward(const bw_poisson__transform *t, bw_real *in, bw_real *out);
-void bw_poisson__column_forward(const bw_poisson__transform *t, bw_real *a);
-void bw_poisson__column_backward(const bw_poisson__transform *t, bw_real *a);
 
-/* Eigenvalues [1/L^2] of the second difference, in the order of the transform's output:
- * columns entries along x, n along z (half-complex order for a real periodic z). Local. */
-void bw_poisson__eigenvalues_x(const bw_poisson__kind *kind, int n, double spacing,
-                               double lambda[]);
-void bw_poisson__eigenvalues_z(const bw_poisson__kind *kind, int n, double spacing,
-                               bool complex_numbers, double lambda[]);
+/* Columns along z of an array [n][width], in place, width even; `separate` when x gave real
+ * entries. Local. */
+bw_status bw_poisson__columns_create(const bw_poisson__kind *kind, int n, int width, bool separate,
+                                     bw_poisson__transform *t);
+void bw_poisson__columns_forward(const bw_poisson__transform *t, bw_real *a);
+void bw_poisson__columns_backward(const bw_poisson__transform *t, bw_real *a);
+
+void bw_poisson__transform_destroy(bw_poisson__transform *t);
+
+/* Eigenvalue [1/L^2] of the second difference for entry k of a transform's output: q-th complex
+ * number (either part) or k-th real. Along z two separate columns hold, at rows k and n-k, real
+ * and imaginary parts: their eigenvalues are equal, so k is right for all. */
+double bw_poisson__eigenvalue(const bw_poisson__kind *kind, int n, double spacing, int k);
+
+/* The cosine transforms around a Fourier transform, see poisson_cosine.c. */
+bw_status bw_poisson__twiddle(int n, bw_real **out);
+void bw_poisson__cosine_row_in(int n, bw_real odd, const bw_real *restrict row,
+                               bw_real *restrict v);
+void bw_poisson__cosine_row_combine(int n, const bw_real *restrict twiddle,
+                                    const bw_real *restrict spectrum, bw_real *restrict out);
+void bw_poisson__cosine_row_split(int n, const bw_real *restrict twiddle,
+                                  const bw_real *restrict in, bw_real *restrict spectrum);
+void bw_poisson__cosine_row_out(int n, bw_real odd, const bw_real *restrict v,
+                                bw_real *restrict row);
+void bw_poisson__cosine_columns_in(int n, int width, bw_real odd, const bw_real *restrict a,
+                                   bw_real *restrict v);
+void bw_poisson__cosine_columns_combine(int n, int width, const bw_real *restrict twiddle,
+                                        const bw_real *restrict v, bw_real *restrict a);
+void bw_poisson__cosine_columns_split(int n, int width, const bw_real *restrict twiddle,
+                                      const bw_real *restrict a, bw_real *restrict v);
+void bw_poisson__cosine_columns_out(int n, int width, bw_real odd, const bw_real *restrict v,
+                                    bw_real *restrict a);

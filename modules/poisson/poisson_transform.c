@@ -3,9 +3,9 @@
  *
  * With ghosts phi_0 = +phi_1 (Neumann) or -phi_1 (Dirichlet) the eigenvectors are samples, at the
  * centres i - 1/2, of cos(theta (i-1/2)) or sin(theta (i-1/2)) whose continuation has the same
- * symmetry about the upper face n + 1/2, hence theta = pi (k + offset)/n with offset 0 (N-N:
+ * symmetry about the upper face n + 1/2, hence theta = pi (q + offset)/n with offset 0 (N-N:
  * cosine, DCT-II), 1 (D-D: sine, DST-II), 1/2 (N-D: cosine, DCT-IV; D-N: sine, DST-IV); periodic
- * ones are exp(i theta j), theta = 2 pi k/n. Always lambda = (2 cos theta - 2)/h^2. */
+ * ones are exp(i theta j), theta = 2 pi q/n. Always lambda = (2 cos theta - 2)/h^2. */
 #include "bw_memory.h"
 #include "poisson_internal.h"
 
@@ -17,11 +17,11 @@
 #define D  BW_POISSON_DIRICHLET
 
 static const bw_poisson__kind kinds[] = {
-    {{P, P}, true, FFTW_R2HC, FFTW_HC2R, 1, 2.0, 0.0},
-    {{N, N}, false, FFTW_REDFT10, FFTW_REDFT01, 2, 1.0, 0.0},
-    {{D, D}, false, FFTW_RODFT10, FFTW_RODFT01, 2, 1.0, 1.0},
-    {{N, D}, false, FFTW_REDFT11, FFTW_REDFT11, 2, 1.0, 0.5},
-    {{D, N}, false, FFTW_RODFT11, FFTW_RODFT11, 2, 1.0, 0.5},
+    {{P, P}, BW_POISSON__FOURIER, FFTW_R2HC, 1, 1, 2.0, 0.0, false},
+    {{N, N}, BW_POISSON__COSINE, FFTW_REDFT10, 1, 2, 1.0, 0.0, false},
+    {{D, D}, BW_POISSON__COSINE, FFTW_RODFT10, -1, 2, 1.0, 1.0, true},
+    {{N, D}, BW_POISSON__OTHER, FFTW_REDFT11, 1, 2, 1.0, 0.5, false},
+    {{D, N}, BW_POISSON__OTHER, FFTW_RODFT11, 1, 2, 1.0, 0.5, false},
 };
 #undef P
 #undef N
@@ -34,62 +34,11 @@ const bw_poisson__kind *bw_poisson__find(const bw_poisson_side side[2])
   return NULL;
 }
 
-int bw_poisson__columns(const bw_poisson__kind *kind, int n)
+double bw_poisson__eigenvalue(const bw_poisson__kind *kind, int n, double spacing, int k)
 {
-  return kind->periodic ? 2 * (n / 2 + 1) : n;
-}
-
-static bw_status made(const bw_poisson__transform *t, const char *axis, int n)
-{
-  BW_REQUIRE(t->forward != NULL && t->backward != NULL, BW_EMEM,
-             "poisson: FFTW made no plan for %d cells in %s", n, axis);
-  return BW_OK;
-}
-
-bw_status bw_poisson__rows(const bw_poisson__kind *kind, int n, bw_poisson__transform *out)
-{
-  bw_real *a = NULL, *b = NULL;
-  bw_status st = BW_ALLOCATE(&a, (size_t)n);
-  BW_THEN(st, BW_ALLOCATE(&b, (size_t)bw_poisson__columns(kind, n)));
-  if (st == BW_OK) {
-    BW_FFTW(complex) *spectrum = (BW_FFTW(complex) *)b;
-    out->complex_numbers = kind->periodic;
-    out->forward = kind->periodic ? BW_FFTW(plan_dft_r2c_1d)(n, a, spectrum, FFTW_MEASURE)
-                                  : BW_FFTW(plan_r2r_1d)(n, a, b, kind->forward, FFTW_MEASURE);
-    out->backward = kind->periodic ? BW_FFTW(plan_dft_c2r_1d)(n, spectrum, a, FFTW_MEASURE)
-                                   : BW_FFTW(plan_r2r_1d)(n, b, a, kind->backward, FFTW_MEASURE);
-    st = made(out, "x", n);
-  }
-  bw_release(&a);
-  bw_release(&b);
-  return st;
-}
-
-bw_status bw_poisson__columns_along_z(const bw_poisson__kind *kind, int n, int width,
-                                      bool complex_numbers, bw_poisson__transform *out)
-{
-  bw_real *a = NULL;
-  bw_status st = BW_ALLOCATE(&a, (size_t)n * (size_t)width);
-  /* Rows of a narrow block start anywhere. */
-  const unsigned flags =
-      FFTW_MEASURE | ((size_t)width * sizeof *a % 64 == 0 ? 0u : (unsigned)FFTW_UNALIGNED);
-  out->complex_numbers = complex_numbers && kind->periodic;
-  if (st == BW_OK && out->complex_numbers) {
-    BW_FFTW(complex) *z = (BW_FFTW(complex) *)a;
-    const int pairs = width / 2;
-    out->forward = BW_FFTW(plan_many_dft)(1, &n, pairs, z, NULL, pairs, 1, z, NULL, pairs, 1,
-                                          FFTW_FORWARD, flags);
-    out->backward = BW_FFTW(plan_many_dft)(1, &n, pairs, z, NULL, pairs, 1, z, NULL, pairs, 1,
-                                           FFTW_BACKWARD, flags);
-  } else if (st == BW_OK) {
-    out->forward = BW_FFTW(plan_many_r2r)(1, &n, width, a, NULL, width, 1, a, NULL, width, 1,
-                                          &kind->forward, flags);
-    out->backward = BW_FFTW(plan_many_r2r)(1, &n, width, a, NULL, width, 1, a, NULL, width, 1,
-                                           &kind->backward, flags);
-  }
-  BW_THEN(st, made(out, "z", n));
-  bw_release(&a);
-  return st;
+  const int q = kind->reversed ? n - 1 - k : k;
+  const double s = 2.0 * sin(0.5 * kind->turns * PI * (q + kind->offset) / n) / spacing;
+  return -s * s;
 }
 
 void bw_poisson__transform_destroy(bw_poisson__transform *t)
@@ -97,60 +46,168 @@ void bw_poisson__transform_destroy(bw_poisson__transform *t)
   if (t->forward != NULL) BW_FFTW(destroy_plan)(t->forward);
   if (t->backward != NULL) BW_FFTW(destroy_plan)(t->backward);
   t->forward = t->backward = NULL;
+  bw_release(&t->twiddle);
+  bw_release(&t->work);
+  bw_release(&t->spectrum);
+}
+
+static bw_status made(const bw_poisson__transform *t, const char *axis)
+{
+  BW_REQUIRE(t->forward != NULL && t->backward != NULL, BW_EMEM,
+             "poisson: FFTW made no plan for %d cells in %s", t->n, axis);
+  return BW_OK;
+}
+
+/* ---- rows along x ---- */
+
+int bw_poisson__columns(const bw_poisson__kind *kind, int n)
+{
+  return kind->family == BW_POISSON__FOURIER ? 2 * (n / 2 + 1) : (n + 1) / 2 * 2;
+}
+
+bw_status bw_poisson__rows_create(const bw_poisson__kind *kind, int n, bw_poisson__transform *t)
+{
+  t->kind = kind;
+  t->n = n;
+  t->width = 1;
+  BW_TRY(BW_ALLOCATE(&t->work, (size_t)n));
+  BW_TRY(BW_ALLOCATE(&t->spectrum, (size_t)n + 2));
+  BW_TRY(bw_poisson__twiddle(n, &t->twiddle));
+  BW_FFTW(complex) *spectrum = (BW_FFTW(complex) *)t->spectrum;
+  if (kind->family == BW_POISSON__OTHER) {
+    t->forward = BW_FFTW(plan_r2r_1d)(n, t->work, t->spectrum, kind->real, BW_POISSON__EFFORT);
+    t->backward = BW_FFTW(plan_r2r_1d)(n, t->spectrum, t->work, kind->real, BW_POISSON__EFFORT);
+  } else {
+    t->forward = BW_FFTW(plan_dft_r2c_1d)(n, t->work, spectrum, BW_POISSON__EFFORT);
+    t->backward = BW_FFTW(plan_dft_c2r_1d)(n, spectrum, t->work, BW_POISSON__EFFORT);
+  }
+  return made(t, "x");
 }
 
 void bw_poisson__row_forward(const bw_poisson__transform *t, bw_real *in, bw_real *out)
 {
-  if (t->complex_numbers)
+  switch (t->kind->family) {
+  case BW_POISSON__FOURIER:
     BW_FFTW(execute_dft_r2c)(t->forward, in, (BW_FFTW(complex) *)out);
-  else
+    return;
+  case BW_POISSON__COSINE:
+    bw_poisson__cosine_row_in(t->n, t->kind->odd, in, t->work);
+    BW_FFTW(execute)(t->forward);
+    bw_poisson__cosine_row_combine(t->n, t->twiddle, t->spectrum, out);
+    break;
+  case BW_POISSON__OTHER:
     BW_FFTW(execute_r2r)(t->forward, in, out);
+    break;
+  }
+  if (t->n % 2 == 1) out[t->n] = 0;
 }
 
 void bw_poisson__row_backward(const bw_poisson__transform *t, bw_real *in, bw_real *out)
 {
-  if (t->complex_numbers)
+  switch (t->kind->family) {
+  case BW_POISSON__FOURIER:
     BW_FFTW(execute_dft_c2r)(t->backward, (BW_FFTW(complex) *)in, out);
-  else
+    break;
+  case BW_POISSON__COSINE:
+    bw_poisson__cosine_row_split(t->n, t->twiddle, in, t->spectrum);
+    BW_FFTW(execute)(t->backward);
+    bw_poisson__cosine_row_out(t->n, t->kind->odd, t->work, out);
+    break;
+  case BW_POISSON__OTHER:
     BW_FFTW(execute_r2r)(t->backward, in, out);
+    break;
+  }
 }
 
-static void column(const bw_poisson__transform *t, BW_FFTW(plan) plan, bw_real *a)
+/* ---- columns along z ---- */
+
+bw_status bw_poisson__columns_create(const bw_poisson__kind *kind, int n, int width, bool separate,
+                                     bw_poisson__transform *t)
 {
-  if (t->complex_numbers)
-    BW_FFTW(execute_dft)(plan, (BW_FFTW(complex) *)a, (BW_FFTW(complex) *)a);
-  else
+  const int pairs = width / 2;
+  t->kind = kind;
+  t->n = n;
+  t->width = width;
+  t->separate = separate && kind->family == BW_POISSON__FOURIER;
+  BW_TRY(BW_ALLOCATE(&t->work, (size_t)n * (size_t)width));
+  BW_TRY(bw_poisson__twiddle(n, &t->twiddle));
+  /* Rows of a narrow block start anywhere; those of `work` and of full blocks do not. */
+  const bool aligned =
+      (size_t)width * sizeof(bw_real) % 64 == 0 || kind->family == BW_POISSON__COSINE;
+  const unsigned flags = BW_POISSON__EFFORT | (aligned ? 0u : (unsigned)FFTW_UNALIGNED);
+  BW_FFTW(complex) *z = (BW_FFTW(complex) *)t->work;
+  if (kind->family == BW_POISSON__OTHER) {
+    t->forward = BW_FFTW(plan_many_r2r)(1, &n, width, t->work, NULL, width, 1, t->work, NULL, width,
+                                        1, &kind->real, flags);
+    t->backward = BW_FFTW(plan_many_r2r)(1, &n, width, t->work, NULL, width, 1, t->work, NULL,
+                                         width, 1, &kind->real, flags);
+  } else {
+    t->forward = BW_FFTW(plan_many_dft)(1, &n, pairs, z, NULL, pairs, 1, z, NULL, pairs, 1,
+                                        FFTW_FORWARD, flags);
+    t->backward = BW_FFTW(plan_many_dft)(1, &n, pairs, z, NULL, pairs, 1, z, NULL, pairs, 1,
+                                         FFTW_BACKWARD, flags);
+  }
+  return made(t, "z");
+}
+
+/* Two real columns went through as one complex number: Z = A + i B. Rows k and n-k become real
+ * and imaginary parts of A_k and of B_k, each in its own column. */
+static void take_apart(int n, int width, bw_real *restrict a)
+{
+  for (int k = 1; k < (n + 1) / 2; k++) {
+    bw_real *x = a + (ptrdiff_t)k * width, *y = a + (ptrdiff_t)(n - k) * width;
+#pragma omp simd
+    for (int q = 0; q < width; q += 2) {
+      const bw_real x_re = x[q], x_im = x[q + 1], y_re = y[q], y_im = y[q + 1];
+      x[q] = (bw_real)0.5 * (x_re + y_re);
+      x[q + 1] = (bw_real)0.5 * (x_im + y_im);
+      y[q] = (bw_real)0.5 * (x_im - y_im);
+      y[q + 1] = (bw_real)0.5 * (y_re - x_re);
+    }
+  }
+}
+
+static void put_together(int n, int width, bw_real *restrict a)
+{
+  for (int k = 1; k < (n + 1) / 2; k++) {
+    bw_real *x = a + (ptrdiff_t)k * width, *y = a + (ptrdiff_t)(n - k) * width;
+#pragma omp simd
+    for (int q = 0; q < width; q += 2) {
+      const bw_real a_re = x[q], b_re = x[q + 1], a_im = y[q], b_im = y[q + 1];
+      x[q] = a_re - b_im;
+      x[q + 1] = a_im + b_re;
+      y[q] = a_re + b_im;
+      y[q + 1] = b_re - a_im;
+    }
+  }
+}
+
+static void run(const bw_poisson__transform *t, BW_FFTW(plan) plan, bw_real *a)
+{
+  if (t->kind->family == BW_POISSON__OTHER)
     BW_FFTW(execute_r2r)(plan, a, a);
+  else
+    BW_FFTW(execute_dft)(plan, (BW_FFTW(complex) *)a, (BW_FFTW(complex) *)a);
 }
 
-void bw_poisson__column_forward(const bw_poisson__transform *t, bw_real *a)
+void bw_poisson__columns_forward(const bw_poisson__transform *t, bw_real *a)
 {
-  column(t, t->forward, a);
+  if (t->kind->family == BW_POISSON__COSINE) {
+    bw_poisson__cosine_columns_in(t->n, t->width, t->kind->odd, a, t->work);
+    run(t, t->forward, t->work);
+    bw_poisson__cosine_columns_combine(t->n, t->width, t->twiddle, t->work, a);
+  } else
+    run(t, t->forward, a);
+  if (t->separate) take_apart(t->n, t->width, a);
 }
 
-void bw_poisson__column_backward(const bw_poisson__transform *t, bw_real *a)
+void bw_poisson__columns_backward(const bw_poisson__transform *t, bw_real *a)
 {
-  column(t, t->backward, a);
-}
-
-static double eigenvalue(const bw_poisson__kind *kind, int n, double spacing, int k)
-{
-  const double s = 2.0 * sin(0.5 * kind->turns * PI * (k + kind->offset) / n) / spacing;
-  return -s * s;
-}
-
-void bw_poisson__eigenvalues_x(const bw_poisson__kind *kind, int n, double spacing, double lambda[])
-{
-  const int columns = bw_poisson__columns(kind, n);
-  for (int c = 0; c < columns; c++) /* periodic: real and imaginary part share one */
-    lambda[c] = eigenvalue(kind, n, spacing, kind->periodic ? c / 2 : c);
-}
-
-void bw_poisson__eigenvalues_z(const bw_poisson__kind *kind, int n, double spacing,
-                               bool complex_numbers, double lambda[])
-{
-  (void)complex_numbers; /* c2c order k = 0..n-1 and half-complex order r0 .. r_n/2 .. i1 both
-                            have wavenumber k or n - k at entry k: the same sine squared */
-  for (int k = 0; k < n; k++)
-    lambda[k] = eigenvalue(kind, n, spacing, k);
+  if (t->separate) put_together(t->n, t->width, a);
+  if (t->kind->family == BW_POISSON__COSINE) {
+    bw_poisson__cosine_columns_split(t->n, t->width, t->twiddle, a, t->work);
+    run(t, t->backward, t->work);
+    bw_poisson__cosine_columns_out(t->n, t->width, t->kind->odd, t->work, a);
+  } else
+    run(t, t->backward, a);
 }

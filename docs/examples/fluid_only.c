@@ -29,7 +29,6 @@ static bw_status simulate(const bw_comm *world, bw_grid **grid, bw_ns_channel **
     flow.side[0][s].kind = flow.side[2][s].kind = BW_SIDE_PERIODIC;
   BW_TRY(bw_grid_create(world, &box, grid));
   BW_TRY(bw_ns_channel_create(*grid, &flow, fluid));
-
   const bw_grid_view *g = bw_grid_look(*grid);
   const int centre = 17 - g->lo[1]; /* local number of the row in the middle */
   for (int sample = 1; sample <= 5; sample++) {

@@ -3,53 +3,55 @@
 #include <math.h>
 #include <string.h>
 
-/* Reflect xi (from h, in the reference shape) in the walls it crosses: `crossed` tells in which
- * directions, plane[d] where. False when it crosses none. */
+/* Reflect xi (from X0, in the reference shape) in the walls it crosses, coded in *cross as in
+ * bw_pd_interface__near. False when it crosses none. */
 static bool reflect(const bw_pd_interface *pi, const double X0[3], const double xi[3],
-                    double image[3], bool crossed[3], double plane[3])
+                    double image[3], uint8_t *cross)
 {
   const bw_pd_interface_config *c = &pi->config;
   const double tie = 1e-6 * pi->stencil.ds; /* a partner on the plane itself is inside */
-  bool any = false;
+  *cross = 0;
   for (int d = 0; d < 3; d++) {
     const double x = X0[d] + xi[d];
     const bool low = c->walled[d][0] && x < c->lower[d] - tie;
     const bool high = c->walled[d][1] && x > c->upper[d] + tie;
-    crossed[d] = low || high;
-    plane[d] = low ? c->lower[d] : c->upper[d];
-    image[d] = crossed[d] ? 2.0 * (plane[d] - X0[d]) - xi[d] : xi[d];
-    any = any || crossed[d];
+    image[d] = xi[d];
+    if (low) image[d] = 2.0 * (c->lower[d] - X0[d]) - xi[d];
+    if (high) image[d] = 2.0 * (c->upper[d] - X0[d]) - xi[d];
+    *cross = (uint8_t)(*cross | (low ? 1u : high ? 2u : 0u) << (2 * d));
   }
-  return any;
+  return *cross != 0;
 }
 
 /* Directions across a wall: what the wall mirrors is there, at the mirrored place; only a broken
  * bond across it counts as it is. Images read directions inside, which stay as they are. */
-static void fill_images(bw_pd_interface *pi, const double X0[3], const double Xh[3])
+static void fill_images(bw_pd_interface *pi, size_t h)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
+  const double *X0 = &pi->X0[3 * h];
   for (int q = 0; q < s->slots; q++) {
-    double image[3], plane[3], nothing[3], more[3];
-    bool crossed[3], again[3];
-    const double *xi = &s->xi[3 * q];
+    double image[3], nothing[3];
+    uint8_t cross, again;
     if (pi->state[q] == BW_PD_INTERFACE__BROKEN) continue;
-    if (!reflect(pi, X0, xi, image, crossed, plane)) continue;
+    if (!reflect(pi, X0, &s->xi[3 * q], image, &cross)) continue;
     const double still = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
     const bool itself = still < 0.25 * s->ds;
     const int m = itself ? -2 : bw_pd_interface__slot_of(s, image);
-    const bool trapped = reflect(pi, X0, image, nothing, again, more);
-    double *place = &pi->place[3 * q];
-    if (itself || (m >= 0 && !trapped)) {
-      pi->state[q] = itself ? BW_PD_INTERFACE__INTACT : pi->state[m];
-      for (int d = 0; d < 3; d++) {
-        const double there = itself ? 0.0 : pi->place[3 * m + d];
-        place[d] = crossed[d] ? 2.0 * (plane[d] - Xh[d]) - there : there;
-      }
+    const bool trapped = reflect(pi, X0, image, nothing, &again);
+    bw_pd_interface__near *near = &pi->near[q];
+    near->slot = (int16_t)q;
+    near->cross = cross;
+    if (itself) {
+      pi->state[q] = BW_PD_INTERFACE__INTACT;
+      near->partner = (int32_t)h;
+    } else if (m >= 0 && !trapped) {
+      pi->state[q] = pi->state[m];
+      near->partner = pi->near[m].partner;
     } else if (m == -1 && !trapped) {
       pi->state[q] = BW_PD_INTERFACE__ABSENT;
     } else { /* no mirror on this lattice (or between two walls): the wall counts as solid */
       pi->state[q] = BW_PD_INTERFACE__INTACT;
-      memcpy(place, xi, 3 * sizeof *place);
+      near->partner = -1;
     }
   }
 }
@@ -66,54 +68,100 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_re
   return off;
 }
 
-void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, const bw_real *X)
+void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  const double *X0 = &pi->X0[3 * h];
-  double Xh[3];
-  for (int d = 0; d < 3; d++)
-    Xh[d] = X == NULL ? X0[d] : (double)X[3 * h + (size_t)d];
   memset(pi->state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
   const int family = bw_pd_bond_links(pi->pd, h, pi->link);
   for (int q = 0; q < family; q++) {
     const bw_pd_bond_link *l = &pi->link[q];
-    const size_t at = 3 * (size_t)l->neighbour;
-    double *place = &pi->place[3 * l->slot];
-    pi->state[l->slot] = l->intact || X == NULL ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
-    for (int d = 0; d < 3; d++)
-      place[d] = X == NULL ? s->xi[3 * l->slot + d] : (double)X[at + (size_t)d] - Xh[d];
+    const bool intact = l->intact || reference;
+    pi->state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
+    pi->near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
   }
-  if (pi->leans[h] && (X == NULL || !bw_pd_interface__moved_off(pi, h, X))) fill_images(pi, X0, Xh);
+  if (pi->leans[h] && (reference || !pi->off[h])) fill_images(pi, h);
+}
+
+/* Position of a partner relative to h, which is at Xh. */
+static void locate_one(const bw_pd_interface *pi, const double Xh[3], const bw_real *X,
+                       const bw_pd_interface__near *near, double x[3])
+{
+  for (size_t d = 0; d < 3; d++) {
+    if (X == NULL || near->partner < 0) {
+      x[d] = pi->stencil.xi[3 * near->slot + (int)d];
+      continue;
+    }
+    const unsigned wall = (unsigned)near->cross >> (2 * d) & 3u;
+    const double there = (double)X[3 * (size_t)near->partner + d];
+    const double plane = wall == 1u ? pi->config.lower[d] : pi->config.upper[d];
+    x[d] = (wall == 0u ? there : 2.0 * plane - there) - Xh[d];
+  }
+}
+
+static void position_of(const bw_pd_interface *pi, size_t h, const bw_real *X, double Xh[3])
+{
+  for (size_t d = 0; d < 3; d++)
+    Xh[d] = X == NULL ? pi->X0[3 * h + d] : (double)X[3 * h + d];
+}
+
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_real *X)
+{
+  double Xh[3];
+  position_of(pi, h, X, Xh);
+  for (int q = 0; q < pi->stencil.slots; q++)
+    if (pi->state[q] != BW_PD_INTERFACE__ABSENT)
+      locate_one(pi, Xh, X, &pi->near[q], &pi->place[3 * q]);
+}
+
+void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never)
+{
+  const bw_pd_interface__stencil *s = &pi->stencil;
+  uint32_t held = 0, known = 0;
+  for (int q = 0; q < s->slots; q++) {
+    if (pi->state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
+    if (pi->state[q] != BW_PD_INTERFACE__ABSENT) known |= s->sector_of[q];
+  }
+  const uint32_t all = (1u << (unsigned)s->sectors) - 1u; /* at most 24 */
+  *not_held = all & ~held;
+  *never = all & ~known;
 }
 
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   double sum[BW_PD_INTERFACE__SECTORS] = {0.0}, broken[BW_PD_INTERFACE__SECTORS] = {0.0};
-  uint32_t held = 0, empty = 0;
+  uint32_t empty, never;
+  bw_pd_interface__bare_sectors(pi, &empty, &never);
   for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
-    if (pi->state[q] != BW_PD_INTERFACE__BROKEN) continue;
+    if (pi->state[q] != BW_PD_INTERFACE__BROKEN || (s->sector_of[q] & empty) == 0) continue;
     const double *x = &pi->place[3 * q];
     const double distance = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     for (int k = 0; k < s->sectors; k++)
       if (s->sector_of[q] >> (unsigned)k & 1u) sum[k] += distance, broken[k] += 1.0;
   }
-  for (int k = 0; k < s->sectors; k++) /* 3.42; nothing broken there: nothing ever was there */
-    if (!(held >> (unsigned)k & 1u) && (broken[k] == 0.0 || sum[k] > pi->opening * broken[k]))
-      empty |= 1u << (unsigned)k;
+  for (int k = 0; k < s->sectors; k++) /* 3.42 */
+    if (broken[k] > 0.0 && !(sum[k] > pi->opening * broken[k])) empty &= ~(1u << (unsigned)k);
   return empty;
 }
 
-bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3])
+bool bw_pd_interface__normal(const bw_pd_interface *pi, size_t h, const bw_real *X, size_t count,
+                             const bw_pd_interface__near partner[], double n[3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
-  for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+  double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0, Xh[3], x[3];
+  position_of(pi, h, X, Xh);
+  for (size_t q = 0; q < count; q++) {
+    const double fraction = s->fraction[partner[q].slot];
+    if (X != NULL && partner[q].cross == 0) { /* nearly all; images and the reference: below */
+      const bw_real *there = &X[3 * (size_t)partner[q].partner];
+      x[0] = (double)there[0] - Xh[0], x[1] = (double)there[1] - Xh[1];
+      x[2] = (double)there[2] - Xh[2];
+    } else {
+      locate_one(pi, Xh, X, &partner[q], x);
+    }
     for (int d = 0; d < 3; d++)
-      mean[d] += s->fraction[q] * pi->place[3 * q + d];
-    weight += s->fraction[q];
+      mean[d] += fraction * x[d];
+    weight += fraction;
   }
   const double length = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
   /* A face has about ds here, a sheet of two layers ds/2; below ds/50 it is chance. */
@@ -121,6 +169,14 @@ bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3])
   for (int d = 0; d < 3; d++)
     n[d] = -mean[d] / length;
   return true;
+}
+
+bool bw_pd_interface__normal_of(bw_pd_interface *pi, size_t h, const bw_real *X, double n[3])
+{
+  size_t count = 0;
+  for (int q = 0; q < pi->stencil.slots; q++)
+    if (pi->state[q] == BW_PD_INTERFACE__INTACT) pi->present[count++] = pi->near[q];
+  return bw_pd_interface__normal(pi, h, X, count, pi->present, n);
 }
 
 /* |n.e| of the open face half a step along e: n from the centroid of the solid in a ball

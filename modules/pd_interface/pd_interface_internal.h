@@ -30,49 +30,84 @@ uint32_t bw_pd_interface__group(const bw_pd_interface__stencil *s, uint32_t empt
 /* Is there a set of n_empty neighbouring sectors in the bits of `empty`? Local. */
 bool bw_pd_interface__is_open(const bw_pd_interface__stencil *s, uint32_t empty, int n_empty);
 
+/* A present partner: `partner` is its index in the extended arrays (-1: it stands at xi). `cross`
+ * has two bits per direction: 1, 2 when it is its image in the lower, upper wall. */
+typedef struct {
+  int32_t partner;
+  int16_t slot;
+  uint8_t cross;
+} bw_pd_interface__near;
+
 struct bw_pd_interface {
   bw_pd_bond *pd; /* borrowed */
   bw_pd_interface_config config;
   bw_pd_interface__stencil stencil;
-  size_t n;           /* own particles */
-  double opening;     /* mean distance that opens a sector [L] */
-  double area_total;  /* of the reference shape [L^2] */
-  double area_new;    /* of a crack face, one side of a particle [L^2] */
-  double *area_first; /* (n) of those that are surface in the reference shape [L^2] */
-  int64_t events;     /* of pd when `damaged` was made */
-  bool *surface;      /* (n) now */
-  bool *first;        /* (n) in the reference shape */
-  bool *outside;      /* (n) beyond a wall: never surface */
-  int32_t *damaged;   /* (n_damaged) own particles with broken bonds */
-  int32_t *leaning;   /* (n_leaning) own particles whose family reaches beyond a wall */
-  size_t n_damaged, n_leaning;
-  bool *leans;           /* (n) is it in `leaning`? */
-  bool *off;             /* (n) it leans no more: has moved from the wall */
-  double *X0;            /* (n,3) */
-  double *normal;        /* (n,3) last unit normal of those that are or were surface; else 0 */
-  bw_pd_bond_link *link; /* (slots) scratch */
-  uint8_t *state;        /* (slots) scratch, enum below */
-  double *place;         /* (slots,3) scratch: partner's position relative to the particle */
-  int32_t *list;         /* (n_list) the surface, and its rows: (.,3) but area */
+  size_t n, n_extended; /* own particles; own and copies */
+  double opening;       /* mean distance that opens a sector [L] */
+  double area_total;    /* of the reference shape [L^2] */
+  double area_new;      /* of a crack face, one side of a particle [L^2] */
+  double *area_first;   /* (n) of those that are surface in the reference shape [L^2] */
+  bool *surface;        /* (n) now */
+  bool *first;          /* (n) in the reference shape */
+  double *X0;           /* (n,3) */
+  double *normal;       /* (n,3) last unit normal of those that are or were surface; else 0 */
+
+  bool *outside;    /* (n) beyond a wall: never surface */
+  bool *leans;      /* (n) its family reaches beyond a wall */
+  bool *off;        /* (n) it leans no more: has moved from the wall */
+  int32_t *leaning; /* (n_leaning) those that lean */
+  size_t n_leaning;
+
+  int64_t events;   /* of pd when `broken` was read */
+  uint16_t *broken; /* (n) broken bonds */
+  uint16_t *fresh;  /* (n) scratch: the same now */
+  bool *undecided;  /* (n) surface or not depends on gaps */
+  int32_t *gap;     /* (n_gap) those that are */
+  size_t n_gap;
+
+  bw_pd_bond_link *link;          /* (slots) scratch, of the particle resolved last, as are: */
+  uint8_t *state;                 /* (slots) enum below */
+  bw_pd_interface__near *near;    /* (slots) who is there, where state is not ABSENT */
+  bw_pd_interface__near *present; /* (slots) those that are intact, one after the other */
+  double *place;                  /* (slots,3) relative to the particle */
+
+  bw_pd_interface__near *pool; /* (pool_n of pool_room) partners of surface particles, in rows */
+  size_t pool_n, pool_room;
+  size_t *row;                /* (n) where the row begins */
+  uint16_t *row_n, *row_room; /* (n) its length and how long it may get; room 0: no row */
+  bool *stale;                /* (n) the row has to be made anew */
+
+  int32_t *list; /* (n_list) the surface, and its rows: (.,3) but area */
   size_t n_list;
   double *position, *velocity, *list_normal, *area;
   double *all_velocity; /* (n,3) */
   double *own_normal;   /* (n,3) of the surface, 0 elsewhere; for smoothing */
   double *all_normal;   /* (n_extended,3) */
-  size_t n_extended;
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
 
-/* Fill state and place of particle h: present ones from X (extended array), or, with X NULL, of
- * the reference shape (all bonds intact). Directions across a wall are filled with images. */
-void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, const bw_real *X);
+/* Who is around particle h: fills state and near; `reference`: all bonds intact. Directions across
+ * a wall it leans on are filled with images. */
+void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference);
 
-/* Of the particle resolved last: bits of its empty sectors; its unit normal (false and unchanged
- * when the neighbours balance); area [L^2] of its open lattice faces, each projected on the
- * normal there (reference shape). Local. */
+/* Fills place of the particle resolved last, h, from X (extended array). */
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_real *X);
+
+/* Of the particle resolved last: bits of the sectors where nothing intact is, and of those where
+ * nothing ever was; located too: bits of its empty sectors (3.42). Local. */
+void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never);
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi);
-bool bw_pd_interface__normal(const bw_pd_interface *pi, double n[3]);
+
+/* Unit normal 3.45 of h from a list of its present partners; false, and n unchanged, when they
+ * balance. X NULL: in the reference shape. Local. */
+bool bw_pd_interface__normal(const bw_pd_interface *pi, size_t h, const bw_real *X, size_t count,
+                             const bw_pd_interface__near partner[], double n[3]);
+/* The same of the particle resolved last. */
+bool bw_pd_interface__normal_of(bw_pd_interface *pi, size_t h, const bw_real *X, double n[3]);
+
+/* Area [L^2] of the open lattice faces of the particle resolved last, each projected on the
+ * normal there (reference shape). Local. */
 double bw_pd_interface__open_area(const bw_pd_interface *pi);
 
 /* ds^2 sum over the open sides f of the particle resolved last of e_f.n [L^2]. Local. */
@@ -80,3 +115,6 @@ double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X);
+
+/* bw_pd_follow.c: surface or not, of h resolved last (X NULL: reference); renews its normal. */
+bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X);

@@ -201,10 +201,58 @@ START_TEST(a_block_torn_from_its_foot_shows_its_underside)
 }
 END_TEST
 
+/* What an update finds by following changes is what a look at everything finds: after cuts in all
+ * directions, moves of the pieces, and off the wall and back. */
+START_TEST(following_agrees_with_looking_anew)
+{
+  const bw_shape shape[] = {{.kind = BW_SHAPE_BOX, .upper = {10, 10, 10}}};
+  const bw_pd_bond_config c = body_config(false);
+  bw_pd_interface_config ic = bw_pd_interface_config_default();
+  ic.walled[1][0] = true;
+  ic.lower[1] = 0.0;
+  body b = body_create(1, shape, &c, &ic);
+  const size_t n = bw_pd_bond_count(b.pd);
+  double *X = NULL, *V = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  const double gap[] = {0.0, 1.5, 0.3, 3.5, 6.5, 0.0};
+  for (int q = 0; q < 6; q++) {
+    const double at = 2.0 + q, e = 20.0; /* cut q: a plane normal to direction q % 3, half deep */
+    double p[3] = {-e, -e, -e}, r[3] = {e, e, e}, t[3] = {-e, -e, e};
+    p[q % 3] = r[q % 3] = t[q % 3] = at;
+    const int f = (q % 3 + 1) % 3, g = (q % 3 + 2) % 3;
+    r[f] = q % 2 ? 5.0 : e, r[g] = -e; /* p-r along f, p-t along g */
+    t[f] = -e, t[g] = e;
+    bw_check_ok(bw_pd_bond_precrack(b.pd, p, r, t));
+    bw_pd_bond_get_reference(b.pd, X);
+    for (size_t h = 0; h < n; h++) {
+      for (size_t d = 0; d < 3; d++)
+        if (X[3 * h + d] > 4.0) X[3 * h + d] += gap[q];
+      X[3 * h + 1] += q == 4 ? 4.0 : 0.0; /* all of it off the wall, once */
+    }
+    bw_pd_bond_set_state(b.pd, X, V);
+    bw_check_ok(bw_pd_interface_update(b.pi));
+    bw_pd_interface *anew = NULL;
+    bw_check_ok(bw_pd_interface_create(b.pd, &ic, &anew));
+    const bw_pd_surface one = bw_pd_interface_surface(b.pi), two = bw_pd_interface_surface(anew);
+    ck_assert_uint_eq(one.n, two.n);
+    for (size_t row = 0; row < one.n; row++) {
+      ck_assert_int_eq(one.particle[row], two.particle[row]);
+      ck_assert_double_eq(one.A[row], two.A[row]);
+    }
+    bw_pd_interface_destroy(&anew);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  body_destroy(&b);
+}
+END_TEST
+
 static const bw_check_test tests[] = {
     BW_TEST(crack_faces_appear_when_the_gap_is_wide_enough),
     BW_TEST(crack_faces_have_opposite_normals_and_their_area),
     BW_TEST(rows_agree_with_the_solid),
     BW_TEST(a_block_torn_from_its_foot_shows_its_underside),
+    BW_TEST(following_agrees_with_looking_anew),
 };
 BW_CHECK_MAIN("pd_interface.opening", tests)

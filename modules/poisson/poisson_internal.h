@@ -45,7 +45,7 @@ typedef struct {
   bw_real *spectrum;
 } bw_poisson__transform;
 
-/* Rows along x: n reals to columns entries, out of place, 64-byte aligned rows. The columns are
+/* Rows along x: n reals to columns entries, out of place, 16-byte aligned rows. The columns are
  * an even number: complex numbers, or reals with a zero behind them. Local. */
 int bw_poisson__columns(const bw_poisson__kind *kind, int n);
 bw_status bw_poisson__rows_create(const bw_poisson__kind *kind, int n, bw_poisson__transform *t);

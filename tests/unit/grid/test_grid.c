@@ -80,7 +80,7 @@ START_TEST(storage_holds_every_cell_once)
     bw_check_ok(BW_ALLOCATE(&seen, v->size));
     for (int k = 1 - v->halo[2]; k <= v->m[2] + v->halo[2]; k++)
       for (int j = 1 - v->halo[1]; j <= v->m[1] + v->halo[1]; j++) {
-        ck_assert_uint_eq((uintptr_t)(f + bw_at(v, 1, j, k)) % 64, 0);
+        ck_assert_uint_eq((uintptr_t)(f + bw_at(v, 1, j, k)) % 16, 0);
         for (int i = 1 - v->halo[0]; i <= v->m[0] + v->halo[0]; i++) {
           const ptrdiff_t at = bw_at(v, i, j, k);
           ck_assert_int_ge(at, 0);

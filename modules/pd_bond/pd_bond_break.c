@@ -1,4 +1,4 @@
-/* Bonds that break: by stretch at the end of a step, or cut by a pre-crack. */
+/* How a bond breaks; pre-cracks. */
 #include "pd_bond_internal.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ static double length(const bw_pd_bond *pd, int32_t h, const bw_pd_slot *slot, in
 }
 
 /* Break one bond from its owner's side; the energy of this half is dissipated. */
-static void break_bond(bw_pd_bond *pd, const bw_pd_block *block, bw_pd_slot *slot, int lane)
+void bw_pd_bond__break(bw_pd_bond *pd, bw_pd_block *block, bw_pd_slot *slot, int lane)
 {
   const int32_t h = block->first + lane;
   const double r0 = pd->stencil.r0[slot->direction];
@@ -26,41 +26,9 @@ static void break_bond(bw_pd_bond *pd, const bw_pd_block *block, bw_pd_slot *slo
   const double alpha = bw_pd_bond__alpha(pd, h, slot->base + lane);
   pd->done_fracture +=
       0.25 * pd->c0 * alpha * s * s * r0 * pd->stencil.fraction[slot->direction] * pd->dv * pd->dv;
-  slot->mask &= (uint8_t) ~(1u << lane);
+  slot->mask = (uint8_t)(slot->mask ^ (1u << lane));
+  block->broken = true;
   pd->events++;
-}
-
-static bool unbreakable(const bw_pd_bond *pd, int32_t h, int32_t l)
-{
-  return ((pd->kind[pd->occupant[h]] | pd->kind[pd->occupant[l]]) & BW_PD_UNBREAKABLE) != 0;
-}
-
-static bool break_block(bw_pd_bond *pd, const bw_pd_block *block)
-{
-  bool any = false;
-  for (uint32_t q = block->slot; q < block[1].slot; q++) {
-    bw_pd_slot *slot = &pd->slot[q];
-    const double limit = pd->stencil.r0[slot->direction] * (1 + pd->s0);
-    for (int lane = 0; lane < BW_PD_LANES; lane++) {
-      if (!(slot->mask >> lane & 1)) continue;
-      const int32_t h = block->first + lane;
-      if (!(length(pd, h, slot, lane) > limit)) continue;
-      if (unbreakable(pd, h, slot->base + lane)) continue;
-      break_bond(pd, block, slot, lane);
-      any = true;
-    }
-  }
-  return any;
-}
-
-/* Break what is beyond s0 in the blocks the force sweep noted; keeps in hit those that changed. */
-bool bw_pd_bond__break_hits(bw_pd_bond *pd)
-{
-  size_t kept = 0;
-  for (size_t q = 0; q < pd->n_hit; q++)
-    if (break_block(pd, &pd->block[pd->hit[q]])) pd->hit[kept++] = pd->hit[q];
-  pd->n_hit = kept;
-  return kept > 0;
 }
 
 /* A flat cut: corner a, edges e1 and e2 (2D: e2 out of the plane and endless). */
@@ -158,7 +126,7 @@ static bool crosses_image(const bw_pd_bond *pd, const cut *c, const double p[3],
   return false;
 }
 
-static void cut_block(bw_pd_bond *pd, const bw_pd_block *block, const cut *c)
+static void cut_block(bw_pd_bond *pd, bw_pd_block *block, const cut *c)
 {
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     bw_pd_slot *slot = &pd->slot[q];
@@ -167,7 +135,7 @@ static void cut_block(bw_pd_bond *pd, const bw_pd_block *block, const cut *c)
       double x[3], y[3];
       ends(pd, pd->site + 3 * (size_t)bw_pd_bond__owner(block, lane), slot->direction, x, y);
       if (!crosses_image(pd, c, x, y)) continue;
-      break_bond(pd, block, slot, lane);
+      bw_pd_bond__break(pd, block, slot, lane);
       pd->precracked++;
     }
   }

@@ -16,10 +16,9 @@ bw_status bw_pd_bond__contact_create(bw_pd_bond *pd)
   bw_pd_contact *c = pd->contact;
   c->reach = pd->config.ds;
   c->skin = SKIN * pd->config.ds;
-  c->events_seen = -1;
   for (int k = 0; k < 3; k++)
     BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
-  return BW_ALLOCATE(&c->block, pd->n_block);
+  return BW_OK;
 }
 
 void bw_pd_bond__contact_destroy(bw_pd_bond *pd)
@@ -29,7 +28,6 @@ void bw_pd_bond__contact_destroy(bw_pd_bond *pd)
   bw_pd_contact__forget(c);
   for (int k = 0; k < 3; k++)
     bw_release(&c->u_built[k]);
-  bw_release(&c->block);
   bw_release(&pd->contact);
 }
 
@@ -40,13 +38,13 @@ static bool moved(const bw_pd_bond *pd, const bw_pd_contact *c)
   int far = 0;
   for (size_t r = 0; r < pd->n_run; r++) {
     const bw_pd_run run = pd->run[r];
+    const bw_real *x = pd->u[0] + run.place, *a = c->u_built[0] + run.own;
+    const bw_real *y = pd->u[1] + run.place, *b = c->u_built[1] + run.own;
+    const bw_real *z = pd->u[2] + run.place, *e = c->u_built[2] + run.own;
+#pragma omp simd reduction(+ : far)
     for (int32_t i = 0; i < run.n; i++) {
-      bw_real d2 = 0;
-      for (int k = 0; k < 3; k++) {
-        const bw_real d = pd->u[k][run.place + i] - c->u_built[k][run.own + i];
-        d2 += d * d;
-      }
-      far += !(d2 <= limit2);
+      const bw_real dx = x[i] - a[i], dy = y[i] - b[i], dz = z[i] - e[i];
+      far += !(dx * dx + dy * dy + dz * dz <= limit2);
     }
   }
   return far > 0;
@@ -58,18 +56,6 @@ static void remember(const bw_pd_bond *pd, bw_pd_contact *c)
     for (int k = 0; k < 3; k++)
       c->u_built[k][i] = pd->u[k][pd->place[i]];
   c->built = true;
-}
-
-static void list_blocks(const bw_pd_bond *pd, bw_pd_contact *c)
-{
-  c->n_block = 0;
-  for (size_t b = 0; b < pd->n_block; b++) {
-    unsigned broken = 0;
-    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++)
-      broken |= (unsigned)(pd->slot[q].family & ~pd->slot[q].mask);
-    if (broken != 0) c->block[c->n_block++] = (uint32_t)b;
-  }
-  c->events_seen = pd->events;
 }
 
 /* Present positions of the particles at surfaces, other ranks' too. */
@@ -87,7 +73,6 @@ bw_status bw_pd_bond__contact_update(bw_pd_bond *pd)
   bw_pd_contact *c = pd->contact;
   int64_t needed = !c->built || moved(pd, c);
   bw_comm_max_int(pd->comm, 1, &needed);
-  if (c->events_seen != pd->events) list_blocks(pd, c);
   if (needed) {
     BW_TRY(bw_pd_contact__search(pd));
     remember(pd, c);
@@ -112,21 +97,12 @@ static double repel(const law *w, const double d[3], double r2, double sum[3])
   return 0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r);
 }
 
-/* One slot's broken bonds that are short. */
-static double slot_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *block,
-                           const bw_pd_slot *slot, bool force)
+/* The lanes `near` of a slot with bond vectors z. */
+static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block, unsigned near,
+                          const vec z[3], vec r2, bool force)
 {
-  const unsigned broken = (unsigned)(slot->family & ~slot->mask);
-  const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
-  vec z[3], r2 = vec_all(0);
-  for (int k = 0; k < 3; k++) {
-    z[k] = (vec_load(pd->u[k] + slot->base) - vec_load(pd->u[k] + block->first)) +
-           vec_all(row[BW_PD_XI + k]);
-    r2 = vec_fma(z[k], z[k], r2);
-  }
-  const unsigned near = broken & lanes_bits(vec_above(vec_all((bw_real)(w->reach * w->reach)), r2));
   double energy = 0;
-  for (int lane = 0; near != 0 && lane < BW_PD_LANES; lane++) {
+  for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(near >> lane & 1)) continue;
     double sum[3] = {0};
     const double d[3] = {(double)z[0][lane], (double)z[1][lane], (double)z[2][lane]};
@@ -138,16 +114,35 @@ static double slot_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *bloc
   return energy;
 }
 
+/* Broken bonds of a block that are short. */
+static double block_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *block, bool force)
+{
+  const vec reach2 = vec_all((bw_real)(w->reach * w->reach));
+  vec uh[3], z[3];
+  double energy = 0;
+  for (int k = 0; k < 3; k++)
+    uh[k] = vec_load(pd->u[k] + block->first);
+  for (uint32_t q = block->slot; q < block[1].slot; q++) {
+    const bw_pd_slot *slot = &pd->slot[q];
+    if (slot->family == slot->mask) continue;
+    const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
+    vec r2 = vec_all(0);
+    for (int k = 0; k < 3; k++) {
+      z[k] = (vec_load(pd->u[k] + slot->base) - uh[k]) + vec_all(row[BW_PD_XI + k]);
+      r2 = vec_fma(z[k], z[k], r2);
+    }
+    const unsigned near =
+        (unsigned)(slot->family & ~slot->mask) & lanes_bits(vec_above(reach2, r2));
+    if (near != 0) energy += short_bonds(pd, w, block, near, z, r2, force);
+  }
+  return energy;
+}
+
 static double family_contact(bw_pd_bond *pd, const law *w, bool force)
 {
-  const bw_pd_contact *c = pd->contact;
   double energy = 0;
-  for (size_t q = 0; q < c->n_block; q++) {
-    const bw_pd_block *block = &pd->block[c->block[q]];
-    for (uint32_t s = block->slot; s < block[1].slot; s++)
-      if (pd->slot[s].family != pd->slot[s].mask)
-        energy += slot_contact(pd, w, block, &pd->slot[s], force);
-  }
+  for (size_t b = 0; b < pd->n_block; b++)
+    if (pd->block[b].broken) energy += block_contact(pd, w, &pd->block[b], force);
   return energy;
 }
 

@@ -11,9 +11,6 @@ struct bw_pd_contact {
   double reach, skin; /* r_c = ds [L] */
   bool built;
   bw_real *u_built[3]; /* (n) displacement at the last search */
-  int64_t events_seen; /* of the list of blocks */
-  size_t n_block;
-  uint32_t *block; /* (n_block) blocks with a broken bond */
 
   size_t n_mine, n_theirs, n_sent;
   int32_t *mine; /* (n_mine) own particles at a surface */

@@ -54,19 +54,28 @@ static void block_damping(const bw_pd_bond *pd, const bw_pd_block *block)
                    pd->damp[k]);
 }
 
-/* Own velocities and, for the bond sums, the copies' have to be current. */
+static void add_absolute(bw_pd_bond *pd, size_t from, size_t to)
+{
+  const bw_real absolute = (bw_real)(pd->damping_absolute / pd->config.rho);
+  for (int k = 0; k < 3; k++)
+    for (size_t i = from; i < to; i++)
+      pd->damp[k][i] -= absolute * pd->v[k][i];
+}
+
+void bw_pd_bond__damping_absolute(bw_pd_bond *pd)
+{
+  if (pd->damping_absolute > 0) add_absolute(pd, 0, pd->n);
+}
+
+/* Own velocities and the copies' have to be current. */
 void bw_pd_bond__damping(bw_pd_bond *pd, size_t n, const uint32_t list[])
 {
-  const bool by_bonds = pd->damping_pair > 0 || pd->damping_mean > 0;
-  const bw_real absolute = (bw_real)(pd->damping_absolute / pd->config.rho);
-  if (!by_bonds && list != NULL) return;
   const size_t blocks = list == NULL ? pd->n_block : n;
   for (size_t q = 0; q < blocks; q++) {
     const bw_pd_block *block = &pd->block[list == NULL ? q : list[q]];
-    const int32_t end = block->own + __builtin_popcount(block->mask);
-    if (by_bonds) block_damping(pd, block);
-    for (int k = 0; k < 3; k++)
-      for (int32_t i = block->own; i < end; i++)
-        pd->damp[k][i] = (by_bonds ? pd->damp[k][i] : 0) - absolute * pd->v[k][i];
+    const size_t from = (size_t)block->own;
+    block_damping(pd, block);
+    if (pd->damping_absolute > 0)
+      add_absolute(pd, from, from + (size_t)__builtin_popcount(block->mask));
   }
 }

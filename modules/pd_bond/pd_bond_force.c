@@ -14,8 +14,9 @@
 typedef struct {
   const bw_pd_block *block;
   const bw_pd_slot *slot;
-  const bw_real *row, *u[3], *w;
-  bw_real *a[3];
+  const bw_real *row, *u[3], *w, *v[3]; /* storage */
+  bw_real *a[3], *damp[3];              /* own */
+  bw_real pair;                         /* k_d/rho */
 } sweep;
 
 typedef struct {
@@ -35,29 +36,48 @@ INLINE bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real *row, 
   return x;
 }
 
-/* Force coefficient: acceleration = coefficient times bond vector. */
-INLINE vec coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row, vec r2, vec wh,
-                       bw_pd_surface_correction surface)
+/* Acceleration = force times bond vector; inverse2 = 1/r^2. */
+typedef struct {
+  vec force, inverse2;
+} coefficients;
+
+INLINE coefficients coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row, vec r2,
+                                vec wh, bw_pd_surface_correction surface)
 {
   const vec k = vec_all(row[BW_PD_STIFFNESS]), minus_r0 = vec_all(row[BW_PD_MINUS_R0]);
   if (surface == BW_PD_SURFACE_VOLUME) {
     const vec sum = wh + vec_load(s->w + slot->base), t = r2 * sum;
-    const vec q = vec_rsqrt(t * sum);
-    return k * q * vec_fma(q, t, minus_r0);
+    const vec q = vec_rsqrt(t * sum), qs = q * sum;
+    return (coefficients){k * q * vec_fma(q, t, minus_r0), qs * qs};
   }
   const vec q = vec_rsqrt(r2), c = k * vec_fma(minus_r0, q, vec_all(1));
-  return surface == BW_PD_SURFACE_NONE ? c : c * (wh + vec_load(s->w + slot->base));
+  return (coefficients){surface == BW_PD_SURFACE_NONE ? c : c * (wh + vec_load(s->w + slot->base)),
+                        q * q};
+}
+
+/* Adds the pair damping of a slot (3.41, ERRATA 4): along the bond, like the force. */
+INLINE void add_damping(const sweep *s, const bw_pd_slot *slot, const bw_real *row, const bond *x,
+                        vec inverse2, const vec vh[3], int dimension, vec sum[3])
+{
+  vec along = vec_all(0);
+  for (int k = 0; k < dimension; k++)
+    along = vec_fma(vec_load(s->v[k] + slot->base) - vh[k], x->z[k], along);
+  const vec c =
+      vec_keep(lanes_of(slot->mask), vec_all(row[BW_PD_WEIGHT] * s->pair) * along * inverse2);
+  for (int k = 0; k < dimension; k++)
+    sum[k] = vec_fma(c, x->z[k], sum[k]);
 }
 
 /* Acceleration of one block's owners; returns whether a bond that holds is beyond s0. */
 INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
-                        bw_pd_surface_correction surface, bool check)
+                        bw_pd_surface_correction surface, bool check, bool damping)
 {
-  vec uh[3], sum[3], wh = vec_load(s->w + block->first);
+  vec uh[3], vh[3], sum[3], damp[3], wh = vec_load(s->w + block->first);
   lanes beyond = lanes_of(0);
   for (int k = 0; k < dimension; k++) {
     uh[k] = vec_load(s->u[k] + block->first);
-    sum[k] = vec_all(0);
+    vh[k] = vec_load(s->v[k] + block->first);
+    sum[k] = damp[k] = vec_all(0);
   }
   const bw_pd_slot *end = s->slot + block[1].slot;
   for (const bw_pd_slot *slot = s->slot + block->slot; slot < end; slot++) {
@@ -65,53 +85,61 @@ INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
     const lanes holds = lanes_of(slot->mask);
     const bw_real *row = s->row + slot->direction * BW_PD_ROW;
     const bond x = bond_of(s, slot, row, uh, dimension);
-    const vec c = vec_keep(holds, coefficient(s, slot, row, x.r2, wh, surface));
+    const coefficients c = coefficient(s, slot, row, x.r2, wh, surface);
+    const vec force = vec_keep(holds, c.force);
     for (int k = 0; k < dimension; k++)
-      sum[k] = vec_fma(c, x.z[k], sum[k]);
+      sum[k] = vec_fma(force, x.z[k], sum[k]);
     if (check) beyond |= vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])) & holds;
+    if (damping) add_damping(s, slot, row, &x, c.inverse2, vh, dimension, damp);
   }
-  for (int k = 0; k < dimension; k++)
+  for (int k = 0; k < dimension; k++) {
     vec_put_owners(block, sum[k], s->a[k]);
+    if (damping) vec_put_owners(block, damp[k], s->damp[k]);
+  }
   return check && lanes_bits(beyond) != 0;
 }
 
-/* All blocks, or those of a list; returns how many were noted in hit. */
-INLINE size_t sweep_blocks(const sweep *s, size_t n, const uint32_t list[], int dimension,
-                           bw_pd_surface_correction surface, bool check, uint32_t hit[])
+/* Returns how many blocks were noted in hit. */
+INLINE size_t sweep_blocks(const sweep *s, size_t n, int dimension,
+                           bw_pd_surface_correction surface, bool check, bool damping,
+                           uint32_t hit[])
 {
   size_t n_hit = 0;
-  for (size_t q = 0; q < n; q++) {
-    const uint32_t b = list == NULL ? (uint32_t)q : list[q];
-    const bool beyond = block_force(s, &s->block[b], dimension, surface, check);
-    if (check && beyond) hit[n_hit++] = b;
+  for (size_t b = 0; b < n; b++) {
+    const bool beyond = block_force(s, &s->block[b], dimension, surface, check, damping);
+    if (check && beyond) hit[n_hit++] = (uint32_t)b;
   }
   return n_hit;
 }
 
-/* One compiled sweep per geometry, correction and check. */
-typedef size_t (*sweep_function)(const sweep *, size_t, const uint32_t[], uint32_t[]);
-#define SWEEP(name, dimension, surface, check)                                                     \
-  static size_t name(const sweep *s, size_t n, const uint32_t list[], uint32_t hit[])              \
+/* One compiled sweep per geometry, correction, check and damping. */
+typedef size_t (*sweep_function)(const sweep *, size_t, uint32_t[]);
+#define ONE(name, dimension, surface, check, damping)                                              \
+  static size_t name(const sweep *s, size_t n, uint32_t hit[])                                     \
   {                                                                                                \
-    return sweep_blocks(s, n, list, dimension, surface, check, hit);                               \
+    return sweep_blocks(s, n, dimension, surface, check, damping, hit);                            \
   }
-SWEEP(plain_2, 2, BW_PD_SURFACE_NONE, false)
-SWEEP(plain_3, 3, BW_PD_SURFACE_NONE, false)
-SWEEP(plain_2_check, 2, BW_PD_SURFACE_NONE, true)
-SWEEP(plain_3_check, 3, BW_PD_SURFACE_NONE, true)
-SWEEP(volume_2, 2, BW_PD_SURFACE_VOLUME, false)
-SWEEP(volume_3, 3, BW_PD_SURFACE_VOLUME, false)
-SWEEP(volume_2_check, 2, BW_PD_SURFACE_VOLUME, true)
-SWEEP(volume_3_check, 3, BW_PD_SURFACE_VOLUME, true)
-SWEEP(energy_2, 2, BW_PD_SURFACE_ENERGY, false)
-SWEEP(energy_3, 3, BW_PD_SURFACE_ENERGY, false)
-SWEEP(energy_2_check, 2, BW_PD_SURFACE_ENERGY, true)
-SWEEP(energy_3_check, 3, BW_PD_SURFACE_ENERGY, true)
+#define FOUR(name, dimension, surface)                                                             \
+  ONE(name, dimension, surface, false, false)                                                      \
+  ONE(name##_damped, dimension, surface, false, true)                                              \
+  ONE(name##_check, dimension, surface, true, false)                                               \
+  ONE(name##_check_damped, dimension, surface, true, true)
+FOUR(plain_2, 2, BW_PD_SURFACE_NONE)
+FOUR(plain_3, 3, BW_PD_SURFACE_NONE)
+FOUR(volume_2, 2, BW_PD_SURFACE_VOLUME)
+FOUR(volume_3, 3, BW_PD_SURFACE_VOLUME)
+FOUR(energy_2, 2, BW_PD_SURFACE_ENERGY)
+FOUR(energy_3, 3, BW_PD_SURFACE_ENERGY)
 
-static const sweep_function function[3][2][2] = {
-    {{plain_2, plain_2_check}, {plain_3, plain_3_check}},
-    {{volume_2, volume_2_check}, {volume_3, volume_3_check}},
-    {{energy_2, energy_2_check}, {energy_3, energy_3_check}}};
+#define ROW(name)                                                                                  \
+  {                                                                                                \
+    {name, name##_damped},                                                                         \
+    {                                                                                              \
+      name##_check, name##_check_damped                                                            \
+    }                                                                                              \
+  }
+static const sweep_function function[3][2][2][2] = {
+    {ROW(plain_2), ROW(plain_3)}, {ROW(volume_2), ROW(volume_3)}, {ROW(energy_2), ROW(energy_3)}};
 
 static sweep sweep_of(const bw_pd_bond *pd)
 {
@@ -120,16 +148,74 @@ static sweep sweep_of(const bw_pd_bond *pd)
                  .row = pd->stencil.row,
                  .u = {pd->u[0], pd->u[1], pd->u[2]},
                  .w = pd->w,
-                 .a = {pd->a[0], pd->a[1], pd->a[2]}};
+                 .v = {pd->vs[0], pd->vs[1], pd->vs[2]},
+                 .a = {pd->a[0], pd->a[1], pd->a[2]},
+                 .damp = {pd->damp[0], pd->damp[1], pd->damp[2]},
+                 .pair = (bw_real)(pd->damping_pair / pd->config.rho)};
 }
 
-void bw_pd_bond__force(bw_pd_bond *pd, size_t n, const uint32_t list[], bool check)
+void bw_pd_bond__force(bw_pd_bond *pd, bool check, bool damping)
 {
   const sweep s = sweep_of(pd);
   const bool really = check && pd->breakage && isfinite(pd->s0);
-  const size_t hits = function[pd->config.surface_correction][pd->dimension - 2][really](
-      &s, list == NULL ? pd->n_block : n, list, pd->hit);
+  const size_t hits = function[pd->config.surface_correction][pd->dimension - 2][really][damping](
+      &s, pd->n_block, pd->hit);
   if (check) pd->n_hit = hits;
+}
+
+/* Lanes of a slot whose bond has an unbreakable end. */
+static uint8_t unbreakable(const bw_pd_bond *pd, const bw_pd_block *block, const bw_pd_slot *slot,
+                           uint8_t lanes_asked)
+{
+  uint8_t out = 0;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    if (lanes_asked >> k & 1) {
+      const uint8_t kinds =
+          pd->kind[pd->occupant[block->first + k]] | pd->kind[pd->occupant[slot->base + k]];
+      if (kinds & BW_PD_UNBREAKABLE) out |= (uint8_t)(1u << k);
+    }
+  return out;
+}
+
+/* Break what is beyond s0 in one block and take its force out of a: the sweep that follows a break
+ * would give the same but for the rounding of the sum. */
+static bool break_block(bw_pd_bond *pd, const sweep *s, bw_pd_block *block)
+{
+  const bw_pd_surface_correction surface = pd->config.surface_correction;
+  vec uh[3], lost[3], wh = vec_load(s->w + block->first);
+  bool any = false;
+  for (int k = 0; k < 3; k++) {
+    uh[k] = vec_load(s->u[k] + block->first);
+    lost[k] = vec_all(0);
+  }
+  for (uint32_t q = block->slot; q < block[1].slot; q++) {
+    bw_pd_slot *slot = &pd->slot[q];
+    const bw_real *row = s->row + slot->direction * BW_PD_ROW;
+    const bond x = bond_of(s, slot, row, uh, 3);
+    uint8_t over = slot->mask & lanes_bits(vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])));
+    if (over == 0) continue;
+    over &= (uint8_t)~unbreakable(pd, block, slot, over);
+    const vec c = vec_keep(lanes_of(over), coefficient(s, slot, row, x.r2, wh, surface).force);
+    for (int k = 0; k < 3; k++)
+      lost[k] = vec_fma(c, x.z[k], lost[k]);
+    for (int k = 0; k < BW_PD_LANES; k++)
+      if (over >> k & 1) bw_pd_bond__break(pd, block, slot, k), any = true;
+  }
+  for (int lane = 0; any && lane < BW_PD_LANES; lane++)
+    for (int k = 0; k < 3; k++)
+      if (block->mask >> lane & 1) s->a[k][bw_pd_bond__owner(block, lane)] -= lost[k][lane];
+  return any;
+}
+
+/* The blocks the force sweep noted; keeps in hit those that changed. */
+bool bw_pd_bond__break_hits(bw_pd_bond *pd)
+{
+  const sweep s = sweep_of(pd);
+  size_t kept = 0;
+  for (size_t q = 0; q < pd->n_hit; q++)
+    if (break_block(pd, &s, &pd->block[pd->hit[q]])) pd->hit[kept++] = pd->hit[q];
+  pd->n_hit = kept;
+  return kept > 0;
 }
 
 /* Half of 1/2 c0 alpha s^2 |xi| Gamma dV dV for each end: summed over ranks, every bond once. */

@@ -69,6 +69,7 @@ typedef struct {
   int32_t own;   /* own particle of the first lane set in mask; the others follow */
   uint32_t slot; /* first slot; the block's last one is before the next block's first */
   uint8_t mask;  /* lanes that are own particles */
+  bool broken;   /* a bond of it broke */
 } bw_pd_block;
 
 typedef struct {
@@ -173,16 +174,19 @@ void bw_pd_bond__bounds(bw_pd_bond *pd);
 bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd);
 double bw_pd_bond__alpha(const bw_pd_bond *pd, int32_t h, int32_t l);
 
-/* pd_bond_force.c: a = L/rho of `n` blocks (list NULL: all); notes blocks with a bond beyond s0 */
-void bw_pd_bond__force(bw_pd_bond *pd, size_t n, const uint32_t list[], bool check);
+/* pd_bond_force.c: a = L/rho; with check notes the blocks with a bond beyond s0; with damping fills
+ * damp with the pair damping */
+void bw_pd_bond__force(bw_pd_bond *pd, bool check, bool damping);
+bool bw_pd_bond__break_hits(bw_pd_bond *pd);
 double bw_pd_bond__elastic(const bw_pd_bond *pd); /* of this rank's halves [M L^2/T^2] */
 
-/* pd_bond_damping.c: damp of `n` blocks (list NULL: all) */
+/* pd_bond_damping.c: damp of `n` blocks (list NULL: all); absolute: adds that kind alone */
 bool bw_pd_bond__damped(const bw_pd_bond *pd);
 void bw_pd_bond__damping(bw_pd_bond *pd, size_t n, const uint32_t list[]);
+void bw_pd_bond__damping_absolute(bw_pd_bond *pd);
 
 /* pd_bond_break.c */
-bool bw_pd_bond__break_hits(bw_pd_bond *pd);
+void bw_pd_bond__break(bw_pd_bond *pd, bw_pd_block *block, bw_pd_slot *slot, int lane);
 
 /* pd_bond_contact.c, pd_bond_search.c */
 bw_status bw_pd_bond__contact_create(bw_pd_bond *pd);

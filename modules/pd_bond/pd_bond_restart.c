@@ -25,7 +25,8 @@ void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[])
 bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[])
 {
   const size_t bytes = bw_pd_bond_bits_bytes(pd);
-  for (size_t b = 0; b < pd->n_block; b++)
+  for (size_t b = 0; b < pd->n_block; b++) {
+    pd->block[b].broken = false;
     for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
       bw_pd_slot *slot = &pd->slot[q];
       slot->mask = 0;
@@ -35,7 +36,9 @@ bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[])
         const int d = slot->direction;
         if (bits[h * bytes + (size_t)d / 8] >> d % 8 & 1) slot->mask |= (uint8_t)(1u << lane);
       }
+      if (slot->mask != slot->family) pd->block[b].broken = true;
     }
+  }
   pd->events++;
   if (!pd->restored)
     pd->current = false;

@@ -159,30 +159,41 @@ static bool same_family(const bw_pd_bond *pd, const int32_t a[3], const int32_t 
   return bw_pd_bond__direction(&pd->stencil, o) >= 0;
 }
 
-/* Partners of candidate q in one cell; returns how many, written from *out on. */
-static size_t pairs_in_cell(const bw_pd_bond *pd, const bw_pd_contact *c, const cells *g, size_t q,
-                            const int32_t cell[3], int32_t *out)
+static bw_status append_pair(bw_pd_contact *c, size_t *n, size_t *capacity, int32_t partner)
+{
+  if (*n == *capacity) {
+    int32_t *larger = NULL;
+    *capacity = 2 * *capacity + 1024;
+    BW_TRY(BW_ALLOCATE(&larger, *capacity));
+    if (*n > 0) memcpy(larger, c->pair, *n * sizeof *larger);
+    bw_release(&c->pair);
+    c->pair = larger;
+  }
+  c->pair[(*n)++] = partner;
+  return BW_OK;
+}
+
+/* Partners of candidate q in one cell are appended to the pairs. */
+static bw_status pairs_in_cell(const bw_pd_bond *pd, bw_pd_contact *c, const cells *g, size_t q,
+                               const int32_t cell[3], size_t *n, size_t *capacity)
 {
   const double far = c->reach + c->skin;
-  size_t n = 0;
   for (int32_t p = g->head[bucket_of(g, cell)]; p >= 0; p = g->next[p]) {
     double d[3];
     if ((size_t)p == q || memcmp(g->cell + 3 * p, cell, 3 * sizeof *cell) != 0) continue;
     bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
     if (same_family(pd, c->site + 3 * q, c->site + 3 * p)) continue;
-    if (out != NULL) out[n] = p;
-    n++;
+    BW_TRY(append_pair(c, n, capacity, p));
   }
-  return n;
+  return BW_OK;
 }
 
 /* Partners of candidate q in the 27 cells around it, every cell once. */
-static size_t pairs_of(const bw_pd_bond *pd, const bw_pd_contact *c, const cells *g, size_t q,
-                       int32_t *out)
+static bw_status pairs_of(const bw_pd_bond *pd, bw_pd_contact *c, const cells *g, size_t q,
+                          size_t *n, size_t *capacity)
 {
   int first[3], last[3], step[3];
-  size_t n = 0;
   for (int k = 0; k < 3; k++) {
     first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
     last[k] = g->count[k] == 1 ? 0 : 1;
@@ -195,9 +206,9 @@ static size_t pairs_of(const bw_pd_bond *pd, const bw_pd_contact *c, const cells
           cell[k] = g->cell[3 * q + (size_t)k] + step[k];
           if (g->count[k] > 0) cell[k] = (cell[k] + g->count[k]) % g->count[k];
         }
-        n += pairs_in_cell(pd, c, g, q, cell, out == NULL ? NULL : out + n);
+        BW_TRY(pairs_in_cell(pd, c, g, q, cell, n, capacity));
       }
-  return n;
+  return BW_OK;
 }
 
 static bw_status list_pairs(const bw_pd_bond *pd, bw_pd_contact *c)
@@ -205,15 +216,12 @@ static bw_status list_pairs(const bw_pd_bond *pd, bw_pd_contact *c)
   cells g = {0};
   bw_status st = make_cells(pd, c, &g);
   BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
-  for (int pass = 0; pass < 2 && st == BW_OK; pass++) {
-    size_t n = 0;
-    for (size_t q = 0; q < c->n_mine; q++) {
-      c->pair_start[q] = n;
-      n += pairs_of(pd, c, &g, q, pass == 0 ? NULL : c->pair + n);
-    }
-    c->pair_start[c->n_mine] = n;
-    if (pass == 0) st = BW_ALLOCATE(&c->pair, n);
+  size_t n = 0, capacity = 0;
+  for (size_t q = 0; q < c->n_mine && st == BW_OK; q++) {
+    c->pair_start[q] = n;
+    st = pairs_of(pd, c, &g, q, &n, &capacity);
   }
+  if (st == BW_OK) c->pair_start[c->n_mine] = n;
   bw_release(&g.head);
   bw_release(&g.next);
   bw_release(&g.cell);

@@ -40,9 +40,13 @@ void bw_pd_bond__impose(bw_pd_bond *pd)
 bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check)
 {
   const bool damped = bw_pd_bond__damped(pd);
-  bw_pd_bond__refresh(pd, pd->damping_pair > 0 || pd->damping_mean > 0);
-  bw_pd_bond__force(pd, 0, NULL, check);
-  if (damped) bw_pd_bond__damping(pd, 0, NULL);
+  const bool fused = damped && pd->damping_mean == 0;
+  bw_pd_bond__refresh(pd, damped);
+  bw_pd_bond__force(pd, check, fused);
+  if (fused)
+    bw_pd_bond__damping_absolute(pd);
+  else if (damped)
+    bw_pd_bond__damping(pd, 0, NULL);
   if (pd->config.contact || damped || pd->loaded)
     for (int k = 0; k < pd->dimension; k++)
       memset(pd->extra[k], 0, pd->n * sizeof(bw_real));
@@ -58,12 +62,10 @@ bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check)
   return BW_OK;
 }
 
-/* Break bonds and renew the forces of the blocks that lost some. */
+/* Break bonds and renew the damping of the blocks that lost some. */
 static void break_bonds(bw_pd_bond *pd)
 {
-  if (!bw_pd_bond__break_hits(pd)) return;
-  bw_pd_bond__force(pd, pd->n_hit, pd->hit, false);
-  if (!bw_pd_bond__damped(pd)) return;
+  if (!bw_pd_bond__break_hits(pd) || !bw_pd_bond__damped(pd)) return;
   for (int side = 0; side < 2; side++) {
     const bw_real sign = side == 0 ? -1 : 1;
     if (side == 1) bw_pd_bond__damping(pd, pd->n_hit, pd->hit);

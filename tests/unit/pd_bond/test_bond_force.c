@@ -173,6 +173,38 @@ START_TEST(energy_book_closes)
 }
 END_TEST
 
+static void parting(const double X0[3], double v[3])
+{
+  v[0] = X0[0] > 0.5 ? 0.3 : -0.1;
+  v[1] = X0[0] > 0.5 ? 0.2 : 0; /* across the bond: pair damping does not see it */
+  v[2] = 0;
+}
+
+/* On particle 0 of an unstretched pair: pair k dV 0.4/rho along x; mean k (0.4, 0.2)/rho; absolute
+ * -k (-0.1, 0)/rho. Alone and together, as they take different ways through the code. */
+START_TEST(damping_in_closed_form)
+{
+  const double kinds[][3] = {{0.8, 0, 0}, {0, 0.02, 0}, {0, 0, 0.05}, {0.8, 0.02, 0.05}};
+  for (int surface = 0; surface < 3; surface++)
+    for (int q = 0; q < 4; q++) {
+      bw_pd_bond_config c = pd_soft(BW_PD_3D);
+      c.surface_correction = (bw_pd_surface_correction)surface;
+      bw_pd_bond *pd = pair(c);
+      double A[6];
+      bw_pd_bond_set_damping(pd, kinds[q][0], kinds[q][1], kinds[q][2]);
+      pd_set(pd, NULL, parting);
+      bw_pd_bond_account(pd); /* evaluates the force */
+      pd_gather(pd, bw_pd_bond_get_acceleration, A);
+      const double k = kinds[q][0], m = kinds[q][1], a = kinds[q][2];
+      bw_check_near(A[0], (k * 0.125 * 0.4 + m * 0.4 + a * 0.1) / 2, 100 * BW_REAL_EPSILON);
+      bw_check_near(A[1], m * 0.2 / 2, 100 * BW_REAL_EPSILON);
+      bw_check_near(A[3], (-k * 0.125 * 0.4 - m * 0.4 - a * 0.3) / 2, 100 * BW_REAL_EPSILON);
+      bw_check_near(A[4], (-m * 0.2 - a * 0.2) / 2, 100 * BW_REAL_EPSILON);
+      bw_pd_bond_destroy(&pd);
+    }
+}
+END_TEST
+
 /* Absolute damping of a body that moves as a whole: V' = - k V/rho; Verlet takes the lagged
  * velocity, an error of first order in k dt/rho = 0.001. Mean damping leaves that motion alone. */
 static void drift(const double X0[3], double v[3])
@@ -262,6 +294,7 @@ static const bw_check_test tests[] = {BW_TEST(two_particles_pull_in_closed_form)
                                       BW_TEST(integrators_have_their_order),
                                       BW_TEST(momenta_are_conserved),
                                       BW_TEST(energy_book_closes),
+                                      BW_TEST(damping_in_closed_form),
                                       BW_TEST(damping_of_rigid_motion),
                                       BW_TEST(external_force_does_its_work),
                                       BW_TEST(prescribed_ends_move_as_told)};

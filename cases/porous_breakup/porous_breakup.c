@@ -9,17 +9,6 @@
 
 #include <math.h>
 
-/* What the phase allows the solid to do. */
-static void enter_phase(porous_run *p)
-{
-  const porous_phase *f = porous_phase_of(p->config, p->phase);
-  bw_coupler_hold_solid(p->coupler, p->phase == PHASE_FLOW);
-  bw_pd_bond_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
-  bw_pd_bond_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
-                         f->settling_rate * p->config->solid.density);
-  if (p->phase == PHASE_BREAKAGE && p->step == 0) p->breakage_start = bw_ns_channel_time(p->fluid);
-}
-
 /* Once per tenth of h/U_b: has the pressure drop stopped changing? */
 static bool settled(porous_run *p, double drop)
 {
@@ -53,7 +42,7 @@ static bw_status run_phase(porous_run *p)
   about.step_start = p->step, about.step_end = f->steps;
   about.time_start = bw_ns_channel_time(p->fluid);
   about.time_end = about.time_start + (double)(f->steps - p->step) * f->time_step;
-  enter_phase(p);
+  porous_enter_phase(p);
   bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
   for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
@@ -101,7 +90,7 @@ static bw_status simulate(porous_run *p)
     st = run_phase(p);
     BW_THEN(st, end_phase(p));
   }
-  if (st == BW_EDIVERGED) st = porous_save_last_good(p, st);
+  if (st == BW_EDIVERGED || st == BW_ECFL) st = porous_save_last_good(p, st);
   BW_THEN(st, porous_fragments_csv(p));
   BW_THEN(st, bw_timer_report(bw_coupler_timer(p->coupler), p->comm, bw_case_log(p->run)));
   return st;

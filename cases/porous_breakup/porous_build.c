@@ -103,10 +103,22 @@ static bw_status build_coupler(porous_run *p)
   c.retraction = q->coupling.retraction;
   c.probe_length = q->coupling.probe_length;
   c.profile = (bw_probe_profile)q->coupling.probe_profile;
+  c.load = (bw_coupler_load_kind)q->coupling.load;
   c.load_relaxation = q->coupling.load_relaxation;
   c.solid_safety = q->coupling.solid_safety;
   c.walled[1][0] = c.walled[1][1] = true;
   return bw_coupler_create(&c, p->fluid, p->solid, &p->coupler);
+}
+
+/* What the phase allows the solid to do. */
+void porous_enter_phase(porous_run *p)
+{
+  const porous_phase *f = porous_phase_of(p->config, p->phase);
+  bw_coupler_hold_solid(p->coupler, p->phase == PHASE_FLOW);
+  bw_pd_bond_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
+  bw_pd_bond_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
+                         f->settling_rate * p->config->solid.density);
+  if (p->phase == PHASE_BREAKAGE && p->step == 0) p->breakage_start = bw_ns_channel_time(p->fluid);
 }
 
 static void uniform_stream(const double x[3], double t, void *context, double u[3])

@@ -24,7 +24,7 @@ typedef struct {
   int clamped_layers;
 } porous_medium;
 typedef struct {
-  int kernel, iterations, probe_profile;
+  int kernel, iterations, probe_profile, load;
   double retraction, probe_length, solid_safety, load_relaxation;
 } porous_coupling;
 typedef struct {
@@ -71,6 +71,8 @@ typedef struct {
 } porous_run;
 
 bw_status porous_build(porous_run *p) BW_MUST_CHECK;
+/* What p->phase allows the solid to do; the same again changes nothing. Local. */
+void porous_enter_phase(porous_run *p);
 void porous_destroy(porous_run *p);
 /* Print sizes, dimensionless groups and the step against each of its limits. Collective. */
 void porous_describe(porous_run *p);

@@ -58,6 +58,10 @@ static const bw_config_word profile_words[] = {
     {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
     {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
     {NULL, 0, NULL}};
+static const bw_config_word load_words[] = {
+    {"probes", BW_LOAD_PROBES, "stress seen by normal probes, as in POROUS"},
+    {"reaction", BW_LOAD_REACTION, "reaction of the markers, as in FSI"},
+    {NULL, 0, NULL}};
 static const bw_config_field coupling_fields[] = {
     BW_CONFIG_WORD(porous_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
     V(porous_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
@@ -68,6 +72,7 @@ static const bw_config_field coupling_fields[] = {
                    "of the velocity along a probe"),
     V(porous_coupling, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "share of the new fluid load in each step; 1: plain explicit coupling"),
+    BW_CONFIG_WORD(porous_coupling, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(porous_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "solid sub-step over its stability limit"),
     BW_CONFIG_END};
@@ -126,9 +131,10 @@ porous_config porous_config_default(void)
                                     .clamped_layers = 3},
                          .coupling = {.kernel = BW_KERNEL_ROMA3,
                                       .iterations = 2,
-                                      .retraction = 0.5,
+                                      .retraction = 0.3,
                                       .probe_length = 2.0,
                                       .probe_profile = BW_PROBE_QUADRATIC,
+                                      .load = BW_LOAD_PROBES,
                                       .solid_safety = 0.8,
                                       .load_relaxation = 0.1},
                          .flow = phase,

@@ -87,21 +87,27 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
   row[COL_DISPLACEMENT] = sqrt(most[1]) / L[1];
 }
 
-/* Pieces other than the one that the clamped layer holds (the largest). */
+/* Pieces that the clamped layer does not hold. Its first particle is the first of all (lowest in y,
+ * then z), so that the held piece is the one with label 0; without a layer the largest is left out.
+ */
 static bw_status measure_fragments(porous_run *p, double row[])
 {
   bw_pd_fragment *piece = NULL;
-  size_t n = 0;
+  size_t n = 0, held = 0;
   BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece));
-  double detached = 0.0, fastest = 0.0;
-  for (size_t q = 1; q < n; q++) {
+  for (size_t q = 0; p->config->medium.clamped_layers > 0 && q < n; q++)
+    if (piece[q].label == 0) held = q;
+  double detached = 0.0, largest = 0.0, fastest = 0.0;
+  for (size_t q = 0; q < n; q++) {
     const double *v = piece[q].velocity;
+    if (q == held) continue;
     detached += (double)piece[q].particles;
+    largest = fmax(largest, (double)piece[q].particles);
     fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   }
   row[COL_FRAGMENTS] = n > 0 ? (double)(n - 1) : 0.0;
   row[COL_DETACHED] = detached / (double)bw_pd_bond_total(p->solid);
-  row[COL_LARGEST] = n > 1 ? (double)piece[1].particles : 0.0;
+  row[COL_LARGEST] = largest;
   row[COL_FRAGMENT_SPEED] = fastest / p->config->fluid.bulk_velocity;
   bw_release(&piece);
   return BW_OK;

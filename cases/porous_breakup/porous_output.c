@@ -147,17 +147,19 @@ bw_status porous_restart(porous_run *p, const char *path)
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_open(p->comm, path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", N_PROGRESS, progress);
-  BW_THEN(st, bw_coupler_load(p->coupler, ck));
+  if (st == BW_OK) {
+    p->phase = (int)progress[0];
+    p->step = (int64_t)progress[1];
+    p->total_step = (int64_t)progress[2];
+    p->breakage_start = progress[3];
+    p->last_drop = progress[4];
+    p->last_drop_time = progress[5];
+    porous_enter_phase(p); /* before loading: new damping would ask for new forces */
+    st = bw_coupler_load(p->coupler, ck);
+  }
   BW_THEN(st, bw_checkpoint_close(&ck));
   bw_checkpoint_abandon(&ck);
-  BW_TRY(st);
-  p->phase = (int)progress[0];
-  p->step = (int64_t)progress[1];
-  p->total_step = (int64_t)progress[2];
-  p->breakage_start = progress[3];
-  p->last_drop = progress[4];
-  p->last_drop_time = progress[5];
-  return BW_OK;
+  return st;
 }
 
 /* fragments.csv: the pieces at the end, largest first. */

@@ -11,7 +11,7 @@ bw_coupler_config bw_coupler_config_default(void)
                              .nu = NAN,
                              .kernel = BW_KERNEL_ROMA3,
                              .n_iter = 2,
-                             .retraction = 0.5,
+                             .retraction = 0.3,
                              .probe_length = 2.0,
                              .profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
@@ -40,7 +40,7 @@ static bw_status create_parts(bw_coupler *c)
   bw_ibm_mdf_config ibm = bw_ibm_mdf_config_default();
   bw_probe_config probe = bw_probe_config_default();
   bw_pd_interface_config surface = bw_pd_interface_config_default();
-  ibm.kernel = probe.kernel = c->config.kernel;
+  ibm.kernel = c->config.kernel;
   ibm.n_iter = c->config.n_iter;
   probe.length = c->config.probe_length;
   probe.profile = c->config.profile;
@@ -55,12 +55,12 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 13 };
+enum { N_VECTORS = 14 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {&c->F,        &c->V,     &c->V_before, &c->X,      &c->X_inside,
                                    &c->marker_X, &c->root,  &c->marker_V, &c->normal, &c->marker_dV,
-                                   &c->area,     &c->accel, &c->traction};
+                                   &c->area,     &c->accel, &c->traction, &c->force};
   memcpy(vector, all, sizeof all);
 }
 
@@ -88,6 +88,7 @@ static bw_status create_arrays(bw_coupler *c)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
   BW_TRY(BW_ALLOCATE(&c->flag, n));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
+  BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &c->p_mean));
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
 }
 
@@ -127,6 +128,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_release(&c->particle);
   bw_timer_destroy(&c->timer);
   bw_release(&c->flag);
+  bw_release(&c->p_mean);
   bw_release(&c->inside);
   bw_coupler__state_release(&c->kept);
   bw_pd_interface_destroy(&c->interface);

@@ -14,9 +14,14 @@
  * exact, the error in time is of first order, and a delayed added mass damps. w = 1 is POROUS's
  * plain explicit scheme.
  *
+ * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
+ * pressure swings between the sub-steps; what acted over the step is sum_r gamma_r p_r, and that is
+ * what the probes read (the pressure conjugate to ERRATA 18's mean force).
+ *
  * Where the surface is: a particle is a cube of edge ds, so the nominal surface lies ds/2 outside
  * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
- * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
+ * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres. The
+ * default is the best one measured on a cylinder for Roma's kernel and two iterations.
  *
  * The solid can be held (rigid): then no solid step, no load, no surface update is computed.
  * Life: config_default -> create -> { step } -> destroy. All functions are collective unless said
@@ -32,15 +37,22 @@
 
 typedef struct bw_coupler bw_coupler;
 
+/* What loads the solid: the stress that probes see on the surface (POROUS 3.96), or the reaction
+ * of the markers, -rho Q dV (FSI with ERRATA 18). Probes need two cells of room in front of the
+ * surface and give a stress; the reaction is right in sum by construction, also in gaps of a few
+ * cells, and holds the inertia of the fluid inside the body. */
+typedef enum { BW_LOAD_PROBES, BW_LOAD_REACTION } bw_coupler_load_kind;
+
 typedef struct {
   double rho;                /* density of the fluid [M/L^3]                required */
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
-  bw_kernel_delta_id kernel; /*                                             default Roma 3-point */
+  bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
   int n_iter;                /* forcing iterations [-]                      default 2 */
-  double retraction;         /* of the markers, in grid spacings [-]        default 0.5 */
+  double retraction;         /* of the markers, in grid spacings [-]        default 0.3 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
   bw_probe_profile profile;  /* of the velocity along a probe               default quadratic */
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
+  bw_coupler_load_kind load; /*                                             default probes */
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
   bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;

@@ -23,7 +23,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .imbalance = ibm.imbalance};
   double box[3];
   int64_t count[2];
-  if (c->held) BW_TRY(bw_coupler__load(c, 1.0)); /* a moving solid has been loaded by its step */
+  const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
+  if (!probed) BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
   bw_ns_channel_control_volume(c->fluid, box);
   for (int d = 0; d < 3; d++) {
     r.force_reaction[d] = -c->config.rho * ibm.total_force[d];

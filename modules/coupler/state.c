@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { N_FIELDS = 4, ROW = 9 };
+enum { N_FIELDS = 4 };
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 void bw_coupler__state_release(bw_coupler__state *s)
@@ -33,7 +33,7 @@ static bw_status state_create(const bw_coupler *c, bw_coupler__state *s)
   list_fields(c, field);
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
-  BW_TRY(BW_ALLOCATE(&s->rows, ROW * c->n));
+  BW_TRY(BW_ALLOCATE(&s->rows, BW_PD_RESTART_ROW * c->n));
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_pd_bond_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   return BW_ALLOCATE(&s->F, 3 * c->n);
@@ -72,7 +72,8 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", 4, s->sums));
-  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
+  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
+                                 s->rows));
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
@@ -89,7 +90,8 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", 4, s->sums));
-  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, ROW, BW_CK_DOUBLE, s->rows));
+  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
+                                 s->rows));
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
@@ -107,6 +109,7 @@ static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
   bw_ns_channel_set_time(c->fluid, s->fluid_numbers[0]);
   bw_ns_channel_set_gradient(c->fluid, s->fluid_numbers[1]);
   bw_ns_channel_refresh(c->fluid);
+  c->p_mean_known = false;
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);

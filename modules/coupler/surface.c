@@ -130,34 +130,41 @@ static void surface_acceleration(bw_coupler *c, double dt)
   }
 }
 
-/* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */
-static void relax_load(bw_coupler *c)
-{
-  const double w = c->held ? 1.0 : c->config.load_relaxation;
-  const double volume = bw_pd_bond_volume(c->solid);
-  memset(c->force_probe, 0, sizeof c->force_probe);
-  for (size_t i = 0; i < 3 * c->n; i++)
-    c->F[i] *= 1.0 - w;
-  for (size_t q = 0; q < c->n_surface; q++)
-    for (int d = 0; d < 3; d++) {
-      const double force = c->traction[3 * q + d] * c->area[q];
-      c->F[3 * (size_t)c->particle[q] + d] += w * force / volume;
-      c->force_probe[d] += force;
-    }
-}
-
-bw_status bw_coupler__load(bw_coupler *c, double dt)
+bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  const bw_real *p = c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
   bw_pd_bond_get_position(c->solid, c->X);
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
   bw_probe_set_velocity(c->probe, c->marker_V);
   surface_acceleration(c, dt);
-  bw_probe_traction(c->probe, u, bw_ns_channel_pressure(c->fluid), c->accel, c->traction, c->flag);
+  bw_probe_traction(c->probe, u, p, c->accel, c->traction, c->flag);
   bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
-
-  relax_load(c);
+  memset(c->force_probe, 0, sizeof c->force_probe);
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++) {
+      c->force[3 * q + d] = c->traction[3 * q + d] * c->area[q];
+      c->force_probe[d] += c->force[3 * q + d];
+    }
   return BW_OK;
+}
+
+void bw_coupler__reaction_force(bw_coupler *c)
+{
+  bw_ibm_mdf_marker_force(c->ibm, c->force);
+  for (size_t q = 0; q < 3 * c->n_surface; q++)
+    c->force[q] *= -c->config.rho; /* ERRATA 18 */
+}
+
+/* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */
+void bw_coupler__relax_load(bw_coupler *c)
+{
+  const double w = c->config.load_relaxation, volume = bw_pd_bond_volume(c->solid);
+  for (size_t i = 0; i < 3 * c->n; i++)
+    c->F[i] *= 1.0 - w;
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++)
+      c->F[3 * (size_t)c->particle[q] + d] += w * c->force[3 * q + d] / volume;
 }

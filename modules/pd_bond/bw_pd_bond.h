@@ -22,8 +22,11 @@
 typedef struct bw_pd_bond bw_pd_bond;
 
 typedef enum { BW_PD_3D, BW_PD_PLANE_STRESS, BW_PD_PLANE_STRAIN } bw_pd_geometry;
-typedef enum { BW_PD_SURFACE_NONE, BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_ENERGY }
-    bw_pd_surface_correction;
+typedef enum {
+  BW_PD_SURFACE_NONE,
+  BW_PD_SURFACE_VOLUME,
+  BW_PD_SURFACE_ENERGY
+} bw_pd_surface_correction;
 typedef enum {
   BW_PD_FRACTION_LINEAR, /* 3.33 with ERRATA 2; refused in 3D */
   BW_PD_FRACTION_EXACT,
@@ -34,27 +37,27 @@ typedef enum { BW_PD_REACH_HALF_CELL, BW_PD_REACH_HORIZON } bw_pd_family_reach;
 typedef enum { BW_PD_VERLET, BW_PD_RK3 } bw_pd_integrator;
 
 typedef struct {
-  bw_pd_geometry geometry;  /*                                      default 3D */
-  double ds;                /* lattice spacing [L]                  required */
-  double thickness;         /* 2D only [L]                          default 1 */
-  double horizon_ratio;     /* m = horizon/ds [-]                   default 3 */
-  double rho;               /* density [M/L^3]                      required */
-  double E;                 /* Young [M/(L T^2)]                    required */
-  double nu;                /* Poisson: NaN (the model's own) or exactly 1/4, 1/3 (ERRATA 14) */
-  double G0;                /* fracture energy [M/T^2]              default INFINITY */
+  bw_pd_geometry geometry; /*                                      default 3D */
+  double ds;               /* lattice spacing [L]                  required */
+  double thickness;        /* 2D only [L]                          default 1 */
+  double horizon_ratio;    /* m = horizon/ds [-]                   default 3 */
+  double rho;              /* density [M/L^3]                      required */
+  double E;                /* Young [M/(L T^2)]                    required */
+  double nu;               /* Poisson: NaN (the model's own) or exactly 1/4, 1/3 (ERRATA 14) */
+  double G0;               /* fracture energy [M/T^2]              default INFINITY */
   bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* default volume */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
-  bw_pd_integrator integrator;                 /* default Verlet */
-  double damping_pair;      /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
-  double damping_mean;      /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
-  double damping_absolute;  /* -k V (settling) [M/(L^3 T)]          default 0 */
-  bool contact;             /* repulsion of particles nearer than ds that no intact bond joins
-                               (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
-  double origin[3];         /* of the lattice [L]                   default 0 */
-  double axes[3][3];        /* rows: lattice directions             default identity */
-  double period[3];         /* periodic length per direction [L], 0: not periodic. Must be a whole
-                               number of ds along that axis         default 0 */
+  bw_pd_integrator integrator;     /* default Verlet */
+  double damping_pair;             /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
+  double damping_mean;             /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
+  double damping_absolute;         /* -k V (settling) [M/(L^3 T)]          default 0 */
+  bool contact;      /* repulsion of particles nearer than ds that no intact bond joins
+                        (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
+  double origin[3];  /* of the lattice [L]                   default 0 */
+  double axes[3][3]; /* rows: lattice directions             default identity */
+  double period[3];  /* periodic length per direction [L], 0: not periodic. Must be a whole
+                        number of ds along that axis         default 0 */
 } bw_pd_bond_config;
 
 bw_pd_bond_config bw_pd_bond_config_default(void);
@@ -76,9 +79,9 @@ void bw_pd_bond_destroy(bw_pd_bond **pd); /* NULL is fine. Collective. */
 bw_status bw_pd_bond_precrack(bw_pd_bond *pd, const double a[3], const double b[3],
                               const double c[3]) BW_MUST_CHECK;
 
-void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on);  /* default on. Local. */
+void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on); /* default on. Local. */
 void bw_pd_bond_set_damping(bw_pd_bond *pd, double pair, double mean, double absolute); /* Local */
-void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0);         /* new s0. Local. */
+void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0); /* new s0. Local. */
 
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
 void bw_pd_bond_set_force(bw_pd_bond *pd, const double F[]);
@@ -96,16 +99,16 @@ bw_status bw_pd_bond_step(bw_pd_bond *pd, double dt) BW_MUST_CHECK;
 double bw_pd_bond_dt_max(const bw_pd_bond *pd);
 
 /* Views, borrowed until the next step, restart or destroy. Local. */
-size_t bw_pd_bond_count(const bw_pd_bond *pd);              /* particles of this rank */
-int64_t bw_pd_bond_total(const bw_pd_bond *pd);             /* of all ranks */
-const int64_t *bw_pd_bond_id(const bw_pd_bond *pd);         /* (n) global ids */
-const uint8_t *bw_pd_bond_kind(const bw_pd_bond *pd);       /* (n) */
+size_t bw_pd_bond_count(const bw_pd_bond *pd);        /* particles of this rank */
+int64_t bw_pd_bond_total(const bw_pd_bond *pd);       /* of all ranks */
+const int64_t *bw_pd_bond_id(const bw_pd_bond *pd);   /* (n) global ids */
+const uint8_t *bw_pd_bond_kind(const bw_pd_bond *pd); /* (n) */
 const bw_pd_bond_config *bw_pd_bond_settings(const bw_pd_bond *pd);
-const bw_comm *bw_pd_bond_comm(const bw_pd_bond *pd);       /* of create, borrowed */
+const bw_comm *bw_pd_bond_comm(const bw_pd_bond *pd); /* of create, borrowed */
 double bw_pd_bond_horizon(const bw_pd_bond *pd);
-double bw_pd_bond_micromodulus(const bw_pd_bond *pd);       /* c0 [M/(L^7 T^2)] */
-double bw_pd_bond_critical_stretch(const bw_pd_bond *pd);   /* s0 [-] */
-double bw_pd_bond_volume(const bw_pd_bond *pd);             /* of one particle [L^3] */
+double bw_pd_bond_micromodulus(const bw_pd_bond *pd);     /* c0 [M/(L^7 T^2)] */
+double bw_pd_bond_critical_stretch(const bw_pd_bond *pd); /* s0 [-] */
+double bw_pd_bond_volume(const bw_pd_bond *pd);           /* of one particle [L^3] */
 
 /* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
  * Local. */
@@ -121,7 +124,11 @@ void bw_pd_bond_set_state(bw_pd_bond *pd, const double X[], const double V[]); /
  * index into the extended arrays of get_extended (own particles first, then copies of other
  * ranks' particles and periodic images), `slot` the number of the bond's direction in the stencil
  * (the same for the same lattice offset everywhere), `intact` whether it still holds. Local. */
-typedef struct { int32_t neighbour; int16_t slot; bool intact; } bw_pd_bond_link;
+typedef struct {
+  int32_t neighbour;
+  int16_t slot;
+  bool intact;
+} bw_pd_bond_link;
 int bw_pd_bond_max_family(const bw_pd_bond *pd);
 int bw_pd_bond_links(const bw_pd_bond *pd, size_t h, bw_pd_bond_link link[]);
 const double *bw_pd_bond_stencil_offset(const bw_pd_bond *pd, int slot); /* xi [L], [3] */
@@ -129,7 +136,11 @@ double bw_pd_bond_stencil_fraction(const bw_pd_bond *pd, int slot);      /* Gamm
 
 /* Own particles and copies. id: global id; X: present position, copies shifted to where they act.
  * n_extended >= count; borrowed until the next step. Collective (updates the copies). */
-typedef struct { size_t n; const int64_t *id; const bw_real *X; } bw_pd_bond_extended;
+typedef struct {
+  size_t n;
+  const int64_t *id;
+  const bw_real *X;
+} bw_pd_bond_extended;
 bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
 
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
@@ -144,13 +155,13 @@ int64_t bw_pd_bond_events(const bw_pd_bond *pd);
 void bw_pd_bond_get_broken(const bw_pd_bond *pd, uint16_t broken[]);
 
 typedef struct {
-  double kinetic, elastic;         /* [M L^2/T^2] present */
-  double contact;                  /* elastic energy of contact, present */
-  double damping, fracture;        /* dissipated since the start (or restart's stored value) */
-  double external;                 /* work of F and of prescribed motion since the start */
-  double momentum[3], angular[3];  /* about the origin */
-  int64_t bonds, broken;           /* undirected bonds: at the start without those a pre-crack cut;
-                                      broken by stretch since */
+  double kinetic, elastic;        /* [M L^2/T^2] present */
+  double contact;                 /* elastic energy of contact, present */
+  double damping, fracture;       /* dissipated since the start (or restart's stored value) */
+  double external;                /* work of F and of prescribed motion since the start */
+  double momentum[3], angular[3]; /* about the origin */
+  int64_t bonds, broken;          /* undirected bonds: at the start without those a pre-crack cut;
+                                     broken by stretch since */
 } bw_pd_bond_ledger;
 bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
 
@@ -159,10 +170,11 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
 size_t bw_pd_bond_bits_bytes(const bw_pd_bond *pd);
 void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[]);
 bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[]) BW_MUST_CHECK;
-/* Everything else a restart needs: X0-relative displacement, V, acceleration without F (n,9), and
- * the ledger's running sums of all ranks (4: damping, fracture, external, directed bonds cut by
- * pre-cracks). Set bits and rows, in any order, then force and prescribed velocities: the run goes
- * on to the same bits; of the ledger one kick's damping is split anew. Both collective. */
+enum { BW_PD_RESTART_ROW = 12 };
+/* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
+ * part (n,12), and the ledger's running sums of all ranks (4: damping, fracture, external, directed
+ * bonds cut by pre-cracks). Set bits and rows, in any order, then force and prescribed velocities:
+ * the run goes on to the same bits. Both collective. */
 void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4]);
 bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[],
                                  const double sums[4]) BW_MUST_CHECK;

@@ -40,10 +40,7 @@ bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[])
     }
   }
   pd->events++;
-  if (!pd->restored)
-    pd->current = false;
-  else if (bw_pd_bond__damped(pd))
-    bw_pd_bond__damping(pd, 0, NULL); /* for the book only */
+  if (!pd->restored) pd->current = false;
   return BW_OK;
 }
 
@@ -51,9 +48,11 @@ void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4])
 {
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++) {
-      rows[9 * i + k] = (double)pd->u[k][pd->place[i]];
-      rows[9 * i + 3 + k] = (double)pd->v[k][i];
-      rows[9 * i + 6 + k] = (double)(pd->a[k][i] + pd->extra[k][i]);
+      double *row = rows + BW_PD_RESTART_ROW * i + k;
+      row[0] = (double)pd->u[k][pd->place[i]];
+      row[3] = (double)pd->v[k][i];
+      row[6] = (double)(pd->a[k][i] + pd->extra[k][i]);
+      row[9] = (double)pd->damp[k][i];
     }
   double mine[4] = {pd->done_damping, pd->done_fracture, pd->done_external, (double)pd->precracked};
   bw_comm_sum(pd->comm, 4, mine);
@@ -65,10 +64,12 @@ bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const doub
 {
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++) {
-      pd->u[k][pd->place[i]] = (bw_real)rows[9 * i + k];
-      pd->v[k][i] = (bw_real)rows[9 * i + 3 + k];
-      pd->a[k][i] = (bw_real)rows[9 * i + 6 + k];
-      pd->extra[k][i] = 0; /* inside a */
+      const double *row = rows + BW_PD_RESTART_ROW * i + k;
+      pd->u[k][pd->place[i]] = (bw_real)row[0];
+      pd->v[k][i] = (bw_real)row[3];
+      pd->a[k][i] = (bw_real)row[6];
+      pd->damp[k][i] = (bw_real)row[9]; /* for the book: that of Verlet is of the half step */
+      pd->extra[k][i] = 0;              /* inside a */
     }
   bw_pd_bond__adopt_prescribed(pd);
   const bool first = bw_comm_rank(pd->comm) == 0;
@@ -77,7 +78,6 @@ bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const doub
   pd->done_external = first ? sums[2] : 0;
   pd->precracked = first ? (int64_t)sums[3] : 0;
   bw_pd_bond__refresh(pd, true);
-  if (bw_pd_bond__damped(pd)) bw_pd_bond__damping(pd, 0, NULL); /* for the book only */
   pd->current = pd->restored = true;
   pd->loaded = pd->config.contact || bw_pd_bond__damped(pd);
   return BW_OK;

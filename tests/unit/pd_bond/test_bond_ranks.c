@@ -111,11 +111,11 @@ static void restart_from(const bw_pd_bond *from, bw_pd_bond *to)
   const size_t bytes = bw_pd_bond_bits_bytes(from);
   double *rows = NULL, *moved = NULL, sums[4];
   uint8_t *bits = NULL;
-  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + 9)));
-  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + 9)));
+  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_PD_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_PD_RESTART_ROW)));
   bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
   bw_pd_bond_get_restart(from, rows, sums);
-  move_rows(from, to, 9, rows, moved);
+  move_rows(from, to, BW_PD_RESTART_ROW, rows, moved);
   bw_check_ok(bw_pd_bond_set_restart(to, moved, sums));
   bw_pd_bond_get_bits(from, bits);
   for (size_t q = 0; q < n * bytes; q++)

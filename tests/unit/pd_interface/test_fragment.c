@@ -162,9 +162,50 @@ START_TEST(a_piece_across_the_seam_is_whole)
 }
 END_TEST
 
+/* A crooked piece, whose axes of inertia are oblique, that turns about any axis. */
+START_TEST(spin_of_a_crooked_piece)
+{
+  const bw_shape shape[] = {{.kind = BW_SHAPE_BOX, .upper = {9, 3, 3}},
+                            {.kind = BW_SHAPE_BOX, .lower = {6, 0, 0}, .upper = {9, 8, 3}},
+                            {.kind = BW_SHAPE_BOX, .lower = {6, 5, 0}, .upper = {9, 8, 7}}};
+  const bw_pd_bond_config c = body_config(false);
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  body b = body_create(3, shape, &c, &ic);
+  const size_t n = bw_pd_bond_count(b.pd);
+  double *X = NULL, *V = NULL, centre[3] = {0.0, 0.0, 0.0};
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  for (int64_t q = 0; q < 3 * b.n; q++)
+    centre[q % 3] += (b.site[q] + 0.5) / (double)b.n;
+  const double spin[3] = {0.3, -0.7, 0.2}, v[3] = {1, 2, 3};
+  bw_pd_bond_get_reference(b.pd, X);
+  for (size_t h = 0; h < n; h++)
+    for (size_t d = 0; d < 3; d++) {
+      const size_t e = (d + 1) % 3, f = (d + 2) % 3;
+      V[3 * h + d] =
+          v[d] + spin[e] * (X[3 * h + f] - centre[f]) - spin[f] * (X[3 * h + e] - centre[e]);
+    }
+  bw_pd_bond_set_state(b.pd, X, V);
+  size_t pieces = 0;
+  bw_pd_fragment *list = NULL;
+  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));
+  ck_assert_uint_eq(pieces, 1);
+  for (int d = 0; d < 3; d++) {
+    bw_check_near(list[0].centre[d], centre[d], 2e-6);
+    bw_check_near(list[0].velocity[d], v[d], 2e-6);
+    bw_check_near(list[0].spin[d], spin[d], 2e-6);
+  }
+  bw_release(&list);
+  bw_release(&X);
+  bw_release(&V);
+  body_destroy(&b);
+}
+END_TEST
+
 static const bw_check_test tests[] = {
     BW_TEST(separate_bodies_with_known_motions),
     BW_TEST(broken_bonds_part_a_body),
     BW_TEST(a_piece_across_the_seam_is_whole),
+    BW_TEST(spin_of_a_crooked_piece),
 };
 BW_CHECK_MAIN("pd_interface.fragment", tests)

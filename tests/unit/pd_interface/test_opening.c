@@ -239,6 +239,8 @@ START_TEST(following_agrees_with_looking_anew)
     for (size_t row = 0; row < one.n; row++) {
       ck_assert_int_eq(one.particle[row], two.particle[row]);
       ck_assert_double_eq(one.A[row], two.A[row]);
+      for (size_t d = 0; d < 3; d++)
+        bw_check_near(one.N[3 * row + d], two.N[3 * row + d], 1e-9);
     }
     bw_pd_interface_destroy(&anew);
   }

@@ -1,0 +1,81 @@
+/* Cost of a peridynamic force evaluation per directed bond, on one rank and on all.
+ *
+ * Block 48 x 32 x 32, family |xi| < 3.015 ds. Rival: LAMMPS, style peri/pmb, measured on a machine
+ * of this kind: 154 ms per step on one core, 72 on two. Floor: positions read once and forces
+ * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
+ * BUILD modules=pd_bond
+ * TEST ranks=2 */
+#include "bw_bench.h"
+#include "bw_memory.h"
+#include "bw_pd_bond.h"
+#include "bw_pd_shape.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { STEPS = 5 };
+typedef struct {
+  bw_pd_bond *pd;
+  double dt;
+  bw_status st;
+} solid_work;
+
+static void advance(void *context)
+{
+  solid_work *w = context;
+  for (int q = 0; q < STEPS; q++)
+    BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
+}
+
+static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, double rival,
+                         double triad)
+{
+  const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
+  bw_pd_bond_config c = bw_pd_bond_config_default();
+  solid_work w = {0};
+  int64_t n = 0;
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = 3.015;
+  c.family_reach = BW_PD_REACH_HORIZON;
+  bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &w.pd));
+  if (st == BW_OK) {
+    const double bonds = 2.0 * (double)bw_pd_bond_account(w.pd).bonds;
+    w.dt = 0.5 * bw_pd_bond_dt_max(w.pd);
+    const double seconds = bw_bench_median(comm, advance, &w) / STEPS;
+    double bytes = (double)bw_pd_bond_memory(w.pd).lists;
+    bw_comm_sum(comm, 1, &bytes);
+    const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
+    bw_bench_put(b, &(bw_bench_row){name, "ms_per_force_evaluation", "ms", 1e3 * seconds,
+                                    "LAMMPS peri/pmb", rival,
+                                    1e3 * moved / (triad * bw_comm_size(comm))});
+    bw_bench_put(b, &(bw_bench_row){name, "ns_per_directed_bond", "ns",
+                                    1e9 * seconds * bw_comm_size(comm) / bonds, NULL, NAN, NAN});
+    bw_bench_put(
+        b, &(bw_bench_row){name, "bytes_per_directed_bond", "B", bytes / bonds, NULL, NAN, NAN});
+    st = w.st;
+  }
+  bw_pd_bond_destroy(&w.pd);
+  bw_release(&site);
+  bw_release(&kind);
+  return st;
+}
+
+static bw_status run(bw_bench *b)
+{
+  const bw_comm *comm = bw_bench_comm(b);
+  const double triad = bw_bench_triad(comm);
+  bw_comm *self = NULL;
+  bw_status st = bw_comm_self(&self);
+  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "block_48x32x32_np1", 154, triad));
+  st = bw_comm_agree(comm, st); /* the others wait here */
+  if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 72, triad));
+  bw_comm_destroy(&self);
+  return st;
+}
+
+int main(int argc, char **argv)
+{
+  return bw_bench_main(argc, argv, "solid", run);
+}

@@ -1,0 +1,127 @@
+#include "bw_bench.h"
+#include "bw_folder.h"
+#include "bw_memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct bw_bench {
+  bw_comm *comm;
+  FILE *file; /* rank 0 */
+  int rows;
+};
+
+const bw_comm *bw_bench_comm(const bw_bench *b)
+{
+  return b->comm;
+}
+
+/* JSON has no inf and nan. */
+static void put_number(FILE *f, const char *key, double x, const char *end)
+{
+  if (isfinite(x))
+    fprintf(f, "\"%s\": %.6g%s", key, x, end);
+  else
+    fprintf(f, "\"%s\": null%s", key, end);
+}
+
+void bw_bench_put(bw_bench *b, const bw_bench_row *r)
+{
+  if (b->file == NULL) return;
+  fprintf(b->file, "%s\n  {\"case\": \"%s\", \"quantity\": \"%s\", ", b->rows++ > 0 ? "," : "",
+          r->name, r->quantity);
+  put_number(b->file, "value", r->value, ", ");
+  fprintf(b->file, "\"unit\": \"%s\", \"rival\": \"%s\", ", r->unit,
+          r->rival != NULL ? r->rival : "");
+  put_number(b->file, "rival_value", r->rival != NULL ? r->rival_value : NAN, ", ");
+  put_number(b->file, "floor_value", r->floor_value, ", ");
+  put_number(b->file, "ratio_to_rival", r->rival != NULL ? r->value / r->rival_value : NAN, ", ");
+  put_number(b->file, "ratio_to_floor", r->value / r->floor_value, "}");
+  fflush(b->file);
+  printf("%-28s %-28s %10.4g %-12s", r->name, r->quantity, r->value, r->unit);
+  if (r->rival != NULL)
+    printf("  %5.2f of %s (%.4g)", r->value / r->rival_value, r->rival, r->rival_value);
+  if (isfinite(r->floor_value))
+    printf("  %5.2f of the floor (%.4g)", r->value / r->floor_value, r->floor_value);
+  printf("\n");
+  fflush(stdout);
+}
+
+static int by_size(const void *a, const void *b)
+{
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+double bw_bench_median(const bw_comm *comm, void (*work)(void *), void *context)
+{
+  double seconds[BW_BENCH_REPETITIONS];
+  work(context);
+  for (int q = 0; q < BW_BENCH_REPETITIONS; q++) {
+    bw_comm_barrier(comm);
+    const double start = bw_wall_time();
+    work(context);
+    seconds[q] = bw_wall_time() - start;
+  }
+  bw_comm_max(comm, BW_BENCH_REPETITIONS, seconds);
+  qsort(seconds, BW_BENCH_REPETITIONS, sizeof *seconds, by_size);
+  return seconds[BW_BENCH_REPETITIONS / 2];
+}
+
+typedef struct {
+  double *a, *b, *c;
+  size_t n;
+} triad_arrays;
+
+static void triad(void *context)
+{
+  const triad_arrays *t = context;
+  double *restrict a = t->a;
+  const double *restrict b = t->b, *restrict c = t->c;
+#pragma omp simd
+  for (size_t i = 0; i < t->n; i++)
+    a[i] = b[i] + 0.5 * c[i];
+}
+
+double bw_bench_triad(const bw_comm *comm)
+{
+  triad_arrays t = {.n = (size_t)1 << 25}; /* 256 MiB each: no cache holds them */
+  double rate = NAN;
+  bw_status st = BW_ALLOCATE(&t.a, t.n);
+  BW_THEN(st, BW_ALLOCATE(&t.b, t.n));
+  BW_THEN(st, BW_ALLOCATE(&t.c, t.n));
+  if (bw_comm_agree(comm, st) == BW_OK)
+    rate = 3.0 * sizeof(double) * (double)t.n / bw_bench_median(comm, triad, &t);
+  bw_release(&t.a);
+  bw_release(&t.b);
+  bw_release(&t.c);
+  return rate;
+}
+
+static bw_status open_file(bw_bench *b, const char *name)
+{
+  const char *build = getenv("BW_BUILD_DIR");
+  char path[640];
+  snprintf(path, sizeof path, "%s/bench", build != NULL ? build : "build");
+  BW_TRY(bw_folder_make(b->comm, path));
+  if (bw_comm_rank(b->comm) != 0) return BW_OK;
+  snprintf(path, sizeof path, "%s/bench/%s.json", build != NULL ? build : "build", name);
+  b->file = fopen(path, "w");
+  BW_REQUIRE(b->file != NULL, BW_EIO, "%s: cannot be written", path);
+  fputs("[", b->file);
+  return BW_OK;
+}
+
+int bw_bench_main(int argc, char **argv, const char *name, bw_status (*run)(bw_bench *b))
+{
+  bw_bench b = {0};
+  bw_status st = bw_init(&argc, &argv, &b.comm);
+  BW_THEN(st, bw_comm_agree(b.comm, open_file(&b, name)));
+  BW_THEN(st, run(&b));
+  if (b.file != NULL) {
+    fputs("\n]\n", b.file);
+    fclose(b.file);
+  }
+  return bw_finish(&b.comm, st);
+}

@@ -1,0 +1,40 @@
+/* channel_case.h -- turbulent channel flow: what the sources of the case share. */
+#pragma once
+#include "bw_case.h"
+#include "bw_history.h"
+#include "channel_flow.h"
+
+/* What the YAML file says (tables in channel_config.c). */
+typedef struct {
+  double length[3];
+  int cells[3];
+} channel_domain;
+typedef struct {
+  double reynolds, perturbation;
+} channel_fluid;
+typedef struct {
+  double spin_up, statistics, interval, courant_share;
+} channel_time;
+typedef struct {
+  double checkpoint_every;
+} channel_output;
+typedef struct {
+  channel_domain domain;
+  channel_fluid fluid;
+  channel_time time;
+  channel_output output;
+} channel_case;
+
+extern const bw_config_field channel_fields[];
+channel_case channel_case_default(void);
+channel_config channel_config_of(const channel_case *c);
+
+/* channel_output.c: sizes and times of what will run. Local. */
+void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log);
+bw_status channel_open_history(const bw_comm *comm, const bw_case *run, double restart_time,
+                               bw_history **out) BW_MUST_CHECK;
+/* A row of history.csv; returns Re_tau of the present wall shear. Collective. */
+double channel_record(channel_flow *f, bw_history *history);
+/* centres.csv and faces.csv in wall units, scalars.csv; nothing before the first full batches.
+ * Collective. */
+bw_status channel_profiles(channel_flow *f, const bw_case *run) BW_MUST_CHECK;

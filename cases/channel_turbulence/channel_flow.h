@@ -1,0 +1,183 @@
+/* channel_flow.h -- the recipe of turbulent channel flow: objects, initial field, an interval of
+ * time, checkpoints. The case and validation/ns_channel/channel_turbulence.c run this same code.
+ *
+ * Units: h (full height) and U_b (bulk velocity, held constant), so nu = 1/Re_b. Time advances in
+ * equal intervals; within one all steps are equal, a share of the largest stable one at its
+ * start: what follows a checkpoint (between intervals) does not depend on whether it was read. */
+#pragma once
+#include "bw_checkpoint.h"
+#include "bw_memory.h"
+#include "bw_ns_statistics.h"
+
+#include <limits.h>
+#include <math.h>
+
+typedef struct {
+  double length[3]; /* box [h]; length[1] is 1 */
+  int cells[3];
+  double reynolds;      /* U_b h/nu */
+  double perturbation;  /* of the laminar profile that the run starts from [U_b] */
+  double interval;      /* between samples [h/U_b] */
+  double courant_share; /* of the largest stable step */
+  double spin_up;       /* before statistics begin [h/U_b] */
+} channel_config;
+
+typedef struct {
+  const channel_config *config;
+  bw_grid *grid;
+  bw_ns_channel *fluid;
+  bw_ns_statistics *statistics;
+  double *state;       /* the statistics' numbers on their way to disk */
+  int64_t intervals;   /* done */
+  int64_t steps;       /* done */
+  double dt, gradient; /* of the last interval: the step, the mean of -dp/dx */
+} channel_flow;
+
+static inline void channel_destroy(channel_flow *f)
+{
+  bw_release(&f->state);
+  bw_ns_statistics_destroy(&f->statistics);
+  bw_ns_channel_destroy(&f->fluid);
+  bw_grid_destroy(&f->grid);
+}
+
+/* A number in (-1, 1) that looks random, the same on all machines and ranks. */
+static inline double channel_noise(const double x[3], int c)
+{
+  uint64_t s = 0x9e3779b97f4a7c15u * (uint64_t)(c + 1);
+  for (int d = 0; d < 3; d++) {
+    s ^= (uint64_t)(int64_t)llround(x[d] * 1048576.0) + 0x9e3779b97f4a7c15u + (s << 6) + (s >> 2);
+    s = (s ^ (s >> 30)) * 0xbf58476d1ce4e5b9u; /* the mixing steps of splitmix64 */
+    s = (s ^ (s >> 27)) * 0x94d049bb133111ebu;
+    s ^= s >> 31;
+  }
+  return (double)(s >> 11) * 0x1p-52 - 1.0;
+}
+
+/* The laminar parabola; rolls along the stream that lift slow fluid (whose streaks break down),
+ * waves across them and noise that break every symmetry. Rolls are some 0.8 h apart, waves 2 h.
+ * What is not free of divergence the solver projects away. */
+static inline void channel_initial(const double x[3], double t, void *context, double u[3])
+{
+  const channel_config *q = context;
+  const double pi = acos(-1.0), y = x[1];
+  const double kz = 2.0 * pi * fmax(1.0, round(q->length[2] / 0.8)) / q->length[2];
+  const double kx = 2.0 * pi * fmax(1.0, round(q->length[0] / 2.0)) / q->length[0];
+  const double f = pow(sin(pi * y), 2.0), df = pi * sin(2.0 * pi * y), a = q->perturbation;
+  (void)t;
+  u[0] = 6.0 * y * (1.0 - y) + a * f * sin(kx * x[0]) * sin(kz * x[2] + 1.0);
+  u[1] = a * f * (cos(kz * x[2]) + 0.5 * cos(kx * x[0] + 0.7) * cos(0.5 * kz * x[2]));
+  u[2] = -a * df / kz * sin(kz * x[2]) + 0.5 * a * f * sin(kx * x[0] + 2.0);
+  for (int c = 0; c < 3; c++)
+    u[c] += 0.2 * a * f * channel_noise(x, c);
+}
+
+/* All objects; the fluid is at rest. `config` is borrowed until destroy. */
+static inline bw_status channel_create(const bw_comm *comm, const channel_config *config,
+                                       channel_flow *f)
+{
+  *f = (channel_flow){.config = config};
+  bw_grid_config grid = bw_grid_config_default();
+  for (int d = 0; d < 3; d++)
+    grid.n[d] = config->cells[d], grid.length[d] = config->length[d], grid.periodic[d] = d != 1;
+  BW_TRY(bw_grid_create(comm, &grid, &f->grid));
+  bw_ns_channel_config c = bw_ns_channel_config_default();
+  for (int s = 0; s < 2; s++)
+    c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
+  c.nu = 1.0 / config->reynolds;
+  c.forcing = BW_FORCING_FLOW_RATE;
+  c.forcing_value = 1.0;
+  BW_TRY(bw_ns_channel_create(f->grid, &c, &f->fluid));
+  BW_TRY(bw_ns_statistics_create(f->fluid, &f->statistics));
+  return bw_comm_agree(comm, BW_ALLOCATE(&f->state, bw_ns_statistics_state_size(f->statistics)));
+}
+
+static inline bw_status channel_start(channel_flow *f)
+{
+  channel_config at_start = *f->config;
+  return bw_ns_channel_set_velocity(f->fluid, channel_initial, &at_start, 0.0);
+}
+
+static inline bool channel_sampling(const channel_flow *f)
+{
+  return (double)f->intervals * f->config->interval > f->config->spin_up * (1.0 + 1e-12);
+}
+
+/* One interval; a sample at its end once the flow is spun up. */
+static inline bw_status channel_advance(channel_flow *f)
+{
+  const channel_config *q = f->config;
+  const double longest = q->courant_share * bw_ns_channel_dt_max(f->fluid);
+  const int n = (int)ceil(q->interval / longest);
+  f->dt = q->interval / n;
+  f->gradient = 0.0;
+  for (int step = 0; step < n; step++) {
+    BW_TRY(bw_ns_channel_step(f->fluid, f->dt));
+    f->gradient += bw_ns_channel_gradient(f->fluid) / n; /* that of the last sub-step */
+  }
+  f->steps += n;
+  f->intervals++;
+  bw_ns_channel_set_time(f->fluid, (double)f->intervals * q->interval);
+  if (channel_sampling(f)) bw_ns_statistics_sample(f->statistics);
+  return BW_OK;
+}
+
+enum { CHANNEL_PROGRESS = 4 };
+static const char *const channel_field_name[4] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
+
+static inline bw_status channel_save(channel_flow *f, const char *path)
+{
+  bw_real *const *u = bw_ns_channel_velocity(f->fluid);
+  const bw_real *field[4] = {u[0], u[1], u[2], bw_ns_channel_pressure(f->fluid)};
+  const double progress[CHANNEL_PROGRESS] = {(double)f->intervals, (double)f->steps,
+                                             f->config->interval, bw_ns_channel_gradient(f->fluid)};
+  bw_checkpoint *ck = NULL;
+  bw_ns_statistics_get_state(f->statistics, f->state);
+  bw_status st = bw_checkpoint_create(bw_grid_comm(f->grid), path, &ck);
+  BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "channel_turbulence"));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "statistics",
+                                        (int)bw_ns_statistics_state_size(f->statistics), f->state));
+  for (int c = 0; c < 4; c++)
+    BW_THEN(st,
+            bw_checkpoint_put_field(ck, channel_field_name[c], f->grid, c % 3, false, field[c]));
+  BW_THEN(st, bw_checkpoint_close(&ck));
+  bw_checkpoint_abandon(&ck);
+  return st;
+}
+
+static inline bw_status channel_load(channel_flow *f, const char *path)
+{
+  bw_real *const *u = bw_ns_channel_velocity(f->fluid);
+  bw_real *field[4] = {u[0], u[1], u[2], bw_ns_channel_pressure(f->fluid)};
+  double progress[CHANNEL_PROGRESS];
+  bw_checkpoint *ck = NULL;
+  BW_TRY(bw_checkpoint_open(bw_grid_comm(f->grid), path, &ck));
+  bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress);
+  if (st == BW_OK && fabs(progress[2] / f->config->interval - 1.0) > 1e-12)
+    st = BW_FAIL(BW_EINPUT, "%s was written with samples every %g h/U_b, not %g", path, progress[2],
+                 f->config->interval);
+  BW_THEN(st, bw_checkpoint_get_numbers(ck, "statistics",
+                                        (int)bw_ns_statistics_state_size(f->statistics), f->state));
+  BW_THEN(st, bw_ns_statistics_set_state(f->statistics, f->state));
+  for (int c = 0; c < 4; c++)
+    BW_THEN(st,
+            bw_checkpoint_get_field(ck, channel_field_name[c], f->grid, c % 3, false, field[c]));
+  BW_THEN(st, bw_checkpoint_close(&ck));
+  bw_checkpoint_abandon(&ck);
+  if (st != BW_OK) return st;
+  f->intervals = (int64_t)progress[0];
+  f->steps = (int64_t)progress[1];
+  bw_ns_channel_set_gradient(f->fluid, progress[3]);
+  bw_ns_channel_set_time(f->fluid, progress[0] * progress[2]);
+  bw_ns_channel_refresh(f->fluid);
+  return BW_OK;
+}
+
+/* u_tau/U_b from the mean wall shear of the statistics, and its 95 % interval. */
+static inline bw_ns_estimate channel_u_tau(const channel_flow *f, bw_ns_estimate work[])
+{
+  bw_ns_statistics_profile(f->statistics, BW_NS_PROFILE_SHEAR, true, work);
+  const double u = sqrt(work[0].mean);
+  return (bw_ns_estimate){u, 0.5 * work[0].interval / u};
+}

@@ -1,0 +1,149 @@
+#include "channel_case.h"
+
+#include <stdio.h>
+
+void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log)
+{
+  const bw_grid_view *g = bw_grid_look(f->grid);
+  /* wall units of the expected Re_tau = 0.09 Re_b^0.88 (Pope 2000, eq. 7.54, with Re_b on h) */
+  const double re_tau = 0.09 * pow(c->fluid.reynolds, 0.88), plus = 2.0 * re_tau;
+  bw_log_info(log,
+              "Re_b = %g, %d x %d x %d cells; expected Re_tau about %.0f, cells %.1f x %.1f x %.1f "
+              "wall units\n%g h/U_b to spin up, then %g of statistics, a sample every %g",
+              c->fluid.reynolds, g->n[0], g->n[1], g->n[2], re_tau, g->spacing[0] * plus,
+              g->spacing[1] * plus, g->spacing[2] * plus, c->time.spin_up, c->time.statistics,
+              c->time.interval);
+}
+
+bw_status channel_open_history(const bw_comm *comm, const bw_case *run, double restart_time,
+                               bw_history **out)
+{
+  static const char *const names[] = {
+      "time[h/U_b]", "Re_tau_gradient[-]",     "Re_tau_wall[-]", "bulk_velocity[U_b]",
+      "dt[h/U_b]",   "kinetic_energy[U_b2/2]", "samples[-]"};
+  char *path = NULL;
+  bw_status st = bw_case_path(run, "history.csv", &path);
+  BW_THEN(st,
+          bw_history_create(comm, path, sizeof names / sizeof *names, names, restart_time, out));
+  bw_release(&path);
+  return st;
+}
+
+double channel_record(channel_flow *f, bw_history *history)
+{
+  const bw_ns_summary now = bw_ns_channel_summary(f->fluid);
+  const double *L = f->config->length, half = 0.5 * f->config->reynolds; /* (h/2) U_b/nu */
+  double shear[2];
+  bw_ns_channel_wall_shear(f->fluid, shear);
+  const double re_tau = half * sqrt(fmax(0.0, 0.5 * (shear[0] + shear[1])));
+  const double row[] = {bw_ns_channel_time(f->fluid),
+                        half * sqrt(fmax(0.0, 0.5 * f->gradient)), /* u_tau^2 = G h/2 */
+                        re_tau,
+                        now.bulk_velocity,
+                        f->dt,
+                        2.0 * now.kinetic_energy / (L[0] * L[1] * L[2]),
+                        (double)bw_ns_statistics_samples(f->statistics)};
+  bw_history_append(history, row);
+  return re_tau;
+}
+
+/* ---- profiles in wall units, lower half of the folded channel ---- */
+typedef struct {
+  const char *name;
+  bw_ns_profile_kind kind;
+  int power; /* of u_tau that makes it dimensionless; -1: over u_tau^2/nu; 0: it is */
+} column;
+
+static const column centre_columns[] = {{"U_plus", BW_NS_PROFILE_U, 1},
+                                        {"u_rms_plus", BW_NS_PROFILE_U_RMS, 1},
+                                        {"w_rms_plus", BW_NS_PROFILE_W_RMS, 1},
+                                        {"W_plus", BW_NS_PROFILE_W, 1},
+                                        {"uw_plus", BW_NS_PROFILE_UW, 2},
+                                        {"P_plus", BW_NS_PROFILE_P, 2},
+                                        {"p_rms_plus", BW_NS_PROFILE_P_RMS, 2},
+                                        {"omega_y_rms_plus", BW_NS_PROFILE_OY_RMS, -1},
+                                        {"u_skewness", BW_NS_PROFILE_U_SKEWNESS, 0},
+                                        {"u_flatness", BW_NS_PROFILE_U_FLATNESS, 0},
+                                        {"w_skewness", BW_NS_PROFILE_W_SKEWNESS, 0},
+                                        {"w_flatness", BW_NS_PROFILE_W_FLATNESS, 0}};
+static const column face_columns[] = {{"V_plus", BW_NS_PROFILE_V, 1},
+                                      {"v_rms_plus", BW_NS_PROFILE_V_RMS, 1},
+                                      {"uv_plus", BW_NS_PROFILE_UV, 2},
+                                      {"vw_plus", BW_NS_PROFILE_VW, 2},
+                                      {"shear_plus", BW_NS_PROFILE_SHEAR, 2},
+                                      {"total_stress_plus", BW_NS_PROFILE_TOTAL, 2},
+                                      {"omega_x_rms_plus", BW_NS_PROFILE_OX_RMS, -1},
+                                      {"omega_z_rms_plus", BW_NS_PROFILE_OZ_RMS, -1},
+                                      {"v_skewness", BW_NS_PROFILE_V_SKEWNESS, 0},
+                                      {"v_flatness", BW_NS_PROFILE_V_FLATNESS, 0}};
+
+/* Every column and, behind it, its 95 % half width. work: (n + 1) rows of 2 n_columns. */
+static void write_table(FILE *out, const channel_flow *f, bool faces, int n_columns,
+                        const column columns[], double u_tau, bw_ns_estimate work[])
+{
+  const bw_grid_view *g = bw_grid_look(f->grid);
+  const double re = f->config->reynolds;
+  const size_t rows = (size_t)g->n[1] + 1;
+  fputs("y_over_h[-],y_plus[-]", out);
+  for (int c = 0; c < n_columns; c++) {
+    fprintf(out, ",%s[-],%s_ci95[-]", columns[c].name, columns[c].name);
+    bw_ns_statistics_profile(f->statistics, columns[c].kind, true, work + (size_t)c * rows);
+  }
+  for (int j = faces ? 0 : 1; j <= (faces ? g->n[1] / 2 : (g->n[1] + 1) / 2); j++) {
+    const double y = faces ? g->y_face[j] : g->y_centre[j];
+    fprintf(out, "\n%.9g,%.9g", y, y * u_tau * re);
+    for (int c = 0; c < n_columns; c++) {
+      const bw_ns_estimate e = work[(size_t)c * rows + (size_t)j];
+      const double unit =
+          columns[c].power < 0 ? u_tau * u_tau * re : pow(u_tau, (double)columns[c].power);
+      fprintf(out, ",%.9g,%.3g", e.mean / unit, e.interval / unit);
+    }
+  }
+  fputc('\n', out);
+}
+
+static void write_scalars(FILE *out, const channel_flow *f, bw_ns_estimate work[])
+{
+  const int n = f->config->cells[1];
+  const double half = 0.5 * f->config->reynolds;
+  const bw_ns_estimate u = channel_u_tau(f, work);
+  bw_ns_statistics_profile(f->statistics, BW_NS_PROFILE_U, true, work);
+  const int c = (n + 1) / 2;
+  fprintf(out, "quantity,value,ci95\nRe_tau,%.6g,%.2g\nU_b_plus,%.6g,%.2g\nU_c_plus,%.6g,%.2g\n",
+          half * u.mean, half * u.interval, 1.0 / u.mean, u.interval / (u.mean * u.mean),
+          work[c].mean / u.mean, work[c].interval / u.mean);
+  fprintf(out, "samples,%ld,0\nfull_batches,%d,0\nstatistics_h_over_U_b,%.6g,0\n",
+          bw_ns_statistics_samples(f->statistics), bw_ns_statistics_batches(f->statistics),
+          (double)bw_ns_statistics_samples(f->statistics) * f->config->interval);
+  fprintf(out, "eddy_turnovers,%.4g,0\n", /* of (h/2)/u_tau */
+          (double)bw_ns_statistics_samples(f->statistics) * f->config->interval * 2.0 * u.mean);
+}
+
+bw_status channel_profiles(channel_flow *f, const bw_case *run)
+{
+  enum {
+    CENTRES = sizeof centre_columns / sizeof *centre_columns,
+    FACES = sizeof face_columns / sizeof *face_columns
+  };
+  static const char *const names[3] = {"centres.csv", "faces.csv", "scalars.csv"};
+  const bw_comm *comm = bw_grid_comm(f->grid);
+  if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;
+  bw_ns_estimate *work = NULL;
+  bw_status st = BW_ALLOCATE(&work, (size_t)CENTRES * (size_t)(f->config->cells[1] + 1));
+  for (int q = 0; q < 3 && st == BW_OK && bw_comm_rank(comm) == 0; q++) {
+    char *path = NULL;
+    st = bw_case_path(run, names[q], &path);
+    FILE *out = st == BW_OK ? fopen(path, "w") : NULL;
+    if (st == BW_OK && out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
+    if (out != NULL) {
+      const double u_tau = channel_u_tau(f, work).mean;
+      if (q == 0) write_table(out, f, false, CENTRES, centre_columns, u_tau, work);
+      if (q == 1) write_table(out, f, true, FACES, face_columns, u_tau, work);
+      if (q == 2) write_scalars(out, f, work);
+      if (fclose(out) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
+    }
+    bw_release(&path);
+  }
+  bw_release(&work);
+  return bw_comm_agree(comm, st);
+}

@@ -44,7 +44,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
     const double bonds = 2.0 * (double)bw_pd_bond_account(w.pd).bonds;
     w.dt = 0.5 * bw_pd_bond_dt_max(w.pd);
     const double seconds = bw_bench_median(comm, advance, &w) / STEPS;
-    double bytes = (double)bw_pd_bond_memory(w.pd).lists;
+    double bytes = (double)bw_pd_bond_list_bytes(w.pd);
     bw_comm_sum(comm, 1, &bytes);
     const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
     bw_bench_put(b, &(bw_bench_row){name, "ms_per_force_evaluation", "ms", 1e3 * seconds,

@@ -147,6 +147,9 @@ bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
  * Collective. */
 void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);
 
+/* Bytes of this rank's bond lists (slots and blocks). Local. */
+size_t bw_pd_bond_list_bytes(const bw_pd_bond *pd);
+
 /* Counts bond-breaking events of this rank so far (pre-cracks and set_bits too, which may also
  * mend): unchanged means nothing to update. Local. */
 int64_t bw_pd_bond_events(const bw_pd_bond *pd);

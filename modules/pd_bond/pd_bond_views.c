@@ -37,6 +37,11 @@ void bw_pd_bond_set_prescribed(bw_pd_bond *pd, const double V[])
       pd->prescribed_v[3 * q + (size_t)k] = V[3 * (size_t)pd->prescribed[q] + (size_t)k];
 }
 
+size_t bw_pd_bond_list_bytes(const bw_pd_bond *pd)
+{
+  return pd->n_slot * sizeof *pd->slot + (pd->n_block + 1) * sizeof *pd->block;
+}
+
 size_t bw_pd_bond_count(const bw_pd_bond *pd)
 {
   return pd->n;

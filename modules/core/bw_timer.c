@@ -63,6 +63,13 @@ void bw_timer_stop(bw_timer *t, int part)
   t->sums[part].calls += 1.0;
 }
 
+void bw_timer_move(bw_timer *t, int from, int to, double seconds)
+{
+  if (t == NULL) return;
+  t->sums[from].seconds -= seconds;
+  t->sums[to].seconds += seconds;
+}
+
 void bw_timer_work(bw_timer *t, int part, double units)
 {
   if (t != NULL) t->sums[part].work += units;

@@ -30,6 +30,8 @@ void bw_timer_reset(bw_timer *timer);    /* all sums to zero, the total starts n
 
 void bw_timer_start(bw_timer *timer, int part);
 void bw_timer_stop(bw_timer *timer, int part);
+/* Charge `seconds` of part `from` to `to`: what a callee measured of itself. Local. */
+void bw_timer_move(bw_timer *timer, int from, int to, double seconds);
 /* Count `units` of work of this rank in `part`. Local. */
 void bw_timer_work(bw_timer *timer, int part, double units);
 /* Seconds of this rank in `part` so far. Local. */

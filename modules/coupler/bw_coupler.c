@@ -66,7 +66,7 @@ static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 
 static const bw_timer_part parts[BW_PART_COUNT] = {
     [BW_PART_MOMENTUM] = {"momentum", "cell and sub-step"},
-    [BW_PART_POISSON] = {"Poisson and correction", "cell and sub-step"},
+    [BW_PART_POISSON] = {"Poisson", "cell and sub-step"},
     [BW_PART_FORCING] = {"forcing", "marker and iteration"},
     [BW_PART_PROBES] = {"probes", "probe"},
     [BW_PART_SOLID] = {"solid", "bond and evaluation"},

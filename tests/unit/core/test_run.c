@@ -185,6 +185,24 @@ START_TEST(speed_and_time_left)
 }
 END_TEST
 
+/* What a callee measured of itself moves between parts; the sum of the parts stays. */
+START_TEST(timer_moves_seconds)
+{
+  static const bw_timer_part parts[] = {{"whole", NULL}, {"part of it", NULL}};
+  bw_timer *t = NULL;
+  bw_check_ok(bw_timer_create(2, parts, &t));
+  bw_timer_start(t, 0);
+  burn(0.01);
+  bw_timer_stop(t, 0);
+  const double before = bw_timer_seconds(t, 0);
+  bw_timer_move(t, 0, 1, 0.004);
+  bw_check_near(bw_timer_seconds(t, 0), before - 0.004, 1e-15);
+  bw_check_near(bw_timer_seconds(t, 1), 0.004, 1e-15);
+  bw_timer_move(NULL, 0, 1, 1.0);
+  bw_timer_destroy(&t);
+}
+END_TEST
+
 /* Rank r spends 20 (r+1) ms in part 0: the largest, the mean, the cost per unit of work. */
 START_TEST(timer_sums)
 {
@@ -342,9 +360,12 @@ START_TEST(history_refusals)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(rank_zero_speaks),  BW_TEST(plain_progress),
-    BW_TEST(terminal_progress), BW_TEST(speed_and_time_left),
-    BW_TEST(timer_sums),        BW_TEST(history_goes_on_without_duplicates),
-    BW_TEST(history_refusals)};
+static const bw_check_test tests[] = {BW_TEST(rank_zero_speaks),
+                                      BW_TEST(plain_progress),
+                                      BW_TEST(terminal_progress),
+                                      BW_TEST(speed_and_time_left),
+                                      BW_TEST(timer_moves_seconds),
+                                      BW_TEST(timer_sums),
+                                      BW_TEST(history_goes_on_without_duplicates),
+                                      BW_TEST(history_refusals)};
 BW_CHECK_MAIN("core.run", tests)

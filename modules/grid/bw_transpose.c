@@ -24,7 +24,9 @@ struct bw_transpose {
   size_t *other_start, *other_count; /* (peers) what they hold of my columns, in `other` */
   bw_real *own;                      /* X side: pieces of all columns, my rows */
   bw_real *other;                    /* Z side: my columns, rows of the other ranks */
-  bw_real *block;                    /* the open block, gathered; NULL for one rank */
+  const piece *open;
+  bw_real *block; /* the open block; NULL for one rank */
+  bw_real **part; /* (peers) where its rows come from */
 };
 
 /* Wide enough that an inner loop over one row of a block has at least 64 entries. */
@@ -99,16 +101,15 @@ static bw_status build(bw_transpose *t, int columns, int grain)
   const size_t peers = (size_t)t->peers;
   t->n_pieces = count_pieces(columns, grain, t->peers, width);
   BW_TRY(BW_ALLOCATE(&t->pieces, (size_t)t->n_pieces));
-  BW_TRY(BW_ALLOCATE(&t->peer_lo, peers));
+  BW_TRY(BW_ALLOCATE(&t->part, peers));
   BW_TRY(BW_ALLOCATE(&t->peer_m, peers));
   BW_TRY(BW_ALLOCATE(&t->own_start, peers));
   BW_TRY(BW_ALLOCATE(&t->own_count, peers));
   BW_TRY(BW_ALLOCATE(&t->other_start, peers));
   BW_TRY(BW_ALLOCATE(&t->other_count, peers));
-  for (int p = 0; p < t->peers; p++) {
-    t->peer_lo[p] = bw_grid__block_start(v->n[2], t->peers, p);
-    t->peer_m[p] = bw_grid__block_start(v->n[2], t->peers, p + 1) - t->peer_lo[p];
-  }
+  for (int p = 0; p < t->peers; p++)
+    t->peer_m[p] =
+        bw_grid__block_start(v->n[2], t->peers, p + 1) - bw_grid__block_start(v->n[2], t->peers, p);
   BW_TRY(BW_ALLOCATE(&t->own, lay_out(t, columns, grain, width)));
   if (t->peers == 1) return BW_OK;
   BW_TRY(BW_ALLOCATE(&t->other, lay_out_other(t)));
@@ -134,7 +135,7 @@ void bw_transpose_destroy(bw_transpose **transpose)
   bw_transpose *t = *transpose;
   if (t == NULL) return;
   bw_release(&t->pieces);
-  bw_release(&t->peer_lo);
+  bw_release(&t->part);
   bw_release(&t->peer_m);
   bw_release(&t->own_start);
   bw_release(&t->own_count);
@@ -209,39 +210,43 @@ void bw_transpose_to_x(bw_transpose *t)
                t->own);
 }
 
-/* Move block b between `block` and the parts of the ranks it was gathered from. */
-static void gather(bw_transpose *t, int b, bool back)
-{
-  const bw_grid_view *v = bw_grid_look(t->grid);
-  const piece *own = &t->pieces[t->first_block + b];
-  const size_t width = (size_t)own->width, plane = (size_t)v->n[2] * width;
-  for (int p = 0; p < t->peers; p++) {
-    bw_real *part = t->own + own->offset;
-    if (p != t->me) {
-      part = t->other + t->other_start[p];
-      for (int c = 0; c < b; c++)
-        part += piece_size(t, t->first_block + c, t->peer_m[p]);
-    }
-    const size_t n = (size_t)t->peer_m[p] * width;
-    bw_real *whole = t->block + (size_t)t->peer_lo[p] * width;
-    for (int j = 0; j < v->m[1]; j++, part += n, whole += plane)
-      if (back)
-        memcpy(part, whole, n * sizeof *part);
-      else
-        memcpy(whole, part, n * sizeof *part);
-  }
-}
-
 bw_real *bw_transpose_open(bw_transpose *t, int b)
 {
-  if (t->peers == 1) return t->own + t->pieces[b].offset;
-  gather(t, b, false);
+  const piece *own = &t->pieces[t->first_block + b];
+  t->open = own;
+  if (t->peers == 1) return t->own + own->offset;
+  for (int p = 0; p < t->peers; p++) {
+    t->part[p] = p == t->me ? t->own + own->offset : t->other + t->other_start[p];
+    for (int c = 0; p != t->me && c < b; c++)
+      t->part[p] += piece_size(t, t->first_block + c, t->peer_m[p]);
+  }
   return t->block;
 }
 
-void bw_transpose_close(bw_transpose *t, int b)
+/* Copy row j between the open block and the parts of the ranks it comes from. */
+static void move_row(const bw_transpose *t, int j, bool back)
 {
-  if (t->peers > 1) gather(t, b, true);
+  const size_t width = (size_t)t->open->width;
+  bw_real *whole = t->block + (size_t)j * (size_t)bw_grid_look(t->grid)->n[2] * width;
+  for (int p = 0; p < t->peers; p++) {
+    const size_t n = (size_t)t->peer_m[p] * width;
+    bw_real *part = t->part[p] + (size_t)j * n;
+    if (back)
+      memcpy(part, whole, n * sizeof *part);
+    else
+      memcpy(whole, part, n * sizeof *part);
+    whole += n;
+  }
+}
+
+void bw_transpose_fetch(bw_transpose *t, int j)
+{
+  if (t->peers > 1) move_row(t, j, false);
+}
+
+void bw_transpose_store(bw_transpose *t, int j)
+{
+  if (t->peers > 1) move_row(t, j, true);
 }
 
 size_t bw_transpose_volume(const bw_transpose *t)

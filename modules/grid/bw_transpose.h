@@ -9,7 +9,7 @@
  * y is never divided anew: solve over the ranks in y with bw_tridiagonal.h.
  * When one rank holds all of z no message is sent and a block is opened in place.
  * Indices j, k of this header are local and start at 0.
- * Life  create -> { put every row, to_z, open/close each block, to_x, get every row } -> destroy.
+ * Life  create -> { put every row, to_z, open each block, to_x, get every row } -> destroy.
  * Nothing is allocated after create. */
 #pragma once
 #include "bw_grid.h"
@@ -41,10 +41,12 @@ void bw_transpose_get(const bw_transpose *t, int j, int k, int rows, bw_real *ro
 void bw_transpose_to_z(bw_transpose *t);
 void bw_transpose_to_x(bw_transpose *t);
 
-/* Block b as [m_y][n_z][width], to be changed in place, valid until close writes it back; one
- * block is open at a time. Local. */
+/* Block b as [m_y][n_z][width]; one block is open at a time. Its row j is valid after fetch, and
+ * changes of it are kept by store: row by row, so that it is in the cache when it is needed.
+ * (With one rank in z the block is where it was and both do nothing.) Local. */
 bw_real *bw_transpose_open(bw_transpose *t, int b);
-void bw_transpose_close(bw_transpose *t, int b);
+void bw_transpose_fetch(bw_transpose *t, int j);
+void bw_transpose_store(bw_transpose *t, int j);
 
 /* Bytes to other ranks of one to_z and one to_x together, from this rank. Local. */
 size_t bw_transpose_volume(const bw_transpose *t);

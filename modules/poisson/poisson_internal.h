@@ -1,6 +1,8 @@
 /* poisson_internal.h -- shared by the sources of poisson only. */
 #pragma once
 #include "bw_poisson.h"
+#include "bw_transpose.h"
+#include "bw_tridiagonal.h"
 #include <fftw3.h>
 
 #ifdef BW_SINGLE
@@ -84,3 +86,22 @@ void bw_poisson__cosine_columns_split(int n, int width, const bw_real *restrict 
                                       const bw_real *restrict a, bw_real *restrict v);
 void bw_poisson__cosine_columns_out(int n, int width, bw_real odd, const bw_real *restrict v,
                                     bw_real *restrict a);
+
+enum {
+  BW_POISSON__ROWS = 8
+}; /* x-rows on their way to the blocks together: they fit the first-level cache */
+struct bw_poisson {
+  bw_grid *grid;
+  const bw_poisson__kind *kind[3];
+  bool singular, real_x; /* real_x: x-entries are no complex numbers */
+  bool coupled;          /* coupled: the lines in y need all ranks in y, or are cyclic */
+  double removed_mean;
+  bw_poisson__transform x, z[2]; /* z: of blocks of full width, of the last one */
+  bw_transpose *transpose;
+  bw_tridiagonal *tridiagonal;
+  double *lambda_x, *lambda_z;      /* (columns), (n2) */
+  double *lower, *diagonal, *upper; /* (n1) of d2/dy2, then of the operator being solved */
+  double *operator_lower, *operator_diagonal, *operator_upper;
+  bw_real *rows; /* (BW_POISSON__ROWS, row_stride) */
+  ptrdiff_t row_stride;
+};

@@ -2,8 +2,8 @@
  * time, checkpoints. The case and validation/ns_channel/channel_turbulence.c run this same code.
  *
  * Units: h (full height) and U_b (bulk velocity, held constant), so nu = 1/Re_b. Time advances in
- * equal intervals; within one all steps are equal, a share of the largest stable one at its
- * start: what follows a checkpoint (between intervals) does not depend on whether it was read. */
+ * equal intervals; the steps within one are chosen from the field alone, so that what follows a
+ * checkpoint (between intervals) does not depend on whether it was read. */
 #pragma once
 #include "bw_checkpoint.h"
 #include "bw_memory.h"
@@ -103,21 +103,26 @@ static inline bool channel_sampling(const channel_flow *f)
   return (double)f->intervals * f->config->interval > f->config->spin_up * (1.0 + 1e-12);
 }
 
-/* One interval; a sample at its end once the flow is spun up. */
+/* One interval, in steps that divide what is left of it evenly, as large as the present field
+ * allows; a sample at its end once the flow is spun up. */
 static inline bw_status channel_advance(channel_flow *f)
 {
   const channel_config *q = f->config;
-  const double longest = q->courant_share * bw_ns_channel_dt_max(f->fluid);
-  const int n = (int)ceil(q->interval / longest);
-  f->dt = q->interval / n;
-  f->gradient = 0.0;
-  for (int step = 0; step < n; step++) {
-    BW_TRY(bw_ns_channel_step(f->fluid, f->dt));
-    f->gradient += bw_ns_channel_gradient(f->fluid) / n; /* that of the last sub-step */
+  const double end = (double)(f->intervals + 1) * q->interval;
+  double impulse = 0.0;
+  int64_t n = 0;
+  for (int64_t left = 1; left > 0; left--, n++) {
+    const double span = end - bw_ns_channel_time(f->fluid);
+    left = (int64_t)ceil(span / (q->courant_share * bw_ns_channel_dt_max(f->fluid)));
+    const double dt = span / (double)left;
+    BW_TRY(bw_ns_channel_step(f->fluid, dt));
+    impulse += dt * bw_ns_channel_gradient(f->fluid); /* that of the last sub-step */
   }
+  f->dt = q->interval / (double)n;
+  f->gradient = impulse / q->interval;
   f->steps += n;
   f->intervals++;
-  bw_ns_channel_set_time(f->fluid, (double)f->intervals * q->interval);
+  bw_ns_channel_set_time(f->fluid, end);
   if (channel_sampling(f)) bw_ns_statistics_sample(f->statistics);
   return BW_OK;
 }

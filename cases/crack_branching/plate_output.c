@@ -152,20 +152,31 @@ bw_status plate_picture(plate *p, const bw_case *run)
   return st;
 }
 
+static const char *or_never(double x, char text[16])
+{
+  if (isnan(x))
+    snprintf(text, 16, "(never)");
+  else
+    snprintf(text, 16, "%.2f", x);
+  return text;
+}
+
 bw_status plate_summary(plate *p, bw_log *log)
 {
   const plate_crack *c = &p->crack;
   const double notch = p->config.shape.notch, length = p->config.shape.length;
   int branches = 0;
   double fork = NAN;
+  char text[3][16];
   BW_TRY(plate_branches(p, 0.5 * (c->tip + (c->tip < length ? notch : length)), &branches, &fork));
   if (!isnan(fork)) BW_TRY(plate_branches(p, 0.5 * (fork + c->tip), &branches, &fork));
-  bw_log_info(log, "first bond broken %.2f us, crack leaves the notch %.2f us, at the edge %.2f us",
-              1e6 * c->t_first, 1e6 * c->t_start, 1e6 * c->t_edge);
-  bw_log_info(log, "branches %d, forks %.1f mm past the notch, first seen %.2f us", branches,
-              1e3 * (fork - notch), 1e6 * c->t_branch);
-  bw_log_info(log, "tip speed at most %.0f m/s, mean %.0f m/s", c->speed_max,
-              (c->tip - p->notch_tip) /
-                  (fmin(p->time, isnan(c->t_edge) ? p->time : c->t_edge) - c->t_start));
+  bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, at the edge %s us",
+              or_never(1e6 * c->t_first, text[0]), or_never(1e6 * c->t_start, text[1]),
+              or_never(1e6 * c->t_edge, text[2]));
+  bw_log_info(log, "branches %d, forks %s mm past the notch, first seen %s us", branches,
+              or_never(1e3 * (fork - notch), text[0]), or_never(1e6 * c->t_branch, text[1]));
+  const double stop = isnan(c->t_edge) ? p->time : c->t_edge;
+  bw_log_info(log, "tip speed at most %.0f m/s, mean %s m/s", c->speed_max,
+              or_never((c->tip - p->notch_tip) / (stop - c->t_start), text[0]));
   return BW_OK;
 }

@@ -39,15 +39,18 @@ START_TEST(surface_is_the_particles_with_an_open_side)
     bool planar;
   } row[] = {{1, cube, false},       {1, ball, false}, {2, tube, false}, {2, porous, false},
              {2, porous_bcc, false}, {1, disc, true},  {2, ring, true}};
-  for (size_t q = 0; q < sizeof row / sizeof *row; q++) {
-    const bw_pd_bond_config c = body_config(row[q].planar);
-    const bw_pd_interface_config ic = bw_pd_interface_config_default();
-    body b = body_create(row[q].count, row[q].shape, &c, &ic);
-    ck_assert_int_eq(body_wrong(&b, &ic), 0);
-    const double n = body_sum((double)bw_pd_interface_surface(b.pi).n);
-    ck_assert_msg(n > 0 && n < (double)b.n, "%g of %g particles are surface", n, (double)b.n);
-    body_destroy(&b);
-  }
+  for (size_t q = 0; q < sizeof row / sizeof *row; q++)
+    for (int m = 2; m <= 4; m++) {
+      bw_pd_bond_config c = body_config(row[q].planar);
+      const bw_pd_interface_config ic = bw_pd_interface_config_default();
+      c.horizon_ratio = m;
+      body b = body_create(row[q].count, row[q].shape, &c, &ic);
+      ck_assert_msg(body_wrong(&b, &ic) == 0, "body %zu, m = %d: %d wrong", q, m,
+                    body_wrong(&b, &ic));
+      const double n = body_sum((double)bw_pd_interface_surface(b.pi).n);
+      ck_assert_msg(n > 0 && n < (double)b.n, "%g of %g particles are surface", n, (double)b.n);
+      body_destroy(&b);
+    }
 }
 END_TEST
 

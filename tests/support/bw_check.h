@@ -14,7 +14,10 @@ typedef struct {
   const char *name;
   const TTest **function; /* made by START_TEST */
 } bw_check_test;
-#define BW_TEST(function) {#function, &function}
+#define BW_TEST(function)                                                                          \
+  {                                                                                                \
+#function, &function                                                                           \
+  }
 
 static bw_comm *bw_check_world_;
 static inline bw_comm *bw_check_world(void)
@@ -26,10 +29,9 @@ static inline bw_comm *bw_check_world(void)
 #define bw_check_near(got, want, tolerance)                                                        \
   ck_assert_msg(fabs((double)(got) - (double)(want)) <=                                            \
                     (tolerance)*fmax(1.0, fabs((double)(want))),                                   \
-                "%s = %.17g, expected %.17g +- %g", #got, (double)(got), (double)(want),            \
+                "%s = %.17g, expected %.17g +- %g", #got, (double)(got), (double)(want),           \
                 (double)(tolerance))
-#define bw_check_ok(call)                                                                          \
-  ck_assert_msg((call) == BW_OK, "%s failed: %s", #call, bw_last_message())
+#define bw_check_ok(call) ck_assert_msg((call) == BW_OK, "%s failed: %s", #call, bw_last_message())
 #define bw_check_status(call, code)                                                                \
   ck_assert_msg((call) == (code), "%s did not return %s: %s", #call, #code, bw_last_message())
 

@@ -46,8 +46,10 @@ double bw_validation_order(double h1, double e1, double h2, double e2)
 /* JSON has no inf and nan. */
 static void put_number(FILE *f, const char *key, double x)
 {
-  if (isfinite(x)) fprintf(f, "\"%s\": %.10g, ", key, x);
-  else fprintf(f, "\"%s\": null, ", key);
+  if (isfinite(x))
+    fprintf(f, "\"%s\": %.10g, ", key, x);
+  else
+    fprintf(f, "\"%s\": null, ", key);
 }
 
 static void put_row(bw_validation *v, const bw_claim *c, double error, bool pass)

@@ -2,8 +2,8 @@
  *
  *   int main(int argc, char **argv) { return bw_validation_main(argc, argv, "grid.halo", run); }
  * where run(v) measures and calls bw_validation_row for each claim (on all ranks; rank 0 prints).
- * The file is $BW_BUILD_DIR/verification/NAME.json (build/verification when unset). The exit code is 0
- * only if every row passed and run returned BW_OK. */
+ * The file is $BW_BUILD_DIR/verification/NAME.json (build/verification when unset). The exit code
+ * is 0 only if every row passed and run returned BW_OK. */
 #pragma once
 #include "bw_comm.h"
 #include <stdbool.h>
@@ -19,18 +19,18 @@ typedef enum {
 } bw_claim_kind;
 
 typedef struct {
-  const char *claim;     /* "divergence stays at round-off" */
-  const char *quantity;  /* "max_divergence" */
+  const char *claim;    /* "divergence stays at round-off" */
+  const char *quantity; /* "max_divergence" */
   double measured, reference;
-  double tolerance;      /* on error = |measured-reference|/|reference|; absolute when reference is 0.
-                            INFINITY: reported beside, no claim made */
+  double tolerance; /* on error = |measured-reference|/|reference|; absolute when reference is 0.
+                       INFINITY: reported beside, no claim made */
   bw_claim_kind kind;
-  const char *source;    /* closed form, or author, year, table; never this code */
-  const char *extra;     /* more JSON members, e.g. "\"nodes\": 4000" or NULL */
+  const char *source; /* closed form, or author, year, table; never this code */
+  const char *extra;  /* more JSON members, e.g. "\"nodes\": 4000" or NULL */
 } bw_claim;
 
 const bw_comm *bw_validation_comm(const bw_validation *v);
-bool bw_validation_full(const bw_validation *v);      /* --full: the documents' resolution */
+bool bw_validation_full(const bw_validation *v);          /* --full: the documents' resolution */
 const char *bw_validation_folder(const bw_validation *v); /* for plots and data files */
 
 /* Record one row; true when it passes (false for NaN). The same on all ranks. */
@@ -39,5 +39,4 @@ bool bw_validation_row(bw_validation *v, const bw_claim *claim);
 /* log(e1/e2)/log(h1/h2): the order seen between two resolutions. */
 double bw_validation_order(double h1, double e1, double h2, double e2);
 
-int bw_validation_main(int argc, char **argv, const char *name,
-                       bw_status (*run)(bw_validation *v));
+int bw_validation_main(int argc, char **argv, const char *name, bw_status (*run)(bw_validation *v));

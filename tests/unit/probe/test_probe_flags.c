@@ -1,0 +1,115 @@
+/* Normal probes: what is in the way shortens and blocks them; bad input.
+ * TEST ranks=1,2,3,4 */
+#include "probe_test.h"
+
+/* Looking at a wall of the box from d cells: the stencil ends half a cell beyond the tip, so
+ * dl = 2 h needs 2.5 cells and dl = h needs 1.5. */
+START_TEST(box_sides_shorten_and_block)
+{
+  static const int n[3] = {10, 12, 8};
+  static const struct {
+    double distance;
+    unsigned char flag;
+  } row[] = {{2.6, BW_PROBE_FREE},
+             {2.4, BW_PROBE_SHORTENED},
+             {1.6, BW_PROBE_SHORTENED},
+             {1.4, BW_PROBE_BLOCKED},
+             {0.5, BW_PROBE_BLOCKED}};
+  fixture f;
+  make(&f, bw_check_world(), n, 0.3, false, BW_PROBE_LINEAR);
+  fill(&f, linear);
+  for (int d = 0; d < 3; d++)
+    for (int q = 0; q < 5; q++) {
+      double X[3] = {1.5, 1.7, 1.2}, N[3] = {0.0, 0.0, 0.0}, A[3], t[3], want[3];
+      unsigned char flag = 99;
+      N[d] = 1.0;
+      X[d] = f.g->length[d] - row[q].distance * 0.3;
+      for (int c = 0; c < 3; c++)
+        A[c] = -GRAD_P[c];
+      bw_check_ok(bw_probe_set_points(f.probe, 1, X, N));
+      bw_probe_traction(f.probe, f.u, f.p, A, t, &flag);
+      ck_assert_int_eq(flag, row[q].flag);
+      expected(false, X, N, A, 0.6, want);
+      for (int c = 0; c < 3; c++)
+        bw_check_near(t[c], flag == BW_PROBE_BLOCKED ? 0.0 : want[c], ROUND_OFF);
+    }
+  drop(&f);
+}
+END_TEST
+
+/* Another solid fills x > 1.8; a point looks at it across a gap. */
+START_TEST(obstacles_shorten_and_block)
+{
+  static const int n[3] = {12, 12, 8};
+  static const struct {
+    double gap;
+    unsigned char flag;
+  } row[] = {{3.0, BW_PROBE_FREE},
+             {2.2, BW_PROBE_FREE},
+             {1.8, BW_PROBE_SHORTENED},
+             {1.2, BW_PROBE_SHORTENED},
+             {0.8, BW_PROBE_BLOCKED}};
+  fixture f;
+  bw_real *solid = NULL;
+  make(&f, bw_check_world(), n, 0.3, true, BW_PROBE_LINEAR);
+  bw_check_ok(bw_field_create(f.grid, &solid));
+  for (int k = 1; k <= f.g->m[2]; k++)
+    for (int j = 1; j <= f.g->m[1]; j++)
+      for (int i = 7; i <= 10; i++)
+        solid[bw_at(f.g, i, j, k)] = 1;
+  bw_halo_update(f.grid, 1, &solid);
+  double X[5][3], N[5][3], t[5][3];
+  unsigned char flag[5];
+  for (int q = 0; q < 5; q++) {
+    memcpy(X[q], (double[3]){1.8 - 0.3 * row[q].gap, 0.7 * q, 0.5 * q}, sizeof X[q]);
+    memcpy(N[q], (double[3]){1.0, 0.0, 0.0}, sizeof N[q]);
+  }
+  for (int there = 1; there >= 0; there--) {
+    bw_probe_set_obstacles(f.probe, there ? solid : NULL);
+    bw_check_ok(bw_probe_set_points(f.probe, 5, X[0], N[0]));
+    bw_probe_traction(f.probe, f.u, f.p, NULL, t[0], flag);
+    for (int q = 0; q < 5; q++)
+      ck_assert_int_eq(flag[q], there ? row[q].flag : BW_PROBE_FREE);
+  }
+  bw_release(&solid);
+  drop(&f);
+}
+END_TEST
+
+START_TEST(bad_input_is_refused_on_all_ranks)
+{
+  static const int n[3] = {8, 8, 8};
+  const bw_comm *comm = bw_check_world();
+  const bool last = bw_comm_rank(comm) == bw_comm_size(comm) - 1;
+  fixture f;
+  make(&f, comm, n, 0.3, true, BW_PROBE_LINEAR);
+  double X[3] = {1.0, 1.0, 1.0}, N[3] = {0.0, last ? 1.1 : 1.0, 0.0};
+  bw_check_status(bw_probe_set_points(f.probe, 1, X, N), BW_EINPUT);
+  N[1] = 1.0;
+  X[0] = last ? NAN : 1.0;
+  bw_check_status(bw_probe_set_points(f.probe, 1, X, N), BW_EINPUT);
+  X[0] = 1.0;
+  bw_check_ok(bw_probe_set_points(f.probe, last ? 1 : 0, X, N));
+
+  bw_probe *probe = NULL;
+  bw_probe_config c = bw_probe_config_default();
+  bw_check_status(bw_probe_create(f.grid, &c, &probe), BW_EINPUT); /* rho is required */
+  c.rho = 1.0;
+  bw_check_status(bw_probe_create(f.grid, &c, &probe), BW_EINPUT); /* nu is required */
+  c.nu = 1.0;
+  c.kernel = BW_KERNEL_PESKIN4; /* reaches beyond the halo */
+  bw_check_status(bw_probe_create(f.grid, &c, &probe), BW_EINPUT);
+  c.kernel = BW_KERNEL_HAT2;
+  c.length = 0.5;
+  bw_check_status(bw_probe_create(f.grid, &c, &probe), BW_EINPUT);
+  c.length = 1.5;
+  bw_check_ok(bw_probe_create(f.grid, &c, &probe));
+  bw_probe_destroy(&probe);
+  drop(&f);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(box_sides_shorten_and_block),
+                                      BW_TEST(obstacles_shorten_and_block),
+                                      BW_TEST(bad_input_is_refused_on_all_ranks)};
+BW_CHECK_MAIN("probe.flags", tests)

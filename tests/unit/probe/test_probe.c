@@ -2,23 +2,6 @@
  * TEST ranks=1,2,3,4 */
 #include "probe_test.h"
 
-/* t = -p n + mu (G + G^T) n with p the wall's, when DU/Dt = -grad p/rho; else p is off by
- * dl/2 times the difference of the two slopes. */
-static void expected(bool flat, const double X[3], const double n[3], const double A[3], double dl,
-                     double t[3])
-{
-  const int dims = flat ? 2 : 3;
-  double p = (flat ? linear_flat : linear)(3, X), error = 0.0;
-  for (int d = 0; d < dims; d++)
-    error += (GRAD_P[d] + A[d]) * n[d];
-  p += 0.5 * dl * error;
-  for (int c = 0; c < 3; c++) {
-    t[c] = -RHO * p * n[c];
-    for (int d = 0; d < dims && c < dims; d++)
-      t[c] += RHO * NU * (G[c][d] + G[d][c]) * n[d];
-  }
-}
-
 START_TEST(linear_fields_give_exact_tractions)
 {
   static const int sizes[2][3] = {{14, 12, 10}, {14, 12, 1}};

@@ -51,9 +51,8 @@ static bw_status run_phase(porous_run *p)
     st = after_step(p);
     const double drop = porous_pressure_drop(p);
     bw_progress_update(line, p->step, bw_ns_channel_time(p->fluid),
-                       "%s, pressure drop %.2f p0, "
-                       "%lld bond ends broken",
-                       porous_phase_name[p->phase], drop, (long long)bw_pd_bond_events(p->solid));
+                       "%s, pressure drop %.2f p0, %.0f broken bonds", porous_phase_name[p->phase],
+                       drop, p->broken);
     done = p->step >= f->steps || settled(p, drop);
     p->stopped = bw_stop_requested(p->comm);
   }

@@ -160,6 +160,25 @@ void porous_destroy(porous_run *p)
   bw_grid_destroy(&p->grid);
 }
 
+/* Memory as it stands after building; time from nominal costs (the benches' on a quiet machine). */
+static void describe_cost(porous_run *p)
+{
+  static const double fluid_ns = 45.0, bond_ns = 1.8; /* core-ns: cell and sub-step, bond */
+  const int *n = p->config->domain.cells;
+  const double cells = (double)n[0] * n[1] * n[2];
+  const double bonds = 2.0 * (double)bw_pd_bond_account(p->solid).bonds;
+  double bytes = (double)bw_memory_resident(), seconds = 0.0;
+  bw_comm_sum(p->comm, 1, &bytes);
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const porous_phase *f = porous_phase_of(p->config, k);
+    const int substeps = k == PHASE_FLOW ? 0 : bw_coupler_substeps(p->coupler, f->time_step);
+    seconds += 1e-9 * f->steps * (3.0 * cells * fluid_ns + substeps * bonds * bond_ns);
+  }
+  bw_log_info(bw_case_log(p->run),
+              "cost       %.0f MiB over all ranks; at most about %.1f min on as many quiet cores",
+              bytes / 1048576.0, seconds / 60.0 / bw_comm_size(p->comm));
+}
+
 void porous_describe(porous_run *p)
 {
   const porous_config *q = p->config;
@@ -193,4 +212,5 @@ void porous_describe(porous_run *p)
                 bw_coupler_substeps(p->coupler, f->time_step));
   }
   bw_log_info(log, "solid      stable to %.4g s per sub-step", solid_max);
+  describe_cost(p);
 }

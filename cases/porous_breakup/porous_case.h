@@ -67,6 +67,7 @@ typedef struct {
   double breakage_start;            /* time at which breakage was enabled [s] */
   double last_drop, last_drop_time; /* pressure drop at the previous settling check */
   double kept_progress[6];          /* what a checkpoint says of the run, of the last good state */
+  double broken;                    /* bonds, at the last sample */
   bool stopped;                     /* a signal asked for an end in good order */
 } porous_run;
 

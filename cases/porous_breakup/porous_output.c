@@ -21,6 +21,7 @@ bw_status porous_sample(porous_run *p)
   double row[COL_COUNT] = {0};
   BW_TRY(porous_measure(p, row));
   bw_history_append(p->history, row);
+  p->broken = row[COL_BROKEN];
   return BW_OK;
 }
 

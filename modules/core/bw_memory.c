@@ -2,9 +2,11 @@
 #include "bw_memory.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 enum { ALIGNMENT = 64, HUGE_PAGE = 1 << 21 };
 
@@ -43,4 +45,14 @@ void bw_release(void *out)
   free(p);
   p = NULL;
   memcpy(out, &p, sizeof p);
+}
+
+size_t bw_memory_resident(void)
+{
+  long pages = 0, all = 0;
+  FILE *f = fopen("/proc/self/statm", "r");
+  if (f == NULL) return 0;
+  const int read = fscanf(f, "%ld %ld", &all, &pages);
+  fclose(f);
+  return read == 2 ? (size_t)pages * (size_t)sysconf(_SC_PAGESIZE) : 0;
 }

@@ -13,3 +13,6 @@ void bw_release(void *out);
 
 /* Typed form: BW_ALLOCATE(&x, n) for `double *x`. */
 #define BW_ALLOCATE(pointer, count) bw_allocate((count), sizeof **(pointer), (pointer))
+
+/* Memory of this process that is resident now [bytes]; 0 where the system does not tell. Local. */
+size_t bw_memory_resident(void);

@@ -131,6 +131,21 @@ START_TEST(a_group_of_one)
 }
 END_TEST
 
+/* 64 MiB of zeroed memory are resident (bw_allocate touches every page), and gone afterwards. */
+START_TEST(resident_memory_grows_and_shrinks)
+{
+  const double MiB = 1048576.0, before = (double)bw_memory_resident() / MiB;
+  unsigned char *p = NULL;
+  bw_check_ok(BW_ALLOCATE(&p, (size_t)64 << 20));
+  const double during = (double)bw_memory_resident() / MiB;
+  bw_release(&p);
+  const double after = (double)bw_memory_resident() / MiB;
+  ck_assert_double_gt(before, 0.0);
+  ck_assert_double_ge(during - before, 60.0);
+  ck_assert_double_le(after - before, 4.0);
+}
+END_TEST
+
 START_TEST(memory)
 {
   double *x = NULL;
@@ -175,5 +190,6 @@ static const bw_check_test tests[] = {BW_TEST(agreement_spreads_the_message),
                                       BW_TEST(gathering_too_much),
                                       BW_TEST(a_group_of_one),
                                       BW_TEST(memory),
+                                      BW_TEST(resident_memory_grows_and_shrinks),
                                       BW_TEST(messages)};
 BW_CHECK_MAIN("core.comm", tests)

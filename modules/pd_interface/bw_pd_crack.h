@@ -3,7 +3,8 @@
  * A particle belongs to the crack when its damage exceeds `level`; 0.35 as in ADAPT section 6.1
  * and Ha & Bobaru 2010. (A straight crack leaves about 0.4 in the two rows beside it at m = 3 and
  * about 0.2 in the next ones.) Positions are those of the reference shape, in two directions:
- * s along the crack's way, t across it; both unit vectors.
+ * s along the crack's way, t across it; both unit vectors. A crack that turns is followed by its
+ * distance from where it began and by the line that fits it best.
  * Lengths in [L]. Everything is the same on all ranks. */
 #pragma once
 #include "bw_comm.h"
@@ -46,3 +47,25 @@ double bw_pd_crack_fork(const bw_pd_crack *crack, double from, double step, int 
 /* Angle [rad] between the outermost branches from s = a to s = b (least-squares lines through
  * their middles, sections `step` apart); NAN with fewer than three forked sections. Local. */
 double bw_pd_crack_angle(const bw_pd_crack *crack, double a, double b, double step, double gap);
+
+/* Keep the particles with lower[0] <= s < upper[0] and lower[1] <= t < upper[1]. Local. */
+void bw_pd_crack_crop(bw_pd_crack *crack, const double lower[2], const double upper[2]);
+
+/* Keep what is joined to the point (s, t): the particles that are reached from it by going from
+ * one to the next in steps of at most `gap` (1.5 ds: neighbours on the lattice). Local. */
+bw_status bw_pd_crack_join(bw_pd_crack *crack, double s, double t, double gap) BW_MUST_CHECK;
+
+/* Distance from (s, t) to the farthest particle, whose place goes to tip[2] (may be NULL); of
+ * equally far ones the first. NAN, and tip untouched, when there is none. Local. */
+double bw_pd_crack_reach(const bw_pd_crack *crack, double s, double t, double tip[2]);
+
+typedef struct {
+  size_t n;     /* particles fitted */
+  double angle; /* of the line to s, turned towards t, away from the start [rad], -pi .. pi */
+  double width; /* root mean square distance from the line */
+} bw_pd_crack_line;
+
+/* The line of least total squares (principal axis) through the particles at a distance a .. b
+ * from (s, t). A crack n rows thick of spacing ds has a width of ds sqrt((n n - 1)/12) if it is
+ * straight. angle and width are NAN with fewer than four particles. Local. */
+bw_pd_crack_line bw_pd_crack_fit(const bw_pd_crack *crack, double s, double t, double a, double b);

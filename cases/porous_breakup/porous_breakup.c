@@ -67,6 +67,10 @@ static bw_status end_phase(porous_run *p)
     bw_log_warn(bw_case_log(p->run), "asked to stop: continue with --restart checkpoint-last.h5");
     return porous_checkpoint(p, "checkpoint-last.h5", false);
   }
+  if (p->phase == PHASE_FLOW)
+    bw_log_info(bw_case_log(p->run),
+                "steady flow: pressure drop %.1f p0 (POROUS, with pores it does not print: 190)",
+                porous_pressure_drop(p));
   BW_TRY(porous_sample(p));
   BW_TRY(porous_picture(p));
   snprintf(name, sizeof name, "checkpoint-%s.h5", porous_phase_name[p->phase]);

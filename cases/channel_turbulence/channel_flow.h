@@ -77,6 +77,8 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
                                        channel_flow *f)
 {
   *f = (channel_flow){.config = config};
+  BW_REQUIRE(config->length[1] == 1.0, BW_EINPUT,
+             "channel: the height is %g, but h is the unit of length; give 1", config->length[1]);
   bw_grid_config grid = bw_grid_config_default();
   for (int d = 0; d < 3; d++)
     grid.n[d] = config->cells[d], grid.length[d] = config->length[d], grid.periodic[d] = d != 1;

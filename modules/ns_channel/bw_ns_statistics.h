@@ -83,8 +83,8 @@ typedef struct {
 bw_status bw_ns_statistics_create(bw_ns_channel *ns, bw_ns_statistics **out) BW_MUST_CHECK;
 void bw_ns_statistics_destroy(bw_ns_statistics **s); /* NULL is fine. Local. */
 
-/* Add the present field, as one of samples of equal weight (equal intervals of time). Costs about
- * one sub-step. Collective. */
+/* Add the present field, as one of samples of equal weight (equal intervals of time). Costs a
+ * third of a sub-step. Collective. */
 void bw_ns_statistics_sample(bw_ns_statistics *s);
 void bw_ns_statistics_reset(bw_ns_statistics *s); /* Forget all samples. Local. */
 

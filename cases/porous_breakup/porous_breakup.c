@@ -9,31 +9,6 @@
 
 #include <math.h>
 
-/* Once per tenth of h/U_b: has the pressure drop stopped changing? */
-static bool settled(porous_run *p, double drop)
-{
-  const porous_config *q = p->config;
-  const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
-  const double elapsed = bw_ns_channel_time(p->fluid) - p->last_drop_time;
-  if (elapsed < 0.1 * t0) return false;
-  const double change = fabs(drop - p->last_drop) / fabs(drop) * t0 / elapsed;
-  p->last_drop = drop;
-  p->last_drop_time = bw_ns_channel_time(p->fluid);
-  return change < porous_phase_of(q, p->phase)->settled;
-}
-
-/* What is due after a step: samples, pictures, checkpoints, the last good state. */
-static bw_status after_step(porous_run *p)
-{
-  const porous_output *out = &p->config->output;
-  if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
-  if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
-  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
-  if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
-    BW_TRY(porous_checkpoint(p, "checkpoint-last.h5", false));
-  return BW_OK;
-}
-
 static bw_status run_phase(porous_run *p)
 {
   const porous_phase *f = porous_phase_of(p->config, p->phase);
@@ -48,12 +23,12 @@ static bw_status run_phase(porous_run *p)
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
     if (st != BW_OK) break;
     p->step++, p->total_step++;
-    st = after_step(p);
+    st = porous_after_step(p);
     const double drop = porous_pressure_drop(p);
     bw_progress_update(line, p->step, bw_ns_channel_time(p->fluid),
                        "%s, pressure drop %.2f p0, %.0f broken bonds", porous_phase_name[p->phase],
                        drop, p->broken);
-    done = p->step >= f->steps || settled(p, drop);
+    done = p->step >= f->steps || porous_settled(p, drop);
     p->stopped = bw_stop_requested(p->comm);
   }
   bw_progress_finish(&line);

@@ -110,6 +110,9 @@ extern const char *const porous_columns[COL_COUNT];
 bw_status porous_measure(porous_run *p, double row[COL_COUNT]) BW_MUST_CHECK;
 double porous_pressure_drop(porous_run *p); /* over rho U_b^2 [-]. Collective. */
 
+/* Has the pressure drop stopped changing? Asked every step, looks every tenth of h/U_b. Local. */
+bool porous_settled(porous_run *p, double drop);
+
 /* ---- files (porous_output.c) ---- */
 bw_status porous_open_history(porous_run *p, double restart_time) BW_MUST_CHECK;
 bw_status porous_sample(porous_run *p) BW_MUST_CHECK;
@@ -121,4 +124,6 @@ bw_status porous_keep(porous_run *p) BW_MUST_CHECK;
 /* After a divergence: checkpoint-good.h5, and the cause again with its remedy. Returns `cause`. */
 bw_status porous_save_last_good(porous_run *p, bw_status cause) BW_MUST_CHECK;
 bw_status porous_restart(porous_run *p, const char *path) BW_MUST_CHECK;
+/* What is due after a step: the last good state, samples, pictures, checkpoints. */
+bw_status porous_after_step(porous_run *p) BW_MUST_CHECK;
 bw_status porous_fragments_csv(porous_run *p) BW_MUST_CHECK;

@@ -59,6 +59,19 @@ double porous_pressure_drop(porous_run *p)
   return (plane_mean(p, front) - plane_mean(p, back)) / (U * U);
 }
 
+/* Once per tenth of h/U_b: has the pressure drop stopped changing? */
+bool porous_settled(porous_run *p, double drop)
+{
+  const porous_config *q = p->config;
+  const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
+  const double elapsed = bw_ns_channel_time(p->fluid) - p->last_drop_time;
+  if (elapsed < 0.1 * t0) return false;
+  const double change = fabs(drop - p->last_drop) / fabs(drop) * t0 / elapsed;
+  p->last_drop = drop;
+  p->last_drop_time = bw_ns_channel_time(p->fluid);
+  return change < porous_phase_of(q, p->phase)->settled;
+}
+
 /* Void share of the medium's first box: its volume less the particles that are in it now. */
 static void measure_particles(porous_run *p, const double X[], const double X0[],
                               const double damage[], double row[])

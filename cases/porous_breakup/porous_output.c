@@ -163,6 +163,18 @@ bw_status porous_restart(porous_run *p, const char *path)
   return st;
 }
 
+/* What is due after a step: samples, pictures, checkpoints, the last good state. */
+bw_status porous_after_step(porous_run *p)
+{
+  const porous_output *out = &p->config->output;
+  if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
+  if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
+  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
+  if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
+    BW_TRY(porous_checkpoint(p, "checkpoint-last.h5", false));
+  return BW_OK;
+}
+
 /* fragments.csv: the pieces at the end, largest first. */
 bw_status porous_fragments_csv(porous_run *p)
 {

@@ -28,6 +28,9 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
              "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
   BW_REQUIRE(fabs(q->retraction) <= 2.0, BW_EINPUT,
              "coupler: retraction = %g grid spacings: must lie in [-2, 2]", q->retraction);
+  BW_REQUIRE(q->marker_spacing >= 0.0 && q->marker_spacing <= 4.0, BW_EINPUT,
+             "coupler: marker_spacing = %g grid spacings: must lie in [0, 4] (wider leaks)",
+             q->marker_spacing);
   BW_REQUIRE(g->uniform_y && g->halo[1] >= 2, BW_EINPUT,
              "coupler: the grid must be uniform in y and have a halo of 2 (has %d)", g->halo[1]);
   return BW_OK;
@@ -111,6 +114,9 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   c->bonds = 2.0 * (double)bw_pd_bond_account(solid).bonds / bw_comm_size(bw_grid_comm(grid));
   st = create_parts(c);
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
+  const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
+  c->block = (int)fmax(1.0, floor(k + 0.5));
+  if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
   BW_THEN(st, bw_coupler__follow_surface(c));
   if (st != BW_OK) bw_coupler_destroy(&c);
   *out = c;
@@ -131,6 +137,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_release(&c->p_mean);
   bw_release(&c->inside);
   bw_coupler__state_release(&c->kept);
+  bw_coupler__blocks_release(&c->blocks);
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);
   bw_ibm_mdf_destroy(&c->ibm);

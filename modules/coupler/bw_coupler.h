@@ -23,6 +23,13 @@
  * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres. The
  * default is the best one measured on a cylinder for Roma's kernel and two iterations.
  *
+ * How many markers: one per surface particle, or, where particles are finer than the grid (FSI's
+ * plate: ds = h/5, every fifth particle a marker), one per block of k^(dim-1) particles of a face,
+ * k = marker_spacing h/ds: at their mean position, with their mean velocity and the sum of their
+ * areas. The reaction goes back in shares of area, so that force, torque and power are those of the
+ * markers. Particles that lost a bond, and new crack faces, keep markers of their own. Every
+ * surface particle has its own probe in any case.
+ *
  * The solid can be held (rigid): then no solid step, no load, no surface update is computed.
  * Life: config_default -> create -> { step } -> destroy. All functions are collective unless said
  * otherwise. */
@@ -49,11 +56,14 @@ typedef struct {
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
   int n_iter;                /* forcing iterations [-]                      default 2 */
   double retraction;         /* of the markers, in grid spacings [-]        default 0.3 */
+  double marker_spacing;     /* along the surface, in grid spacings, rounded to whole particles;
+                                0: every surface particle is a marker   default 0 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
   bw_probe_profile profile;  /* of the velocity along a probe               default quadratic */
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
   bw_coupler_load_kind load; /*                                             default probes */
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
+  bool count_work;           /* work_given of the report (an exchange per step)  default false */
   bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
 
@@ -80,6 +90,9 @@ typedef struct {
   double force_probe[3];          /* on the solid, sum t A over unblocked probes */
   double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
                                      balance of a box around it; 0 when no box was watched */
+  double work_given;              /* by the fluid through the markers since create or load:
+                                     -rho int sum Q dV.V dt; received: the solid's ledger, external
+                                     [M L^2/T^2]; 0 without count_work */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
   int64_t markers, markers_outside, probes_shortened, probes_blocked;
   double surface_area; /* [L^2] */

@@ -1,6 +1,7 @@
 /* coupler_internal.h -- shared by the sources of the coupler only. */
 #pragma once
 #include "bw_coupler.h"
+#include "bw_exchange.h"
 
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
@@ -12,6 +13,23 @@ typedef struct {
   uint8_t *bits;        /* (n, bits_bytes) */
   double *V_before, *F; /* (n,3) */
 } bw_coupler__state;
+
+/* Surface particles that share a marker. A block's members are sent to one rank, which hands the
+ * marker over; that rank follows from the block alone, and members are summed in the order of their
+ * ids, so that markers do not depend on the number of ranks. */
+typedef struct {
+  bw_exchange *plan;                 /* members to the ranks of their markers */
+  size_t n_members, n;               /* received members, markers */
+  int32_t *order, *marker;           /* (n_members) rising by block and id; which marker is whose */
+  double *send, *receive;            /* (n_surface,7), (n_members,7): area, X, V */
+  double *X, *V, *dV, *area, *force; /* (n,3), (n,3), (n), (n), (n,3) */
+  size_t n_surface;                  /* surface the plan is for */
+  int64_t events;                    /* broken bonds then, bw_pd_bond_events */
+  int32_t *particle;                 /* (particles) and its members */
+  uint16_t *broken;                  /* (particles) broken bonds of each */
+  int8_t *face;                      /* (particles) 2 axis + side of the reference normal, or -1 */
+  int64_t *block;                    /* (particles) reference site over k, packed */
+} bw_coupler__blocks;
 
 struct bw_coupler {
   bw_coupler_config config;
@@ -40,6 +58,9 @@ struct bw_coupler {
   double checked_dt; /* step for which the present flow was found stable */
   bw_timer *timer;
   double bonds; /* intact ends of this rank at the start: work of one force evaluation */
+  int block;    /* particles of a face along each side that share a marker; 1: no blocks */
+  bw_coupler__blocks blocks;
+  double work_given; /* of this rank's markers [M L^2/T^2] */
   bw_coupler__state kept;
 };
 
@@ -52,6 +73,16 @@ bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
  * the step whose velocities give the acceleration) or by the markers' reaction. Collective. */
 bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;
 void bw_coupler__reaction_force(bw_coupler *c);
+/* Work of the fluid through the markers over a step of dt; c->force holds the reaction. Local. */
+void bw_coupler__count_work(bw_coupler *c, double dt);
+
+/* Blocks: tables of the reference shape (after the first surface is known); markers of the present
+ * surface; the reaction of the markers, minus rho Q dV, to c->force in shares of area. */
+bw_status bw_coupler__blocks_create(bw_coupler *c) BW_MUST_CHECK;
+bw_status bw_coupler__blocks_follow(bw_coupler *c) BW_MUST_CHECK;
+void bw_coupler__blocks_reaction(bw_coupler *c);
+void bw_coupler__blocks_release(bw_coupler__blocks *b);
+
 /* c->force, relaxed, to the force density F of the particles. Local. */
 void bw_coupler__relax_load(bw_coupler *c);
 void bw_coupler__state_release(bw_coupler__state *s);

@@ -20,7 +20,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   bw_coupler_report r = {.slip_rms = ibm.slip_after,
                          .markers = ibm.markers,
                          .markers_outside = ibm.outside,
-                         .imbalance = ibm.imbalance};
+                         .imbalance = ibm.imbalance,
+                         .work_given = c->work_given};
   double box[3];
   int64_t count[2];
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
@@ -35,6 +36,7 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
     r.surface_area += c->area[q];
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
+  bw_comm_sum(comm, 1, &r.work_given);
   count_probes(c, count);
   bw_comm_sum_int(comm, 2, count);
   r.probes_shortened = count[0];

@@ -55,11 +55,11 @@ static bw_status advance_fluid(bw_coupler *c, double dt)
 static bw_status load_solid(bw_coupler *c, double dt)
 {
   bw_timer_start(c->timer, BW_PART_PROBES);
+  const bool probes = c->config.load == BW_LOAD_PROBES;
   bw_status st = BW_OK;
-  if (c->config.load == BW_LOAD_PROBES)
-    st = bw_coupler__probe_force(c, dt);
-  else
-    bw_coupler__reaction_force(c);
+  if (!probes || c->config.count_work) bw_coupler__reaction_force(c);
+  if (c->config.count_work) bw_coupler__count_work(c, dt);
+  if (probes) st = bw_coupler__probe_force(c, dt);
   bw_coupler__relax_load(c);
   bw_pd_bond_set_force(c->solid, c->F);
   bw_timer_stop(c->timer, BW_PART_PROBES);
@@ -95,7 +95,8 @@ static void count_work(bw_coupler *c, double dt)
   const bool rk3 = bw_pd_bond_settings(c->solid)->integrator == BW_PD_RK3;
   bw_timer_work(c->timer, BW_PART_MOMENTUM, cells);
   bw_timer_work(c->timer, BW_PART_POISSON, cells);
-  bw_timer_work(c->timer, BW_PART_FORCING, 3.0 * c->config.n_iter * (double)c->n_surface);
+  bw_timer_work(c->timer, BW_PART_FORCING,
+                3.0 * c->config.n_iter * (double)(c->block > 1 ? c->blocks.n : c->n_surface));
   if (!c->held)
     bw_timer_work(c->timer, BW_PART_SOLID, c->bonds * bw_coupler_substeps(c, dt) * (rk3 ? 3 : 1));
 }

@@ -106,6 +106,7 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
 {
   BW_TRY(bw_pd_interface_update(c->interface));
   place(c);
+  if (c->block > 1) BW_TRY(bw_coupler__blocks_follow(c));
   c->markers_moved = true;
   bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
   return BW_OK;
@@ -115,6 +116,8 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
 {
   if (!c->markers_moved) return BW_OK;
   c->markers_moved = false;
+  const bw_coupler__blocks *b = &c->blocks;
+  if (c->block > 1) return bw_ibm_mdf_set_markers(c->ibm, b->n, b->X, b->V, b->dV);
   return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
 }
 
@@ -153,9 +156,19 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 
 void bw_coupler__reaction_force(bw_coupler *c)
 {
+  if (c->block > 1) {
+    bw_coupler__blocks_reaction(c);
+    return;
+  }
   bw_ibm_mdf_marker_force(c->ibm, c->force);
   for (size_t q = 0; q < 3 * c->n_surface; q++)
     c->force[q] *= -c->config.rho; /* ERRATA 18 */
+}
+
+void bw_coupler__count_work(bw_coupler *c, double dt)
+{
+  for (size_t q = 0; q < 3 * c->n_surface; q++) /* a block's shares meet its mean velocity */
+    c->work_given += dt * c->force[q] * c->marker_V[q];
 }
 
 /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */

@@ -28,7 +28,7 @@ static void stream(const double x[3], double t, void *context, double u[3])
 }
 
 /* A cube of 8 particles a side in the middle of a box of 24 cells a side, in a channel flow. */
-static scene build(double retraction, double relaxation)
+static scene build_blocks(double retraction, double relaxation, double spacing)
 {
   scene s = {0};
   const bw_comm *comm = bw_check_world();
@@ -52,6 +52,7 @@ static scene build(double retraction, double relaxation)
   config.nu = flow.nu;
   config.retraction = retraction;
   config.load_relaxation = relaxation;
+  config.marker_spacing = spacing;
 
   const double lower = FIRST * H, upper = (FIRST + BLOCK) * H;
   const bw_shape cube = {
@@ -69,6 +70,11 @@ static scene build(double retraction, double relaxation)
   bw_release(&site);
   bw_release(&kind);
   return s;
+}
+
+static scene build(double retraction, double relaxation)
+{
+  return build_blocks(retraction, relaxation, 0.0);
 }
 
 static void destroy(scene *s)
@@ -135,6 +141,64 @@ START_TEST(linear_pressure_lifts_the_body)
     total += s.coupler->F[3 * i] * bw_pd_bond_volume(s.solid);
   bw_comm_sum(bw_check_world(), 1, &total);
   bw_check_near(total, 0.5 * force[0], 1e-12);
+  destroy(&s);
+}
+END_TEST
+
+/* Blocks of 2 x 2 particles share a marker: 4 x 4 on each of six faces (edges go with one of
+ * theirs). Sums over markers equal sums over particles: area, its first moment, and of the reaction
+ * the force, the torque about z and the power, with every particle moving at its own speed. */
+START_TEST(blocks_share_a_marker_and_its_force)
+{
+  scene s = build_blocks(0.3, 1.0, 2.0);
+  const bw_coupler *c = s.coupler;
+  const bw_coupler__blocks *b = &c->blocks;
+  const size_t n = bw_pd_bond_count(s.solid);
+  double *X = NULL, *V = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_pd_bond_get_position(s.solid, X);
+  for (size_t i = 0; i < n; i++) /* spinning about z, stretched along z */
+    V[3 * i] = -X[3 * i + 1], V[3 * i + 1] = X[3 * i], V[3 * i + 2] = 0.3 * X[3 * i + 2];
+  bw_pd_bond_set_state(s.solid, X, V);
+  bw_check_ok(bw_coupler__follow_surface(s.coupler));
+  bw_check_ok(bw_coupler_step(s.coupler, 1.0e-3));
+  bw_coupler__reaction_force(s.coupler);
+  bw_coupler_report r;
+  bw_check_ok(bw_coupler_measure(s.coupler, &r));
+  ck_assert_int_eq(r.markers, 96);
+  bw_coupler__reaction_force(s.coupler);
+  double of_blocks[7] = {0}, of_particles[7] = {0};
+  for (size_t m = 0; m < b->n; m++) {
+    const double *x = b->X + 3 * m, *q = b->force + 3 * m, *v = b->V + 3 * m;
+    of_blocks[0] += b->dV[m] / H;
+    for (int d = 0; d < 3; d++)
+      of_blocks[1 + d] += b->area[m] * x[d];
+    of_blocks[4] -= RHO * q[0];
+    of_blocks[5] -= RHO * (x[0] * q[1] - x[1] * q[0]);
+    of_blocks[6] -= RHO * (q[0] * v[0] + q[1] * v[1] + q[2] * v[2]);
+  }
+  double largest = 0.0;
+  for (size_t m = 0; m < c->n_surface; m++) {
+    const double *x = c->marker_X + 3 * m, *F = c->force + 3 * m, *v = c->marker_V + 3 * m;
+    of_particles[0] += c->area[m];
+    for (int d = 0; d < 3; d++)
+      of_particles[1 + d] += c->area[m] * x[d];
+    of_particles[4] += F[0];
+    of_particles[5] += x[0] * F[1] - x[1] * F[0];
+    of_particles[6] += F[0] * v[0] + F[1] * v[1] + F[2] * v[2];
+    largest = fmax(largest, fabs(F[0]));
+  }
+  bw_comm_sum(bw_check_world(), 7, of_blocks);
+  bw_comm_sum(bw_check_world(), 7, of_particles);
+  bw_comm_max(bw_check_world(), 1, &largest);
+  ck_assert_double_gt(largest, 0.0);
+  for (int q = 0; q < 7; q++)
+    bw_check_near(of_particles[q], of_blocks[q], q < 4 ? 1e-12 : 1e3 * BW_REAL_EPSILON);
+  bw_check_near(of_particles[4], r.force_reaction[0], 1e3 * BW_REAL_EPSILON);
+  ck_assert_double_ne(of_particles[6], 0.0);
+  bw_release(&X);
+  bw_release(&V);
   destroy(&s);
 }
 END_TEST
@@ -242,6 +306,7 @@ END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(markers_sit_where_the_retraction_says),
                                       BW_TEST(linear_pressure_lifts_the_body),
+                                      BW_TEST(blocks_share_a_marker_and_its_force),
                                       BW_TEST(substeps_keep_the_solid_within_its_limit),
                                       BW_TEST(held_solid_stays_free_one_is_carried),
                                       BW_TEST(loaded_state_goes_on_as_the_saved_one),

@@ -1,0 +1,238 @@
+/* Markers that several surface particles share, for particles finer than the grid. */
+#include "bw_memory.h"
+#include "coupler_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROW = 7 }; /* area, position, velocity of a member */
+
+/* Bits of a block's number: 19 per direction, 3 for the face; the top bit marks particles with a
+ * marker of their own, which are known by their id. */
+static const int BITS = 19;
+static const int64_t OWN_MARKER = (int64_t)1 << 62;
+
+void bw_coupler__blocks_release(bw_coupler__blocks *b)
+{
+  bw_exchange_destroy(&b->plan);
+  double **const all[] = {&b->send, &b->receive, &b->X, &b->V, &b->dV, &b->area, &b->force};
+  for (size_t q = 0; q < sizeof all / sizeof *all; q++)
+    bw_release(all[q]);
+  bw_release(&b->order);
+  bw_release(&b->marker);
+  bw_release(&b->particle);
+  bw_release(&b->broken);
+  bw_release(&b->face);
+  bw_release(&b->block);
+}
+
+/* 2 axis + side of the largest component of a normal; the first one where two are equal. */
+static int8_t face_of(const double axes[3][3], const double N[3])
+{
+  int best = 0;
+  double most = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double along = axes[d][0] * N[0] + axes[d][1] * N[1] + axes[d][2] * N[2];
+    if (fabs(along) > most + 1e-6) most = fabs(along), best = 2 * d + (along > 0.0);
+  }
+  return (int8_t)best;
+}
+
+/* Which block of k^3 lattice sites a reference position lies in, packed. */
+static int64_t block_of(const bw_pd_bond_config *s, int k, const double X0[3])
+{
+  int64_t packed = 0;
+  for (int d = 0; d < 3; d++) {
+    double along = 0.0;
+    for (int e = 0; e < 3; e++)
+      along += (X0[e] - s->origin[e]) * s->axes[d][e];
+    const double block = floor(floor(along / s->ds) / k);
+    packed = (packed << BITS) | ((int64_t)block & (((int64_t)1 << BITS) - 1));
+  }
+  return packed;
+}
+
+bw_status bw_coupler__blocks_create(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  const bw_pd_bond_config *s = bw_pd_bond_settings(c->solid);
+  bw_status st = BW_ALLOCATE(&b->particle, c->n);
+  BW_THEN(st, BW_ALLOCATE(&b->broken, c->n));
+  BW_THEN(st, BW_ALLOCATE(&b->face, c->n));
+  BW_THEN(st, BW_ALLOCATE(&b->block, c->n));
+  BW_THEN(st, BW_ALLOCATE(&b->send, ROW * c->n));
+  st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
+  if (st != BW_OK) return st;
+  const bw_pd_surface surface = bw_pd_interface_surface(c->interface);
+  bw_pd_bond_get_reference(c->solid, c->X);
+  for (size_t i = 0; i < c->n; i++) {
+    b->block[i] = block_of(s, c->block, c->X + 3 * i);
+    b->face[i] = -1;
+  }
+  for (size_t q = 0; q < surface.n; q++)
+    b->face[surface.particle[q]] = face_of(s->axes, surface.N + 3 * q);
+  b->n_surface = SIZE_MAX; /* no plan yet */
+  return BW_OK;
+}
+
+/* Has the set of surface particles, or what they lost, changed? The same on all ranks. */
+static bool plan_is_stale(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  double stale = b->n_surface != c->n_surface ||
+                 memcmp(b->particle, c->particle, c->n_surface * sizeof *c->particle) != 0;
+  if (stale == 0.0 && b->events != bw_pd_bond_events(c->solid)) stale = 1.0;
+  bw_comm_max(bw_pd_bond_comm(c->solid), 1, &stale);
+  return stale > 0.0;
+}
+
+typedef struct {
+  int64_t key, id;
+  int32_t member;
+} member_key;
+
+static int by_key_and_id(const void *a, const void *b)
+{
+  const member_key *p = a, *q = b;
+  if (p->key != q->key) return p->key < q->key ? -1 : 1;
+  return (p->id > q->id) - (p->id < q->id);
+}
+
+static int64_t key_of(const bw_coupler *c, int32_t p)
+{
+  const bw_coupler__blocks *b = &c->blocks;
+  if (b->face[p] < 0 || b->broken[p] > 0) return OWN_MARKER | bw_pd_bond_id(c->solid)[p];
+  return ((int64_t)b->face[p] << (3 * BITS)) | b->block[p];
+}
+
+/* Any fixed spread of blocks over ranks (Fibonacci hashing). */
+static int rank_of(int64_t key, int ranks)
+{
+  return (int)(((uint64_t)key * 0x9E3779B97F4A7C15u >> 33) % (uint64_t)ranks);
+}
+
+/* Number the markers of the members received, in the order of their blocks. */
+static bw_status number_markers(bw_coupler__blocks *b, const int64_t received[])
+{
+  const size_t n = b->n_members;
+  member_key *list = NULL;
+  bw_release(&b->order);
+  bw_release(&b->marker);
+  bw_release(&b->receive);
+  bw_status st = BW_ALLOCATE(&list, n);
+  BW_THEN(st, BW_ALLOCATE(&b->order, n));
+  BW_THEN(st, BW_ALLOCATE(&b->marker, n));
+  BW_THEN(st, BW_ALLOCATE(&b->receive, ROW * n));
+  b->n = 0;
+  for (size_t q = 0; st == BW_OK && q < n; q++)
+    list[q] = (member_key){received[2 * q], received[2 * q + 1], (int32_t)q};
+  if (st == BW_OK && n > 0) qsort(list, n, sizeof *list, by_key_and_id);
+  for (size_t q = 0; st == BW_OK && q < n; q++) {
+    if (q == 0 || list[q].key != list[q - 1].key) b->n++;
+    b->order[q] = list[q].member;
+    b->marker[list[q].member] = (int32_t)(b->n - 1);
+  }
+  bw_release(&list);
+  return st;
+}
+
+static bw_status allocate_markers(bw_coupler__blocks *b)
+{
+  double **const all[] = {&b->X, &b->V, &b->force, &b->dV, &b->area};
+  for (int q = 0; q < 5; q++) {
+    bw_release(all[q]);
+    BW_TRY(BW_ALLOCATE(all[q], (q < 3 ? 3 : 1) * b->n));
+  }
+  return BW_OK;
+}
+
+/* Collective. */
+static bw_status make_plan(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  const bw_comm *comm = bw_pd_bond_comm(c->solid);
+  const size_t n = c->n_surface;
+  int *rank = NULL;
+  int64_t *send = NULL, *receive = NULL;
+  bw_pd_bond_get_broken(c->solid, b->broken);
+  bw_status st = BW_ALLOCATE(&rank, n);
+  BW_THEN(st, BW_ALLOCATE(&send, 2 * n));
+  for (size_t q = 0; st == BW_OK && q < n; q++) {
+    send[2 * q] = key_of(c, c->particle[q]);
+    send[2 * q + 1] = bw_pd_bond_id(c->solid)[c->particle[q]];
+    rank[q] = rank_of(send[2 * q], bw_comm_size(comm));
+  }
+  st = bw_comm_agree(comm, st);
+  bw_exchange_destroy(&b->plan);
+  BW_THEN(st, bw_exchange_create(comm, n, rank, &b->plan));
+  if (st == BW_OK) {
+    b->n_members = bw_exchange_received(b->plan);
+    st = bw_comm_agree(comm, BW_ALLOCATE(&receive, 2 * b->n_members));
+  }
+  if (st == BW_OK) {
+    bw_exchange_forward(b->plan, 2 * sizeof *send, send, receive);
+    st = number_markers(b, receive);
+    BW_THEN(st, allocate_markers(b));
+    st = bw_comm_agree(comm, st);
+  }
+  memcpy(b->particle, c->particle, n * sizeof *c->particle);
+  b->n_surface = n;
+  b->events = bw_pd_bond_events(c->solid);
+  bw_release(&rank);
+  bw_release(&send);
+  bw_release(&receive);
+  return st;
+}
+
+/* Means over the members, weighted with their areas, in a fixed order. */
+static void gather_markers(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  memset(b->X, 0, 3 * b->n * sizeof *b->X);
+  memset(b->V, 0, 3 * b->n * sizeof *b->V);
+  memset(b->area, 0, b->n * sizeof *b->area);
+  for (size_t q = 0; q < b->n_members; q++) {
+    const double *row = b->receive + ROW * b->order[q];
+    const size_t m = (size_t)b->marker[b->order[q]];
+    b->area[m] += row[0];
+    for (int d = 0; d < 3; d++) {
+      b->X[3 * m + d] += row[0] * row[1 + d];
+      b->V[3 * m + d] += row[0] * row[4 + d];
+    }
+  }
+  for (size_t m = 0; m < b->n; m++) {
+    b->dV[m] = b->area[m] * c->h; /* ERRATA 17 */
+    for (int d = 0; d < 3; d++)
+      b->X[3 * m + d] /= b->area[m], b->V[3 * m + d] /= b->area[m];
+  }
+}
+
+bw_status bw_coupler__blocks_follow(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  if (plan_is_stale(c)) BW_TRY(make_plan(c));
+  for (size_t q = 0; q < c->n_surface; q++) {
+    b->send[ROW * q] = c->area[q];
+    memcpy(b->send + ROW * q + 1, c->marker_X + 3 * q, 3 * sizeof *b->send);
+    memcpy(b->send + ROW * q + 4, c->marker_V + 3 * q, 3 * sizeof *b->send);
+  }
+  bw_exchange_forward(b->plan, ROW * sizeof *b->send, b->send, b->receive);
+  gather_markers(c);
+  return BW_OK;
+}
+
+void bw_coupler__blocks_reaction(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  bw_ibm_mdf_marker_force(c->ibm, b->force);
+  for (size_t q = 0; q < b->n_members; q++) { /* the row's place is free: force per area */
+    const size_t m = (size_t)b->marker[q];
+    for (int d = 0; d < 3; d++)
+      b->receive[3 * q + d] = -c->config.rho * b->force[3 * m + d] / b->area[m]; /* ERRATA 18 */
+  }
+  bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, c->force);
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++)
+      c->force[3 * q + d] *= c->area[q];
+}

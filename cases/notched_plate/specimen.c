@@ -1,0 +1,355 @@
+#include "specimen.h"
+#include "bw_memory.h"
+#include <math.h>
+#include <string.h>
+
+static const double TIE = 1e-9; /* of ds: sites on an edge do not depend on rounding */
+
+/* Distance from the edge a load acts on, and the place along it. */
+static void edge_place(const specimen_config *c, int edge, const double x[3], double *depth,
+                       double *along)
+{
+  const double depths[4] = {x[0], c->shape.length - x[0], x[1], c->shape.height - x[1]};
+  *depth = depths[edge];
+  *along = edge == SPECIMEN_LEFT || edge == SPECIMEN_RIGHT ? x[1] : x[0];
+}
+
+static bool loaded(const specimen *p, const specimen_load *load, const double x[3])
+{
+  double depth, along;
+  edge_place(&p->config, load->edge, x, &depth, &along);
+  const double tie = TIE * p->ds;
+  return depth < load->rows * p->ds - tie && along > load->from + tie && along < load->to - tie;
+}
+
+static bool inside(const specimen *p, const double x[3])
+{
+  const specimen_shape *s = &p->config.shape;
+  const double tie = TIE * p->ds;
+  if (x[0] < -tie || x[0] >= s->length - tie || x[1] < -tie || x[1] >= s->height - tie)
+    return false;
+  for (int q = 0; q < p->config.n_holes; q++) {
+    const specimen_hole *o = &p->config.holes[q];
+    if (hypot(x[0] - o->centre[0], x[1] - o->centre[1]) < o->radius - tie) return false;
+  }
+  return true;
+}
+
+static uint8_t kind_at(const specimen *p, const double x[3])
+{
+  uint8_t kind = BW_PD_FREE;
+  for (int q = 0; q < p->config.n_loads; q++) {
+    const specimen_load *load = &p->config.loads[q];
+    if (!loaded(p, load, x)) continue;
+    if (load->kind == SPECIMEN_VELOCITY) kind |= BW_PD_PRESCRIBED;
+    if (load->unbreakable) kind |= BW_PD_UNBREAKABLE;
+  }
+  return kind;
+}
+
+static bw_pd_bond_config material(const specimen *p)
+{
+  const specimen_solid *s = &p->config.solid;
+  const specimen_shape *shape = &p->config.shape;
+  const double turn = shape->lattice_angle * acos(-1.0) / 180.0;
+  const double e[2] = {cos(turn), sin(turn)};
+  bw_pd_bond_config c = bw_pd_bond_config_default();
+  c.geometry = (bw_pd_geometry)s->geometry;
+  c.ds = p->ds;
+  c.thickness = shape->thickness;
+  c.horizon_ratio = s->horizon_ratio;
+  c.rho = s->density;
+  c.E = s->young_modulus;
+  c.G0 = s->fracture_energy;
+  c.surface_correction = (bw_pd_surface_correction)s->surface_correction;
+  c.volume_fraction = (bw_pd_volume_fraction)s->volume_fraction;
+  c.family_reach = (bw_pd_family_reach)s->family_reach;
+  c.integrator = (bw_pd_integrator)s->integrator;
+  c.axes[0][0] = e[0], c.axes[0][1] = e[1];
+  c.axes[1][0] = -e[1], c.axes[1][1] = e[0];
+  const double half[2] = {0.5 * shape->length, 0.5 * shape->height};
+  for (int d = 0; d < 2; d++) /* the middle of the plate stays where it is */
+    c.origin[d] = half[d] - half[0] * c.axes[0][d] - half[1] * c.axes[1][d];
+  return c;
+}
+
+/* Sites of the plate, x fastest; written when site is not NULL. Returns how many. */
+static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site, uint8_t *kind)
+{
+  const specimen_shape *s = &p->config.shape;
+  const int columns = (int)lround(s->length / p->ds), rows = (int)lround(s->height / p->ds);
+  const int over = s->lattice_angle == 0.0 ? 0 : columns + rows;
+  const int layers = c->geometry == BW_PD_3D ? (int)lround(s->thickness / p->ds) : 1;
+  int64_t n = 0;
+  for (int k = 0; k < layers; k++)
+    for (int j = -over; j < rows + over; j++)
+      for (int i = -over; i < columns + over; i++) {
+        const double at[2] = {(i + 0.5) * p->ds, (j + 0.5) * p->ds};
+        double x[3] = {0.0, 0.0, 0.0};
+        for (int d = 0; d < 2; d++)
+          x[d] = c->origin[d] + at[0] * c->axes[0][d] + at[1] * c->axes[1][d];
+        if (!inside(p, x)) continue;
+        if (site != NULL) {
+          site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
+          kind[n] = kind_at(p, x);
+        }
+        n++;
+      }
+  return n;
+}
+
+static bw_status cut_notches(specimen *p)
+{
+  for (int q = 0; q < p->config.n_notches; q++) {
+    const specimen_notch *k = &p->config.notches[q];
+    const double below = -p->ds, above = p->config.shape.thickness + p->ds;
+    const bool solid = p->config.solid.geometry == BW_PD_3D;
+    const double z = solid ? below : 0.0;
+    const double a[3] = {k->from[0], k->from[1], z}, b[3] = {k->to[0], k->to[1], z};
+    const double c[3] = {k->from[0], k->from[1], above};
+    BW_TRY(bw_pd_bond_precrack(p->solid, a, b, solid ? c : NULL));
+  }
+  return BW_OK;
+}
+
+static bw_status make_solid(specimen *p)
+{
+  const bw_pd_bond_config c = material(p);
+  const int64_t n = scan(p, &c, NULL, NULL);
+  BW_REQUIRE(n > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
+             p->config.shape.thickness, p->ds);
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  bw_status st = BW_ALLOCATE(&site, 3 * (size_t)n);
+  BW_THEN(st, BW_ALLOCATE(&kind, (size_t)n));
+  st = bw_comm_agree(p->comm, st);
+  if (st == BW_OK) (void)scan(p, &c, site, kind);
+  BW_THEN(st, bw_pd_bond_create(p->comm, &c, n, site, kind, &p->solid));
+  BW_THEN(st, cut_notches(p));
+  bw_release(&site);
+  bw_release(&kind);
+  return st;
+}
+
+/* Body force at the present time; nothing to do once all of it acts. */
+static bw_status apply_traction(specimen *p)
+{
+  memset(p->F, 0, 3 * p->n * sizeof *p->F);
+  p->rising = false;
+  for (int q = 0; q < p->config.n_loads; q++) {
+    const specimen_load *load = &p->config.loads[q];
+    if (load->kind != SPECIMEN_TRACTION) continue;
+    const double part = load->rise > 0.0 ? fmin(1.0, p->time / load->rise) : 1.0;
+    p->rising = p->rising || part < 1.0;
+    for (size_t h = 0; h < p->n; h++)
+      if (loaded(p, load, &p->X0[3 * h]))
+        for (size_t d = 0; d < 2; d++)
+          p->F[3 * h + d] += part * load->value[d] / (load->rows * p->ds);
+  }
+  bw_pd_bond_set_force(p->solid, p->F);
+  return BW_OK;
+}
+
+/* Velocities that are held and those given at the start. */
+static bw_status apply_velocity(specimen *p)
+{
+  double *X = NULL, *V = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * p->n);
+  BW_THEN(st, BW_ALLOCATE(&V, 3 * p->n));
+  st = bw_comm_agree(p->comm, st);
+  if (st == BW_OK) {
+    for (int q = 0; q < p->config.n_loads; q++) {
+      const specimen_load *load = &p->config.loads[q];
+      for (size_t h = 0; load->kind != SPECIMEN_TRACTION && h < p->n; h++)
+        if (loaded(p, load, &p->X0[3 * h]))
+          V[3 * h] = load->value[0], V[3 * h + 1] = load->value[1];
+    }
+    bw_pd_bond_get_position(p->solid, X);
+    bw_pd_bond_set_state(p->solid, X, V);
+    bw_pd_bond_set_prescribed(p->solid, V);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  return st;
+}
+
+/* Limits that were not given are infinite. */
+static void open_limits(specimen_config *c)
+{
+  for (int q = 0; q < c->n_loads; q++) {
+    if (isnan(c->loads[q].from)) c->loads[q].from = -HUGE_VAL;
+    if (isnan(c->loads[q].to)) c->loads[q].to = HUGE_VAL;
+  }
+  for (int d = 0; d < 2; d++) {
+    if (isnan(c->follow.lower[d])) c->follow.lower[d] = -HUGE_VAL;
+    if (isnan(c->follow.upper[d])) c->follow.upper[d] = HUGE_VAL;
+  }
+  if (isnan(c->follow.fit_to)) c->follow.fit_to = HUGE_VAL;
+}
+
+static bw_status check(const specimen_config *c)
+{
+  for (int d = 0; d < 2; d++)
+    BW_REQUIRE(c->follow.lower[d] < c->follow.upper[d], BW_EINPUT,
+               "follow.lower[%d] = %g has to be below follow.upper[%d] = %g", d, c->follow.lower[d],
+               d, c->follow.upper[d]);
+  BW_REQUIRE(c->follow.fit_from < c->follow.fit_to, BW_EINPUT,
+             "follow.fit_from = %g has to be below follow.fit_to = %g", c->follow.fit_from,
+             c->follow.fit_to);
+  return BW_OK;
+}
+
+bw_status specimen_create(const bw_comm *comm, const specimen_config *config, specimen *p)
+{
+  memset(p, 0, sizeof *p);
+  p->comm = comm;
+  p->config = *config;
+  open_limits(&p->config);
+  BW_TRY(check(&p->config));
+  p->ds = config->shape.length / config->shape.particles;
+  p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, 0.0};
+  BW_TRY(make_solid(p));
+  p->n = bw_pd_bond_count(p->solid);
+  const double look = config->follow.every * config->time.step;
+  p->room = (int64_t)(config->time.end / look) + 2;
+  bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
+  BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
+  BW_THEN(st, BW_ALLOCATE(&p->notched, p->n));
+  BW_THEN(st, BW_ALLOCATE(&p->F, 3 * p->n));
+  BW_THEN(st, BW_ALLOCATE(&p->past, (size_t)p->room));
+  BW_TRY(bw_comm_agree(comm, st));
+  bw_pd_bond_get_reference(p->solid, p->X0);
+  BW_TRY(apply_traction(p));
+  BW_TRY(apply_velocity(p));
+  bw_pd_bond_get_damage(p->solid, p->damage);
+  for (size_t h = 0; h < p->n; h++)
+    p->notched[h] = p->damage[h] > BW_PD_CRACK_LEVEL;
+  p->events = bw_pd_bond_events(p->solid);
+  for (int d = 0; d < 2; d++)
+    p->crack.tip[d] = config->follow.from[d];
+  memcpy(p->past[0], p->crack.tip, sizeof p->past[0]);
+  return BW_OK;
+}
+
+bw_status specimen_find(specimen *p, bw_pd_crack *crack)
+{
+  const bw_pd_crack_config look = bw_pd_crack_config_default();
+  const specimen_follow *f = &p->config.follow;
+  bw_pd_bond_get_damage(p->solid, p->damage);
+  for (size_t h = 0; h < p->n; h++)
+    if (p->notched[h]) p->damage[h] = 0.0;
+  BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, crack));
+  bw_pd_crack_crop(crack, f->lower, f->upper);
+  return bw_comm_agree(p->comm, bw_pd_crack_join(crack, f->from[0], f->from[1], 1.5 * p->ds));
+}
+
+bw_status specimen_fit(specimen *p, bw_pd_crack_line *line)
+{
+  const specimen_follow *f = &p->config.follow;
+  bw_pd_crack crack;
+  BW_TRY(specimen_find(p, &crack));
+  *line = bw_pd_crack_fit(&crack, f->from[0], f->from[1], f->fit_from, f->fit_to);
+  bw_pd_crack_release(&crack);
+  return BW_OK;
+}
+
+/* Is the place within 1.5 ds of an edge or a hole? */
+static bool at_an_end(const specimen *p, const double x[2])
+{
+  const specimen_shape *s = &p->config.shape;
+  const double near = 1.5 * p->ds;
+  double gap = fmin(fmin(x[0], s->length - x[0]), fmin(x[1], s->height - x[1]));
+  for (int q = 0; q < p->config.n_holes; q++) {
+    const specimen_hole *o = &p->config.holes[q];
+    gap = fmin(gap, hypot(x[0] - o->centre[0], x[1] - o->centre[1]) - o->radius);
+  }
+  return gap < near;
+}
+
+static void note_time(double *what, bool happened, double time)
+{
+  if (happened && isnan(*what)) *what = time;
+}
+
+static bw_status find_tip(specimen *p)
+{
+  specimen_crack *c = &p->crack;
+  const specimen_follow *f = &p->config.follow;
+  bw_pd_crack crack;
+  BW_TRY(specimen_find(p, &crack));
+  double tip[2] = {NAN, NAN};
+  const double reach = bw_pd_crack_reach(&crack, f->from[0], f->from[1], tip);
+  if (reach > c->reach) c->reach = reach, c->tip[0] = tip[0], c->tip[1] = tip[1];
+  bw_pd_crack_release(&crack);
+  note_time(&c->t_start, c->reach > 1.5 * p->ds, p->time);
+  note_time(&c->t_end, !isnan(c->t_start) && at_an_end(p, c->tip), p->time);
+  return BW_OK;
+}
+
+/* Has a bond broken on any rank since the last look? Collective. */
+static bool broke(specimen *p)
+{
+  int64_t news = bw_pd_bond_events(p->solid) != p->events;
+  p->events = bw_pd_bond_events(p->solid);
+  bw_comm_max_int(p->comm, 1, &news);
+  return news != 0;
+}
+
+/* Speed of the tip at look k, over the last `back` looks. */
+static double speed_at(const specimen *p, int64_t k, int64_t back)
+{
+  const double *now = p->past[k], *then = p->past[k > back ? k - back : 0];
+  const double taken = (double)back * p->config.follow.every * p->config.time.step;
+  return hypot(now[0] - then[0], now[1] - then[1]) / taken;
+}
+
+double specimen_speed(const specimen *p, double window)
+{
+  const double look = p->config.follow.every * p->config.time.step;
+  const int64_t back = window > look ? llround(window / look) : 1;
+  const double until = isnan(p->crack.t_end) ? p->time : p->crack.t_end;
+  double most = 0.0;
+  for (int64_t k = 1; k <= p->looks && (double)k * look <= until * (1.0 + 1e-9); k++)
+    most = fmax(most, speed_at(p, k, back));
+  return most;
+}
+
+static bw_status follow(specimen *p)
+{
+  specimen_crack *c = &p->crack;
+  if (broke(p)) {
+    note_time(&c->t_first, true, p->time);
+    BW_TRY(find_tip(p));
+  }
+  const int64_t back =
+      llround(p->config.follow.speed_window / (p->config.follow.every * p->config.time.step));
+  memcpy(p->past[++p->looks], c->tip, sizeof c->tip);
+  c->speed = speed_at(p, p->looks, back > 1 ? back : 1);
+  return BW_OK;
+}
+
+bool specimen_done(const specimen *p)
+{
+  const double stop = p->crack.t_end + p->config.time.after; /* NaN: it goes on to time.end */
+  return p->time > p->config.time.end - 1e-6 * p->config.time.step || p->time >= stop;
+}
+
+bw_status specimen_step(specimen *p)
+{
+  BW_TRY(bw_pd_bond_step(p->solid, p->config.time.step));
+  p->steps++;
+  p->time = (double)p->steps * p->config.time.step;
+  if (p->rising) BW_TRY(apply_traction(p));
+  if (p->steps % p->config.follow.every == 0 && p->looks + 1 < p->room) BW_TRY(follow(p));
+  return BW_OK;
+}
+
+void specimen_destroy(specimen *p)
+{
+  bw_pd_bond_destroy(&p->solid);
+  bw_release(&p->X0);
+  bw_release(&p->damage);
+  bw_release(&p->notched);
+  bw_release(&p->F);
+  bw_release(&p->past);
+}

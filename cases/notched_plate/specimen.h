@@ -1,0 +1,117 @@
+/* specimen.h -- a notched plate under load: set-up, step, and where its crack is.
+ *
+ * Plate 0 .. length, 0 .. height (3D: 0 .. thickness), with notches and round holes through the
+ * thickness, on a lattice that may be turned about its middle. Loads act on the outermost rows of
+ * an edge. One crack is followed: the cracked particles (bw_pd_crack.h) inside a window that
+ * were not so from the start and are joined to the tip of the notch. Used by this case and by
+ * validation/pd_bond. */
+#pragma once
+#include "bw_config.h"
+#include "bw_pd_bond.h"
+#include "bw_pd_crack.h"
+
+enum { SPECIMEN_NOTCHES = 4, SPECIMEN_HOLES = 4, SPECIMEN_LOADS = 4 };
+
+typedef struct {
+  double length, height, thickness; /* [m]; thickness in 2D: of the one layer */
+  int particles;                    /* along the length; spacing length/particles */
+  double lattice_angle;             /* [deg] the lattice is turned by, about the plate's middle */
+} specimen_shape;
+typedef struct {
+  double from[2], to[2]; /* [m] */
+} specimen_notch;
+typedef struct {
+  double centre[2], radius; /* [m] */
+} specimen_hole;
+typedef struct {
+  int geometry; /* enums of bw_pd_bond.h */
+  double young_modulus, density, fracture_energy, horizon_ratio;
+  int surface_correction, volume_fraction, family_reach, integrator;
+} specimen_solid;
+
+typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;
+typedef enum {
+  SPECIMEN_TRACTION, /* value [Pa], as a body force value/(rows ds) */
+  SPECIMEN_VELOCITY, /* value [m/s], held (0: clamped) */
+  SPECIMEN_START     /* value [m/s], at t = 0 only */
+} specimen_kind;
+typedef struct {
+  int edge, kind, rows;
+  double value[2];
+  double from, to;  /* part of the edge [m]                     default all of it */
+  double rise;      /* time in which a traction rises to value [s]      default 0 */
+  bool unbreakable; /*                                                 default false */
+} specimen_load;
+
+typedef struct {
+  double from[2];  /* the notch's tip [m] */
+  double lower[2]; /* window the crack is looked for in [m]    default the plate */
+  double upper[2];
+  double fit_from, fit_to; /* distances from the notch's tip that the angle is fitted to [m] */
+  double speed_window;     /* [s]                                      default 2e-6, ADAPT 6.1 */
+  int every;               /* steps between looks                      default 1 */
+} specimen_follow;
+typedef struct {
+  double step, end; /* [s] */
+  double after;     /* stop this long after the crack reached an end [s]    default: never */
+} specimen_time;
+typedef struct {
+  int sample_every, picture_every; /* steps */
+} specimen_files;
+
+typedef struct {
+  specimen_shape shape;
+  int n_notches, n_holes, n_loads;
+  specimen_notch notches[SPECIMEN_NOTCHES];
+  specimen_hole holes[SPECIMEN_HOLES];
+  specimen_solid solid;
+  specimen_load loads[SPECIMEN_LOADS];
+  specimen_follow follow;
+  specimen_time time;
+  specimen_files output;
+} specimen_config;
+
+extern const bw_config_field specimen_fields[];
+specimen_config specimen_default(void); /* limits not given: NaN, meaning none */
+
+/* What is known of the crack so far; NAN: not yet. */
+typedef struct {
+  double tip[2];  /* its particle farthest from the notch's tip [m] */
+  double reach;   /* that distance [m] */
+  double t_first; /* first bond broke, anywhere [s] */
+  double t_start; /* the crack has left the notch by more than ds [s] */
+  double t_end;   /* its tip came within 1.5 ds of an edge or hole [s] */
+  double speed;   /* of the tip over the last speed_window, ADAPT 6.1 [m/s] */
+} specimen_crack;
+
+typedef struct {
+  const bw_comm *comm;
+  specimen_config config;
+  bw_pd_bond *solid;
+  double ds, time;
+  int64_t steps, events;
+  size_t n;
+  double *X0, *damage, *F; /* (n,3), (n), (n,3) of the tractions */
+  bool *notched;           /* (n) cracked by the notches: no part of the crack */
+  bool rising;             /* some traction still rises */
+  specimen_crack crack;
+  int64_t looks, room;
+  double (*past)[2]; /* (room) the tip at the start and at each look [m] */
+} specimen;
+
+/* `p` is filled; free it with specimen_destroy, also after a failure. Collective. */
+bw_status specimen_create(const bw_comm *comm, const specimen_config *config,
+                          specimen *p) BW_MUST_CHECK;
+bw_status specimen_step(specimen *p) BW_MUST_CHECK; /* Collective. */
+bool specimen_done(const specimen *p);              /* time.end, or time.after. Local. */
+void specimen_destroy(specimen *p);
+
+/* The followed crack as it is now (bw_pd_crack_release). Collective. */
+bw_status specimen_find(specimen *p, bw_pd_crack *crack) BW_MUST_CHECK;
+
+/* Highest speed of the tip until t_end, over times `window` [m/s]. The tip goes from particle to
+ * particle: a reading is off by ds/window. Local. */
+double specimen_speed(const specimen *p, double window);
+
+/* Its line over fit_from .. fit_to, angle to x [rad]. Collective. */
+bw_status specimen_fit(specimen *p, bw_pd_crack_line *line) BW_MUST_CHECK;

@@ -1,0 +1,140 @@
+/* The case file. */
+#include "specimen.h"
+#include <limits.h>
+#include <math.h>
+
+#define V BW_CONFIG_VALUE
+static const bw_config_field shape_fields[] = {
+    V(specimen_shape, length, BW_REQUIRED, BW_ABOVE(0), "m", "of the plate, in x"),
+    V(specimen_shape, height, BW_REQUIRED, BW_ABOVE(0), "m", "in y"),
+    V(specimen_shape, thickness, BW_OPTIONAL, BW_ABOVE(0), "m", "in z (2D: of the one layer)"),
+    V(specimen_shape, particles, BW_REQUIRED, BW_AT_LEAST(10), "", "along the length"),
+    V(specimen_shape, lattice_angle, BW_OPTIONAL, BW_FROM_TO(-180, 180), "deg",
+      "lattice turned about the middle"),
+    BW_CONFIG_END};
+
+static const bw_config_field notch_fields[] = {
+    V(specimen_notch, from, BW_REQUIRED, BW_ANY, "m", "[x, y]"),
+    V(specimen_notch, to, BW_REQUIRED, BW_ANY, "m", "[x, y]"), BW_CONFIG_END};
+
+static const bw_config_field hole_fields[] = {
+    V(specimen_hole, centre, BW_REQUIRED, BW_ANY, "m", "[x, y]"),
+    V(specimen_hole, radius, BW_REQUIRED, BW_ABOVE(0), "m", "radius"), BW_CONFIG_END};
+
+static const bw_config_word geometry_words[] = {
+    {"plane_stress", BW_PD_PLANE_STRESS, "Poisson's ratio 1/3"},
+    {"plane_strain", BW_PD_PLANE_STRAIN, "1/4"},
+    {"solid", BW_PD_3D, "three dimensions, 1/4"},
+    {NULL, 0, NULL}};
+static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
+                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
+                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
+                                                  {NULL, 0, NULL}};
+static const bw_config_word fraction_words[] = {
+    {"default", BW_PD_FRACTION_DEFAULT, "exact in 3D, linear in 2D"},
+    {"linear", BW_PD_FRACTION_LINEAR, "POROUS 3.33"},
+    {"exact", BW_PD_FRACTION_EXACT, "part of the cell within the horizon"},
+    {"none", BW_PD_FRACTION_NONE, NULL},
+    {NULL, 0, NULL}};
+static const bw_config_word reach_words[] = {{"half_cell", BW_PD_REACH_HALF_CELL, "horizon + ds/2"},
+                                             {"horizon", BW_PD_REACH_HORIZON, NULL},
+                                             {NULL, 0, NULL}};
+static const bw_config_word integrator_words[] = {
+    {"verlet", BW_PD_VERLET, NULL}, {"rk3", BW_PD_RK3, NULL}, {NULL, 0, NULL}};
+static const bw_config_field solid_fields[] = {
+    BW_CONFIG_WORD(specimen_solid, geometry, BW_OPTIONAL, geometry_words, "which mechanics"),
+    V(specimen_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
+    V(specimen_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
+    V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "G0"),
+    V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
+    BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, correction_words,
+                   "stiffness of bonds near edges"),
+    BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, fraction_words,
+                   "part of a partner within the horizon"),
+    BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, reach_words, "who is a partner"),
+    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, integrator_words, "in time"),
+    BW_CONFIG_END};
+
+static const bw_config_word edge_words[] = {{"left", SPECIMEN_LEFT, NULL},
+                                            {"right", SPECIMEN_RIGHT, NULL},
+                                            {"bottom", SPECIMEN_BOTTOM, NULL},
+                                            {"top", SPECIMEN_TOP, NULL},
+                                            {NULL, 0, NULL}};
+static const bw_config_word kind_words[] = {{"traction", SPECIMEN_TRACTION, "Pa"},
+                                            {"velocity", SPECIMEN_VELOCITY, "m/s, held; 0: clamp"},
+                                            {"start", SPECIMEN_START, "m/s, at t = 0 only"},
+                                            {NULL, 0, NULL}};
+static const bw_config_field load_fields[] = {
+    BW_CONFIG_WORD(specimen_load, edge, BW_REQUIRED, edge_words, "where"),
+    BW_CONFIG_WORD(specimen_load, kind, BW_REQUIRED, kind_words, "what is given"),
+    V(specimen_load, value, BW_REQUIRED, BW_ANY, "", "[x, y]"),
+    V(specimen_load, rows, BW_OPTIONAL, BW_AT_LEAST(1), "", "of particles that take it"),
+    V(specimen_load, from, BW_OPTIONAL, BW_ANY, "m", "along the edge"),
+    V(specimen_load, to, BW_OPTIONAL, BW_ANY, "m", "along the edge"),
+    V(specimen_load, rise, BW_OPTIONAL, BW_AT_LEAST(0), "s", "a traction grows in this time"),
+    V(specimen_load, unbreakable, BW_OPTIONAL, BW_ANY, "", "these particles keep their bonds"),
+    BW_CONFIG_END};
+
+static const bw_config_field follow_fields[] = {
+    V(specimen_follow, from, BW_REQUIRED, BW_ANY, "m", "tip of the notch, [x, y]"),
+    V(specimen_follow, lower, BW_OPTIONAL, BW_ANY, "m", "window the crack is looked for in"),
+    V(specimen_follow, upper, BW_OPTIONAL, BW_ANY, "m", "its other corner"),
+    V(specimen_follow, fit_from, BW_OPTIONAL, BW_AT_LEAST(0), "m",
+      "angle: distance from the notch"),
+    V(specimen_follow, fit_to, BW_OPTIONAL, BW_ABOVE(0), "m", "angle: distance from the notch"),
+    V(specimen_follow, speed_window, BW_OPTIONAL, BW_ABOVE(0), "s", "speed: over this time"),
+    V(specimen_follow, every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "between looks"),
+    BW_CONFIG_END};
+
+static const bw_config_field time_fields[] = {
+    V(specimen_time, step, BW_REQUIRED, BW_ABOVE(0), "s", "time step"),
+    V(specimen_time, end, BW_REQUIRED, BW_ABOVE(0), "s", "end"),
+    V(specimen_time, after, BW_OPTIONAL, BW_AT_LEAST(0), "s",
+      "stop this long after the crack ended"),
+    BW_CONFIG_END};
+
+static const bw_config_field output_fields[] = {
+    V(specimen_files, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "rows of history.csv"),
+    V(specimen_files, picture_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "damage-*.vtp"),
+    BW_CONFIG_END};
+
+const bw_config_field specimen_fields[] = {
+    BW_CONFIG_MAP(specimen_config, shape, shape_fields, "the plate"),
+    BW_CONFIG_LIST(specimen_config, notches, n_notches, BW_OPTIONAL, notch_fields, "cuts"),
+    BW_CONFIG_LIST(specimen_config, holes, n_holes, BW_OPTIONAL, hole_fields, "round holes"),
+    BW_CONFIG_MAP(specimen_config, solid, solid_fields, "the material"),
+    BW_CONFIG_LIST(specimen_config, loads, n_loads, BW_REQUIRED, load_fields, "what tears it"),
+    BW_CONFIG_MAP(specimen_config, follow, follow_fields, "the crack that is measured"),
+    BW_CONFIG_MAP(specimen_config, time, time_fields, "how long"),
+    BW_CONFIG_MAP(specimen_config, output, output_fields, "files"),
+    BW_CONFIG_END};
+#undef V
+
+specimen_config specimen_default(void)
+{
+  specimen_config c = {
+      .shape = {.length = NAN, .height = NAN, .thickness = 1.0, .particles = INT_MIN},
+      .solid = {.geometry = BW_PD_PLANE_STRESS,
+                .young_modulus = NAN,
+                .density = NAN,
+                .fracture_energy = NAN,
+                .horizon_ratio = 3.0,
+                .surface_correction = BW_PD_SURFACE_VOLUME,
+                .volume_fraction = BW_PD_FRACTION_DEFAULT,
+                .family_reach = BW_PD_REACH_HALF_CELL,
+                .integrator = BW_PD_VERLET},
+      .follow = {.from = {NAN, NAN},
+                 .lower = {NAN, NAN},
+                 .upper = {NAN, NAN},
+                 .fit_from = 0.0,
+                 .fit_to = NAN,
+                 .speed_window = 2e-6,
+                 .every = 1},
+      .time = {.step = NAN, .end = NAN, .after = NAN},
+      .output = {.sample_every = 10, .picture_every = 200}};
+  c.notches[0] = (specimen_notch){{NAN, NAN}, {NAN, NAN}};
+  c.holes[0] = (specimen_hole){{NAN, NAN}, NAN};
+  c.loads[0] = (specimen_load){
+      .edge = INT_MIN, .kind = INT_MIN, .rows = 1, .value = {NAN, NAN}, .from = NAN, .to = NAN};
+  return c;
+}

@@ -1,0 +1,135 @@
+#include "specimen_output.h"
+#include "bw_file.h"
+#include "bw_memory.h"
+#include "bw_vtk.h"
+#include <math.h>
+#include <stdio.h>
+
+void specimen_describe(const specimen *p, bw_log *log)
+{
+  const specimen_solid *s = &p->config.solid;
+  bw_log_info(log, "%lld particles of %g m, lattice turned by %g deg, horizon %g m, %lld bonds",
+              (long long)bw_pd_bond_total(p->solid), p->ds, p->config.shape.lattice_angle,
+              bw_pd_bond_horizon(p->solid), (long long)bw_pd_bond_account(p->solid).bonds);
+  bw_log_info(log, "bonds break at a stretch of %.4g; sound travels at %.0f m/s (sqrt(E/rho))",
+              bw_pd_bond_critical_stretch(p->solid), sqrt(s->young_modulus / s->density));
+  bw_log_info(log, "time step %g s of at most %.3g s, %.0f steps", p->config.time.step,
+              bw_pd_bond_dt_max(p->solid), ceil(p->config.time.end / p->config.time.step - 1e-9));
+}
+
+enum { COLUMNS = 11 };
+static const char *const columns[COLUMNS] = {
+    "time[s]",    "tip_x[m]",   "tip_y[m]",    "reach[m]",    "speed[m/s]", "broken_bonds[-]",
+    "kinetic[J]", "elastic[J]", "fracture[J]", "external[J]", "residual[J]"};
+
+bw_status specimen_open_history(const specimen *p, const bw_case *run, bw_history **out)
+{
+  char *path = NULL;
+  bw_status st = bw_case_path(run, "history.csv", &path);
+  BW_THEN(st, bw_history_create(p->comm, path, COLUMNS, columns, NAN, out));
+  bw_release(&path);
+  return st;
+}
+
+void specimen_sample(specimen *p, bw_history *history)
+{
+  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  const specimen_crack *c = &p->crack;
+  const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
+  const double row[COLUMNS] = {p->time,    c->tip[0],        c->tip[1],         c->reach,
+                               c->speed,   (double)e.broken, e.kinetic,         e.elastic,
+                               e.fracture, e.external,       e.external - spent};
+  bw_history_append(history, row);
+}
+
+static bw_status write_particles(specimen *p, const char *path)
+{
+  double *X = NULL, *U = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * p->n);
+  BW_THEN(st, BW_ALLOCATE(&U, 3 * p->n));
+  st = bw_comm_agree(p->comm, st);
+  if (st == BW_OK) {
+    bw_pd_bond_get_position(p->solid, X);
+    bw_pd_bond_get_damage(p->solid, p->damage);
+    for (size_t i = 0; i < 3 * p->n; i++)
+      U[i] = X[i] - p->X0[i];
+    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, p->damage},
+                                   {"displacement", BW_VTK_FLOAT64, 3, U}};
+    st = bw_vtk_write_points(p->comm, path, p->n, X, 2, arrays);
+  }
+  bw_release(&X);
+  bw_release(&U);
+  return st;
+}
+
+bw_status specimen_picture(specimen *p, const bw_case *run)
+{
+  char name[64], *path = NULL, *series = NULL;
+  snprintf(name, sizeof name, "damage-%06lld.vtp", (long long)p->steps);
+  bw_status st = bw_case_path(run, name, &path);
+  BW_THEN(st, bw_case_path(run, "damage.pvd", &series));
+  BW_THEN(st, write_particles(p, path));
+  BW_THEN(st, bw_vtk_series_add(p->comm, series, p->time, name));
+  bw_release(&path);
+  bw_release(&series);
+  return st;
+}
+
+static bw_status write_crack(specimen *p, const bw_pd_crack *crack, const char *path)
+{
+  enum { ROW = 40 }; /* characters of a line at most */
+  char *text = NULL;
+  bw_status st = bw_comm_agree(p->comm, BW_ALLOCATE(&text, ROW * (crack->n + 1)));
+  if (st != BW_OK) return st;
+  size_t used = (size_t)snprintf(text, ROW, "x[m],y[m]\n");
+  for (size_t q = 0; q < crack->n; q++)
+    used += (size_t)snprintf(text + used, ROW, "%.9g,%.9g\n", crack->s[q], crack->t[q]);
+  st = bw_file_write_text(p->comm, path, text);
+  bw_release(&text);
+  return st;
+}
+
+bw_status specimen_crack_file(specimen *p, const bw_case *run)
+{
+  const bw_pd_crack_config look = bw_pd_crack_config_default();
+  bw_pd_crack crack;
+  char *path = NULL;
+  bw_pd_bond_get_damage(p->solid, p->damage);
+  BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, &crack));
+  bw_status st = bw_case_path(run, "crack.csv", &path);
+  BW_THEN(st, write_crack(p, &crack, path));
+  bw_release(&path);
+  bw_pd_crack_release(&crack);
+  return st;
+}
+
+static const char *or_never(double x, char text[16])
+{
+  if (isnan(x))
+    snprintf(text, 16, "(never)");
+  else
+    snprintf(text, 16, "%.2f", x);
+  return text;
+}
+
+bw_status specimen_summary(specimen *p, bw_log *log)
+{
+  const specimen_crack *c = &p->crack;
+  char text[3][16];
+  bw_pd_crack_line line;
+  BW_TRY(specimen_fit(p, &line));
+  bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",
+              or_never(1e6 * c->t_first, text[0]), or_never(1e6 * c->t_start, text[1]),
+              or_never(1e6 * c->t_end, text[2]));
+  bw_log_info(log, "tip at (%.2f, %.2f) mm, %.2f mm from the notch; at most %.0f m/s",
+              1e3 * c->tip[0], 1e3 * c->tip[1], 1e3 * c->reach,
+              specimen_speed(p, p->config.follow.speed_window));
+  bw_log_info(log, "path at %s deg to x, %s mm wide (rms), %zu particles",
+              or_never(line.angle * 180.0 / acos(-1.0), text[0]),
+              or_never(1e3 * line.width, text[1]), line.n);
+  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
+  bw_log_info(log, "work %.4g J, fracture %.4g J, not accounted for %.2g %% of the work",
+              e.external, e.fracture, 100.0 * (e.external - spent) / e.external);
+  return BW_OK;
+}

@@ -1,0 +1,34 @@
+/* specimen_run.h -- the plates of cases/notched_plate, broken once, for the claims about them. */
+#pragma once
+#include "../../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
+#include "../../cases/notched_plate/specimen_input.c"
+#include "bw_validation.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+/* The plate of cases/notched_plate/NAME.yaml with some keys changed. Collective. */
+static bw_status specimen_read(const bw_comm *comm, const char *name, int n,
+                               const char *const changes[], specimen_config *c)
+{
+  char path[1024];
+  const char *root = getenv("BW_SOURCE_DIR");
+  snprintf(path, sizeof path, "%s/cases/notched_plate/%s.yaml", root != NULL ? root : ".", name);
+  *c = specimen_default();
+  return bw_config_load(comm, path, specimen_fields, n, changes, sizeof *c, c);
+}
+
+/* Energy not found again, over the work. Collective. */
+static double specimen_residual(specimen *p)
+{
+  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  return (e.external - e.kinetic - e.elastic - e.fracture - e.damping) / e.external;
+}
+
+/* Run it to its end; `p` has to be destroyed by the caller. Collective. */
+static bw_status specimen_break(const bw_comm *comm, const specimen_config *c, specimen *p)
+{
+  BW_TRY(specimen_create(comm, c, p));
+  while (!specimen_done(p))
+    BW_TRY(specimen_step(p));
+  return BW_OK;
+}

@@ -34,7 +34,8 @@ typedef enum {
   BW_NS_MOMENT_UW,
   BW_NS_MOMENT_OY,
   BW_NS_MOMENT_OYOY,
-  BW_NS_MOMENT_V, /* faces */
+  BW_NS_MOMENT_GRADIENTS, /* sum of the squares of u_x, v_y, w_z, u_z, w_x */
+  BW_NS_MOMENT_V,         /* faces */
   BW_NS_MOMENT_VV,
   BW_NS_MOMENT_VVV,
   BW_NS_MOMENT_VVVV,
@@ -44,6 +45,10 @@ typedef enum {
   BW_NS_MOMENT_OXOX,
   BW_NS_MOMENT_OZ,
   BW_NS_MOMENT_OZOZ,
+  BW_NS_MOMENT_FACE_GRADIENTS, /* of u_y, v_x, v_z, w_y */
+  BW_NS_MOMENT_VUU,
+  BW_NS_MOMENT_VWW,
+  BW_NS_MOMENT_PV,
   BW_NS_MOMENTS
 } bw_ns_moment;
 
@@ -61,7 +66,13 @@ typedef enum {
   BW_NS_PROFILE_U_FLATNESS,
   BW_NS_PROFILE_W_SKEWNESS,
   BW_NS_PROFILE_W_FLATNESS,
-  BW_NS_PROFILE_V, /* faces */
+  BW_NS_PROFILE_K, /* centres: k = <u_i'u_i'>/2 and its budget, whose terms add up to dk/dt */
+  BW_NS_PROFILE_PRODUCTION,          /* -<u'v'> dU/dy - <v'w'> dW/dy */
+  BW_NS_PROFILE_DISSIPATION,         /* -nu <(du_i'/dx_j)^2>, negative */
+  BW_NS_PROFILE_TURBULENT_TRANSPORT, /* -d<v' u_i'u_i'>/dy /2 */
+  BW_NS_PROFILE_PRESSURE_TRANSPORT,  /* -d<p'v'>/dy */
+  BW_NS_PROFILE_VISCOUS_DIFFUSION,   /* nu d2k/dy2 */
+  BW_NS_PROFILE_V,                   /* faces */
   BW_NS_PROFILE_V_RMS,
   BW_NS_PROFILE_UV,
   BW_NS_PROFILE_VW,

@@ -8,6 +8,7 @@ typedef struct {
   const double *mean;
   int rows;
   double nu;
+  const double *y_face, *y_centre;
 } profile_source;
 
 static double moment(const profile_source *m, bw_ns_moment which, int row)
@@ -83,6 +84,75 @@ static double total(const profile_source *m, bw_ns_moment first, int row)
   return shear(m, first, row) - uv(m, BW_NS_MOMENT_UV, row);
 }
 
+/* ---- budget of k at centres; what belongs to faces is averaged over or differenced between the
+ * two of the cell, as the discrete balance of energy has it ---- */
+static double k_at_centre(const profile_source *m, bw_ns_moment first, int row)
+{
+  (void)first;
+  return 0.5 * (variance(m, BW_NS_MOMENT_U, row) + variance(m, BW_NS_MOMENT_W, row) +
+                0.5 * (variance(m, BW_NS_MOMENT_V, row - 1) + variance(m, BW_NS_MOMENT_V, row)));
+}
+
+/* <o_z> = -dU/dy, <o_x> = dW/dy. */
+static double production(const profile_source *m, bw_ns_moment first, int row)
+{
+  double sum = 0.0;
+  (void)first;
+  for (int j = row - 1; j <= row; j++)
+    sum += uv(m, BW_NS_MOMENT_UV, j) * moment(m, BW_NS_MOMENT_OZ, j) -
+           vw(m, BW_NS_MOMENT_VW, j) * moment(m, BW_NS_MOMENT_OX, j);
+  return 0.5 * sum;
+}
+
+static double dissipation(const profile_source *m, bw_ns_moment first, int row)
+{
+  double sum = moment(m, first, row);
+  for (int j = row - 1; j <= row; j++) {
+    const double oz = moment(m, BW_NS_MOMENT_OZ, j), ox = moment(m, BW_NS_MOMENT_OX, j);
+    sum += 0.5 * (moment(m, BW_NS_MOMENT_FACE_GRADIENTS, j) - oz * oz - ox * ox);
+  }
+  return -m->nu * sum;
+}
+
+/* Minus the divergence of a flux given at faces. */
+static double gain(const profile_source *m, const double flux[2], int row)
+{
+  return -(flux[1] - flux[0]) / (m->y_face[row] - m->y_face[row - 1]);
+}
+
+/* <v'a'a'> = <v a a> - 2 A <v'a'>: V = 0 between walls, by continuity. */
+static double turbulent_transport(const profile_source *m, bw_ns_moment first, int row)
+{
+  double flux[2];
+  for (int s = 0; s < 2; s++) {
+    const int j = row - 1 + s;
+    const double U = at_face(m, BW_NS_MOMENT_U, j), W = at_face(m, BW_NS_MOMENT_W, j);
+    flux[s] = 0.5 * (moment(m, first, j) + moment(m, BW_NS_MOMENT_VUU, j) +
+                     moment(m, BW_NS_MOMENT_VWW, j)) -
+              U * uv(m, BW_NS_MOMENT_UV, j) - W * vw(m, BW_NS_MOMENT_VW, j);
+  }
+  return gain(m, flux, row);
+}
+
+static double pressure_transport(const profile_source *m, bw_ns_moment first, int row)
+{
+  const double flux[2] = {moment(m, first, row - 1), moment(m, first, row)};
+  return gain(m, flux, row);
+}
+
+/* dk/dy = 0 on a wall, where k begins with y^2. */
+static double viscous_diffusion(const profile_source *m, bw_ns_moment first, int row)
+{
+  double flux[2] = {0.0, 0.0};
+  for (int s = 0; s < 2; s++) {
+    const int j = row - 1 + s;
+    if (j == 0 || j == m->rows - 1) continue;
+    flux[s] = -m->nu * (k_at_centre(m, first, j + 1) - k_at_centre(m, first, j)) /
+              (m->y_centre[j + 1] - m->y_centre[j]);
+  }
+  return gain(m, flux, row);
+}
+
 static const struct {
   profile_fn make;
   bw_ns_moment first;
@@ -99,6 +169,12 @@ static const struct {
     [BW_NS_PROFILE_U_FLATNESS] = {flatness, BW_NS_MOMENT_U},
     [BW_NS_PROFILE_W_SKEWNESS] = {skewness, BW_NS_MOMENT_W},
     [BW_NS_PROFILE_W_FLATNESS] = {flatness, BW_NS_MOMENT_W},
+    [BW_NS_PROFILE_K] = {k_at_centre, BW_NS_MOMENT_U},
+    [BW_NS_PROFILE_PRODUCTION] = {production, BW_NS_MOMENT_UV},
+    [BW_NS_PROFILE_DISSIPATION] = {dissipation, BW_NS_MOMENT_GRADIENTS},
+    [BW_NS_PROFILE_TURBULENT_TRANSPORT] = {turbulent_transport, BW_NS_MOMENT_VVV},
+    [BW_NS_PROFILE_PRESSURE_TRANSPORT] = {pressure_transport, BW_NS_MOMENT_PV},
+    [BW_NS_PROFILE_VISCOUS_DIFFUSION] = {viscous_diffusion, BW_NS_MOMENT_U},
     [BW_NS_PROFILE_V] = {plain, BW_NS_MOMENT_V},
     [BW_NS_PROFILE_V_RMS] = {rms, BW_NS_MOMENT_V},
     [BW_NS_PROFILE_UV] = {uv, BW_NS_MOMENT_UV},
@@ -113,8 +189,9 @@ static const struct {
 
 /* What changes sign when y does: odd in v, o_x, o_z together. */
 static const bool odd[BW_NS_MOMENTS] = {
-    [BW_NS_MOMENT_V] = true,  [BW_NS_MOMENT_VVV] = true, [BW_NS_MOMENT_UV] = true,
-    [BW_NS_MOMENT_VW] = true, [BW_NS_MOMENT_OX] = true,  [BW_NS_MOMENT_OZ] = true,
+    [BW_NS_MOMENT_V] = true,   [BW_NS_MOMENT_VVV] = true, [BW_NS_MOMENT_UV] = true,
+    [BW_NS_MOMENT_VW] = true,  [BW_NS_MOMENT_OX] = true,  [BW_NS_MOMENT_OZ] = true,
+    [BW_NS_MOMENT_VUU] = true, [BW_NS_MOMENT_VWW] = true, [BW_NS_MOMENT_PV] = true,
 };
 
 bool bw_ns_profile_on_faces(bw_ns_profile_kind kind)
@@ -168,7 +245,7 @@ double bw_ns_statistics_moment(const bw_ns_statistics *s, bw_ns_moment which, in
 void bw_ns_statistics_profile(const bw_ns_statistics *s, bw_ns_profile_kind kind, bool fold,
                               bw_ns_estimate out[])
 {
-  const profile_source m = {s->work, s->rows, s->nu};
+  const profile_source m = {s->work, s->rows, s->nu, s->g->y_face, s->g->y_centre};
   const int first = bw_ns_profile_on_faces(kind) ? 0 : 1, n = s->full;
   const profile_fn make = profiles[kind].make;
   double *mean = s->value;

@@ -50,7 +50,7 @@ void bw_ns_statistics_reset(bw_ns_statistics *s)
   s->in_last = 0;
 }
 
-/* The mean over the box is taken off p: <p - m>, <(p - m)^2> from <p>, <p^2>. */
+/* The mean over the box is taken off p: <p - m>, <(p - m)^2>, <(p - m) v> from the plain ones. */
 static void centre_pressure(bw_ns_statistics *s)
 {
   const bw_grid_view *g = s->g;
@@ -58,6 +58,10 @@ static void centre_pressure(bw_ns_statistics *s)
   double *p2 = s->now + (size_t)BW_NS_MOMENT_PP * (size_t)s->rows, m = 0.0;
   for (int j = 1; j < s->rows; j++)
     m += p1[j] * (g->y_face[j] - g->y_face[j - 1]) / g->length[1];
+  const double *v = s->now + (size_t)BW_NS_MOMENT_V * (size_t)s->rows;
+  double *pv = s->now + (size_t)BW_NS_MOMENT_PV * (size_t)s->rows;
+  for (int j = 0; j < s->rows; j++)
+    pv[j] -= m * v[j];
   for (int j = 1; j < s->rows; j++) {
     p2[j] += m * (m - 2.0 * p1[j]);
     p1[j] -= m;

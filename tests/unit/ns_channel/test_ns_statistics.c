@@ -174,6 +174,57 @@ START_TEST(wave_at_faces)
 }
 END_TEST
 
+/* k and its budget; rows whose faces are not walls. */
+START_TEST(wave_budget)
+{
+  bw_ns_statistics *s = NULL;
+  bw_ns_channel *ns = make(cells, &s);
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(ns));
+  fill(ns, wave);
+  bw_ns_statistics_sample(s);
+  const double dx = box[0] / cells[0], dz = box[2] / cells[2];
+  const double sx = 2.0 / dx * sin(pi() * dx / box[0]), sz = 2.0 / dz * sin(pi() * dz / box[2]);
+  const double cx = cos(pi() * dx / box[0]), cz = cos(pi() * dz / box[2]);
+  double k[16], face[16], produced[16], pressure[16];
+  for (int j = 1; j <= cells[1]; j++) {
+    const double y = g->y_centre[j], a = amp_u(y), c = amp_w(y);
+    const double lo = j > 1 ? amp_v(g->y_face[j - 1]) : 0.0;
+    const double hi = j < cells[1] ? amp_v(g->y_face[j]) : 0.0;
+    k[j] = 0.25 * (a * a + c * c + 0.5 * (lo * lo + hi * hi));
+    NEAR(profile(s, BW_NS_PROFILE_K, false)[j].mean, k[j]);
+  }
+  for (int j = 1; j < cells[1]; j++) {
+    const double lo = g->y_centre[j], hi = g->y_centre[j + 1], h = hi - lo;
+    const double b = amp_v(g->y_face[j]), da = (amp_u(hi) - amp_u(lo)) / h;
+    const double dc = (amp_w(hi) - amp_w(lo)) / h, c = 0.5 * (amp_w(lo) + amp_w(hi));
+    face[j] = 0.5 * (da * da + dc * dc + b * b * (sx * sx + sz * sz));
+    produced[j] =
+        -0.25 * (amp_u(lo) + amp_u(hi)) * b * cos(alpha) * cx * (mean_u(hi) - mean_u(lo)) / h -
+        0.5 * b * c * cos(alpha - beta) * cz * (mean_w(hi) - mean_w(lo)) / h;
+    pressure[j] = 0.25 * (amp_p(lo) + amp_p(hi)) * b * cos(alpha);
+  }
+  for (int j = 2; j < cells[1]; j++) {
+    const double y = g->y_centre[j], a = amp_u(y), c = amp_w(y);
+    const double dy = g->y_face[j] - g->y_face[j - 1];
+    const double db = (amp_v(g->y_face[j]) - amp_v(g->y_face[j - 1])) / dy;
+    const double inside = 0.5 * ((a * a + c * c) * (sx * sx + sz * sz) + db * db);
+    NEAR(profile(s, BW_NS_PROFILE_DISSIPATION, false)[j].mean,
+         -nu * (inside + 0.5 * (face[j - 1] + face[j])));
+    NEAR(profile(s, BW_NS_PROFILE_PRODUCTION, false)[j].mean,
+         0.5 * (produced[j - 1] + produced[j]));
+    NEAR(profile(s, BW_NS_PROFILE_PRESSURE_TRANSPORT, false)[j].mean,
+         -(pressure[j] - pressure[j - 1]) / dy);
+    NEAR(profile(s, BW_NS_PROFILE_TURBULENT_TRANSPORT, false)[j].mean, 0.0);
+    NEAR(profile(s, BW_NS_PROFILE_VISCOUS_DIFFUSION, false)[j].mean,
+         nu *
+             ((k[j + 1] - k[j]) / (g->y_centre[j + 1] - y) -
+              (k[j] - k[j - 1]) / (y - g->y_centre[j - 1])) /
+             dy);
+  }
+  end(&ns, &s);
+}
+END_TEST
+
 /* Of mean 0, square 3, cube 6, fourth power 21 over four points. */
 static double lopsided(int c, double y, int i, int k)
 {
@@ -204,6 +255,38 @@ START_TEST(skewness_and_fold)
     NEAR(profile(s, BW_NS_PROFILE_V, false)[j].mean, g->y_face[j] - 0.7);
     NEAR(profile(s, BW_NS_PROFILE_SHEAR, true)[j].mean,
          -profile(s, BW_NS_PROFILE_SHEAR, true)[n[1] - j].mean);
+  }
+  end(&ns, &s);
+}
+END_TEST
+
+/* v, u, w all with the lopsided numbers along z: <v'u'u'> = 6 b, <v'v'v'> = 6 b^3, and
+ * <v'w'w'> = 2 b, as v is averaged over k and k + 1 while w stands between. */
+static double alike(int c, double y, int i, int k)
+{
+  const double s = k % 4 == 0 ? 3.0 : -1.0;
+  (void)i;
+  return c == 0 ? mean_u(y) + s : c == 1 ? amp_v(y) * s : c == 2 ? mean_w(y) + s : s;
+}
+
+START_TEST(triple_products)
+{
+  const int n[3] = {12, 9, 8};
+  bw_ns_statistics *s = NULL;
+  bw_ns_channel *ns = make(n, &s);
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(ns));
+  fill(ns, alike);
+  bw_ns_statistics_sample(s);
+  for (int j = 1; j <= n[1]; j++) {
+    double flux[2];
+    for (int q = 0; q < 2; q++) {
+      const int f = j - 1 + q;
+      const double b = f == 0 || f == n[1] ? 0.0 : amp_v(g->y_face[f]);
+      flux[q] = 0.5 * (6.0 * b * b * b + 6.0 * b + 2.0 * b);
+    }
+    const double dy = g->y_face[j] - g->y_face[j - 1];
+    bw_check_near(profile(s, BW_NS_PROFILE_TURBULENT_TRANSPORT, false)[j].mean,
+                  -(flux[1] - flux[0]) / dy, NS_TOLERANCE(1e-11));
   }
   end(&ns, &s);
 }
@@ -311,11 +394,8 @@ START_TEST(refuses_what_has_no_plane)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(wave_at_centres),
-                                      BW_TEST(wave_at_faces),
-                                      BW_TEST(skewness_and_fold),
-                                      BW_TEST(batches),
-                                      BW_TEST(restart),
-                                      BW_TEST(two_dimensions),
-                                      BW_TEST(refuses_what_has_no_plane)};
+static const bw_check_test tests[] = {
+    BW_TEST(wave_at_centres), BW_TEST(wave_at_faces),     BW_TEST(wave_budget),
+    BW_TEST(triple_products), BW_TEST(skewness_and_fold), BW_TEST(batches),
+    BW_TEST(restart),         BW_TEST(two_dimensions),    BW_TEST(refuses_what_has_no_plane)};
 BW_CHECK_MAIN("ns_statistics", tests)

@@ -164,16 +164,18 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   if (st == BW_OK && fabs(progress[2] / f->config->interval - 1.0) > 1e-12)
     st = BW_FAIL(BW_EINPUT, "%s was written with samples every %g h/U_b, not %g", path, progress[2],
                  f->config->interval);
-  BW_THEN(st, bw_checkpoint_get_numbers(ck, "statistics",
-                                        (int)bw_ns_statistics_state_size(f->statistics), f->state));
-  BW_THEN(st, bw_ns_statistics_set_state(f->statistics, f->state));
+  if (st == BW_OK) f->intervals = (int64_t)progress[0];
+  if (st == BW_OK && channel_sampling(f)) { /* else nothing was sampled yet */
+    st = bw_checkpoint_get_numbers(ck, "statistics",
+                                   (int)bw_ns_statistics_state_size(f->statistics), f->state);
+    BW_THEN(st, bw_ns_statistics_set_state(f->statistics, f->state));
+  }
   for (int c = 0; c < 4; c++)
     BW_THEN(st,
             bw_checkpoint_get_field(ck, channel_field_name[c], f->grid, c % 3, false, field[c]));
   BW_THEN(st, bw_checkpoint_close(&ck));
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
-  f->intervals = (int64_t)progress[0];
   f->steps = (int64_t)progress[1];
   bw_ns_channel_set_gradient(f->fluid, progress[3]);
   bw_ns_channel_set_time(f->fluid, progress[0] * progress[2]);

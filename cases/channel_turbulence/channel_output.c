@@ -51,29 +51,36 @@ double channel_record(channel_flow *f, bw_history *history)
 typedef struct {
   const char *name;
   bw_ns_profile_kind kind;
-  int power; /* of u_tau that makes it dimensionless; -1: over u_tau^2/nu; 0: it is */
+  int power; /* of u_tau that makes it dimensionless; of 1/nu, too, where negative */
 } column;
 
-static const column centre_columns[] = {{"U_plus", BW_NS_PROFILE_U, 1},
-                                        {"u_rms_plus", BW_NS_PROFILE_U_RMS, 1},
-                                        {"w_rms_plus", BW_NS_PROFILE_W_RMS, 1},
-                                        {"W_plus", BW_NS_PROFILE_W, 1},
-                                        {"uw_plus", BW_NS_PROFILE_UW, 2},
-                                        {"P_plus", BW_NS_PROFILE_P, 2},
-                                        {"p_rms_plus", BW_NS_PROFILE_P_RMS, 2},
-                                        {"omega_y_rms_plus", BW_NS_PROFILE_OY_RMS, -1},
-                                        {"u_skewness", BW_NS_PROFILE_U_SKEWNESS, 0},
-                                        {"u_flatness", BW_NS_PROFILE_U_FLATNESS, 0},
-                                        {"w_skewness", BW_NS_PROFILE_W_SKEWNESS, 0},
-                                        {"w_flatness", BW_NS_PROFILE_W_FLATNESS, 0}};
+static const column centre_columns[] = {
+    {"U_plus", BW_NS_PROFILE_U, 1},
+    {"u_rms_plus", BW_NS_PROFILE_U_RMS, 1},
+    {"w_rms_plus", BW_NS_PROFILE_W_RMS, 1},
+    {"W_plus", BW_NS_PROFILE_W, 1},
+    {"uw_plus", BW_NS_PROFILE_UW, 2},
+    {"P_plus", BW_NS_PROFILE_P, 2},
+    {"p_rms_plus", BW_NS_PROFILE_P_RMS, 2},
+    {"omega_y_rms_plus", BW_NS_PROFILE_OY_RMS, -2},
+    {"u_skewness", BW_NS_PROFILE_U_SKEWNESS, 0},
+    {"u_flatness", BW_NS_PROFILE_U_FLATNESS, 0},
+    {"w_skewness", BW_NS_PROFILE_W_SKEWNESS, 0},
+    {"w_flatness", BW_NS_PROFILE_W_FLATNESS, 0},
+    {"k_plus", BW_NS_PROFILE_K, 2},
+    {"production_plus", BW_NS_PROFILE_PRODUCTION, -4},
+    {"dissipation_plus", BW_NS_PROFILE_DISSIPATION, -4},
+    {"turbulent_transport_plus", BW_NS_PROFILE_TURBULENT_TRANSPORT, -4},
+    {"pressure_transport_plus", BW_NS_PROFILE_PRESSURE_TRANSPORT, -4},
+    {"viscous_diffusion_plus", BW_NS_PROFILE_VISCOUS_DIFFUSION, -4}};
 static const column face_columns[] = {{"V_plus", BW_NS_PROFILE_V, 1},
                                       {"v_rms_plus", BW_NS_PROFILE_V_RMS, 1},
                                       {"uv_plus", BW_NS_PROFILE_UV, 2},
                                       {"vw_plus", BW_NS_PROFILE_VW, 2},
                                       {"shear_plus", BW_NS_PROFILE_SHEAR, 2},
                                       {"total_stress_plus", BW_NS_PROFILE_TOTAL, 2},
-                                      {"omega_x_rms_plus", BW_NS_PROFILE_OX_RMS, -1},
-                                      {"omega_z_rms_plus", BW_NS_PROFILE_OZ_RMS, -1},
+                                      {"omega_x_rms_plus", BW_NS_PROFILE_OX_RMS, -2},
+                                      {"omega_z_rms_plus", BW_NS_PROFILE_OZ_RMS, -2},
                                       {"v_skewness", BW_NS_PROFILE_V_SKEWNESS, 0},
                                       {"v_flatness", BW_NS_PROFILE_V_FLATNESS, 0}};
 
@@ -94,8 +101,8 @@ static void write_table(FILE *out, const channel_flow *f, bool faces, int n_colu
     fprintf(out, "\n%.9g,%.9g", y, y * u_tau * re);
     for (int c = 0; c < n_columns; c++) {
       const bw_ns_estimate e = work[(size_t)c * rows + (size_t)j];
-      const double unit =
-          columns[c].power < 0 ? u_tau * u_tau * re : pow(u_tau, (double)columns[c].power);
+      const int power = columns[c].power;
+      const double unit = pow(u_tau, fabs((double)power)) * (power < 0 ? re : 1.0);
       fprintf(out, ",%.9g,%.3g", e.mean / unit, e.interval / unit);
     }
   }

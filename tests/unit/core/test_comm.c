@@ -142,7 +142,11 @@ START_TEST(resident_memory_grows_and_shrinks)
   const double after = (double)bw_memory_resident() / MiB;
   ck_assert_double_gt(before, 0.0);
   ck_assert_double_ge(during - before, 60.0);
+#ifdef __SANITIZE_ADDRESS__ /* it keeps what was freed for a while, to find late accesses */
+  (void)after;
+#else
   ck_assert_double_le(after - before, 4.0);
+#endif
 }
 END_TEST
 

@@ -34,6 +34,10 @@ typedef enum {
   BW_PD_FRACTION_DEFAULT /* exact in 3D, linear in 2D */
 } bw_pd_volume_fraction;
 typedef enum { BW_PD_REACH_HALF_CELL, BW_PD_REACH_HORIZON } bw_pd_family_reach;
+/* Material constants from the integrals over the ball (3.21, 3.27), or from the sums over the
+ * lattice's full family: then the bulk modulus, the energy of a flat crack along the lattice and
+ * V_0 of the volume method are exact at any horizon_ratio. */
+typedef enum { BW_PD_CALIBRATION_NONE, BW_PD_CALIBRATION_LATTICE } bw_pd_calibration;
 typedef enum { BW_PD_VERLET, BW_PD_RK3 } bw_pd_integrator;
 
 typedef struct {
@@ -47,6 +51,7 @@ typedef struct {
   double G0;               /* fracture energy [M/T^2]              default INFINITY */
   bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* default volume */
+  bw_pd_calibration calibration;               /* default none */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
   bw_pd_integrator integrator;     /* default Verlet */
   double damping_pair;             /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */

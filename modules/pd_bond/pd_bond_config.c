@@ -103,6 +103,8 @@ bw_status bw_pd_bond__check_config(const bw_pd_bond_config *c)
              (int)c->volume_fraction);
   BW_REQUIRE((unsigned)c->surface_correction <= BW_PD_SURFACE_ENERGY, BW_EINPUT,
              "pd_bond: surface_correction = %d is unknown", (int)c->surface_correction);
+  BW_REQUIRE((unsigned)c->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
+             "pd_bond: calibration = %d is unknown", (int)c->calibration);
   BW_REQUIRE((unsigned)c->integrator <= BW_PD_RK3, BW_EINPUT, "pd_bond: integrator = %d is unknown",
              (int)c->integrator);
   BW_REQUIRE((unsigned)c->family_reach <= BW_PD_REACH_HORIZON, BW_EINPUT,

@@ -74,6 +74,7 @@ static bw_status build(bw_pd_bond *pd, int64_t n, const int32_t site[], const ui
   bw_pd_bond__material(pd);
   pd->total = n;
   bw_status st = bw_comm_agree(pd->comm, bw_pd_bond__stencil(pd));
+  if (st == BW_OK) bw_pd_bond__calibrate(pd);
   if (st == BW_OK) st = bw_pd_bond__distribute(pd, (size_t)n, site, kind, &near);
   if (st == BW_OK) {
     BW_THEN(st, bw_pd_bond__slots(pd, &near));

@@ -90,6 +90,7 @@ struct bw_pd_bond {
   bw_pd_bond_config config;
   int dimension;              /* 2 or 3 */
   double horizon, c0, s0, dv; /* dv: volume of one particle */
+  double full_volume;         /* V_0 of the volume method (3.44) */
   double sum_stiffness;       /* max over particles of sum_l c0 alpha Gamma V/|xi| (ERRATA 6) */
   double sum_weight;          /* max of sum_l Gamma V */
   double damping_pair, damping_mean, damping_absolute;
@@ -140,6 +141,10 @@ struct bw_pd_bond {
 bw_status bw_pd_bond__check_config(const bw_pd_bond_config *config);
 void bw_pd_bond__material(bw_pd_bond *pd);
 void bw_pd_bond__constants(bw_pd_bond *pd);
+
+/* pd_bond_calibrate.c */
+double bw_pd_bond__classical_dilation(const bw_pd_bond_config *config); /* energy density/e^2 */
+void bw_pd_bond__calibrate(bw_pd_bond *pd);
 
 /* pd_bond_fraction.c: part of the cell at `offset` (in ds) within the distance m of the origin */
 double bw_pd_bond__fraction_area(double m, const int32_t offset[3]);

@@ -141,28 +141,17 @@ bw_status bw_pd_bond__slots(bw_pd_bond *pd, const bw_pd_map *near)
   return BW_OK;
 }
 
-/* Energy density of a point dilated by strain e, over e^2, in classical elasticity: with the fixed
- * Poisson ratios 3 E, E/(1 - nu) = 3E/2 and 2 (lambda + mu) = 8E/5. */
-static double classical_dilation(const bw_pd_bond_config *c)
-{
-  const double factor[] = {3, 1.5, 1.6};
-  return factor[c->geometry] * c->E;
-}
-
 /* Own factors: volume method, V_h/V_0 (3.44, ERRATA 11); energy method, the ratio of the classical
  * energy of an isotropic dilation to that of the family (Madenci & Oterkus 2014, section 4.2,
  * reduced to one scalar per particle). */
 static bw_real surface_factor(const bw_pd_bond *pd, double volume, double first_moment)
 {
-  const double d = pd->horizon, pi = 3.14159265358979323846;
-  const double full =
-      pd->dimension == 3 ? 4.0 / 3 * pi * d * d * d : pi * d * d * pd->config.thickness;
   const double energy = 0.25 * pd->c0 * first_moment;
   switch (pd->config.surface_correction) {
   case BW_PD_SURFACE_VOLUME:
-    return (bw_real)(volume / full);
+    return (bw_real)(volume / pd->full_volume);
   case BW_PD_SURFACE_ENERGY:
-    return (bw_real)(classical_dilation(&pd->config) / energy);
+    return (bw_real)(bw_pd_bond__classical_dilation(&pd->config) / energy);
   default:
     return 1;
   }

@@ -20,6 +20,7 @@ void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0)
 {
   pd->config.G0 = G0;
   bw_pd_bond__material(pd);
+  bw_pd_bond__calibrate(pd);
   bw_pd_bond__constants(pd);
 }
 

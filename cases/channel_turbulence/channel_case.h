@@ -38,3 +38,7 @@ double channel_record(channel_flow *f, bw_history *history);
 /* centres.csv and faces.csv in wall units, scalars.csv; nothing before the first full batches.
  * Collective. */
 bw_status channel_profiles(channel_flow *f, const bw_case *run) BW_MUST_CHECK;
+
+/* channel_spectra.c: correlations_x.csv, correlations_z.csv, spectra_x.csv, spectra_z.csv, both
+ * halves averaged; nothing before the first sample. Collective. */
+bw_status channel_spectra(channel_flow *f, const bw_case *run) BW_MUST_CHECK;

@@ -7,6 +7,7 @@
 #pragma once
 #include "bw_checkpoint.h"
 #include "bw_memory.h"
+#include "bw_ns_correlations.h"
 #include "bw_ns_statistics.h"
 
 #include <limits.h>
@@ -27,7 +28,8 @@ typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
   bw_ns_statistics *statistics;
-  double *state;       /* the statistics' numbers on their way to disk */
+  bw_ns_correlations *correlations;
+  double *state;       /* the numbers of both on their way to disk */
   int64_t intervals;   /* done */
   int64_t steps;       /* done */
   double dt, gradient; /* of the last interval: the step, the mean of -dp/dx */
@@ -36,9 +38,24 @@ typedef struct {
 static inline void channel_destroy(channel_flow *f)
 {
   bw_release(&f->state);
+  bw_ns_correlations_destroy(&f->correlations);
   bw_ns_statistics_destroy(&f->statistics);
   bw_ns_channel_destroy(&f->fluid);
   bw_grid_destroy(&f->grid);
+}
+
+/* Heights of correlations and spectra in wall units of Re_tau = 180; the last is the centre. */
+enum { CHANNEL_HEIGHTS = 5, CHANNEL_PLANES = 2 * CHANNEL_HEIGHTS };
+static const int channel_heights[CHANNEL_HEIGHTS] = {5, 15, 30, 60, 180};
+
+/* Row j of u and w next to the height, and its mirror image: planes q and CHANNEL_HEIGHTS + q. (v
+ * is at the faces above these centres: one above row j, the other, mirrored, below it.) */
+static inline int channel_row(const channel_config *q, int plane)
+{
+  const int n = q->cells[1];
+  const double y = (double)channel_heights[plane % CHANNEL_HEIGHTS] / 360.0;
+  const int j = (int)fmin(fmax(1.0, round(y * n + 0.5)), (n + 1) / 2);
+  return plane < CHANNEL_HEIGHTS ? j : n + 1 - j;
 }
 
 /* A number in (-1, 1) that looks random, the same on all machines and ranks. */
@@ -91,7 +108,13 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
   c.forcing_value = 1.0;
   BW_TRY(bw_ns_channel_create(f->grid, &c, &f->fluid));
   BW_TRY(bw_ns_statistics_create(f->fluid, &f->statistics));
-  return bw_comm_agree(comm, BW_ALLOCATE(&f->state, bw_ns_statistics_state_size(f->statistics)));
+  int row[CHANNEL_PLANES];
+  for (int plane = 0; plane < CHANNEL_PLANES; plane++)
+    row[plane] = channel_row(config, plane);
+  BW_TRY(bw_ns_correlations_create(f->fluid, CHANNEL_PLANES, row, &f->correlations));
+  const size_t a = bw_ns_statistics_state_size(f->statistics);
+  const size_t b = bw_ns_correlations_state_size(f->correlations);
+  return bw_comm_agree(comm, BW_ALLOCATE(&f->state, a > b ? a : b));
 }
 
 static inline bw_status channel_start(channel_flow *f)
@@ -125,7 +148,10 @@ static inline bw_status channel_advance(channel_flow *f)
   f->steps += n;
   f->intervals++;
   bw_ns_channel_set_time(f->fluid, end);
-  if (channel_sampling(f)) bw_ns_statistics_sample(f->statistics);
+  if (channel_sampling(f)) {
+    bw_ns_statistics_sample(f->statistics);
+    bw_ns_correlations_sample(f->correlations);
+  }
   return BW_OK;
 }
 
@@ -145,6 +171,10 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "statistics",
                                         (int)bw_ns_statistics_state_size(f->statistics), f->state));
+  bw_ns_correlations_get_state(f->correlations, f->state);
+  BW_THEN(st,
+          bw_checkpoint_put_numbers(ck, "correlations",
+                                    (int)bw_ns_correlations_state_size(f->correlations), f->state));
   for (int c = 0; c < 4; c++)
     BW_THEN(st,
             bw_checkpoint_put_field(ck, channel_field_name[c], f->grid, c % 3, false, field[c]));
@@ -169,6 +199,10 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
     st = bw_checkpoint_get_numbers(ck, "statistics",
                                    (int)bw_ns_statistics_state_size(f->statistics), f->state);
     BW_THEN(st, bw_ns_statistics_set_state(f->statistics, f->state));
+    BW_THEN(st, bw_checkpoint_get_numbers(ck, "correlations",
+                                          (int)bw_ns_correlations_state_size(f->correlations),
+                                          f->state));
+    BW_THEN(st, bw_ns_correlations_set_state(f->correlations, f->state));
   }
   for (int c = 0; c < 4; c++)
     BW_THEN(st,

@@ -13,6 +13,7 @@ static bw_status save(channel_flow *f, const bw_case *run)
   bw_status st = bw_case_path(run, "checkpoint.h5", &path);
   BW_THEN(st, channel_save(f, path));
   BW_THEN(st, channel_profiles(f, run));
+  BW_THEN(st, channel_spectra(f, run));
   bw_release(&path);
   return st;
 }

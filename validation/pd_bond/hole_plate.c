@@ -69,7 +69,7 @@ static void add(bw_validation *v, const char *claim, const char *quantity, doubl
 {
   const bw_claim row = {claim,     quantity,     measured, reference,
                         tolerance, BW_PUBLISHED, adapt,    extra};
-  if (!isnan(measured)) (void)bw_validation_row(v, &row);
+  if (!isnan(measured) || isfinite(tolerance)) (void)bw_validation_row(v, &row);
 }
 
 /* `claimed`: 1, or INFINITY when it is only reported. */

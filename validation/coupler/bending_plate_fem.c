@@ -71,7 +71,8 @@ static bending_config twin(int cells, double young, int load)
   c.plate.damping_absolute = 12.0 * c.plate.density; /* about critical for the first mode, 9 */
   c.coupling.load = load;
   c.coupling.iterations = 4;
-  c.coupling.load_relaxation = 0.03;
+  /* a filter of the same time, dt/w = 0.13, at every resolution */
+  c.coupling.load_relaxation = 0.6 / cells;
   return c;
 }
 

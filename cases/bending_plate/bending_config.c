@@ -1,0 +1,94 @@
+#include "bending_case.h"
+
+#define V BW_CONFIG_VALUE
+static const bw_config_field channel_fields[] = {
+    V(bending_channel, length, BW_REQUIRED, BW_ABOVE(0), "m", "of the channel, along the stream"),
+    V(bending_channel, height, BW_REQUIRED, BW_ABOVE(0), "m", "of the channel"),
+    V(bending_channel, cells, BW_REQUIRED, BW_AT_LEAST(4), "", "in x and y (square cells)"),
+    BW_CONFIG_END};
+static const bw_config_field fluid_fields[] = {
+    V(bending_fluid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
+    V(bending_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
+    V(bending_fluid, bulk_velocity, BW_REQUIRED, BW_ABOVE(0), "m/s",
+      "mean of the Poiseuille inflow"),
+    BW_CONFIG_END};
+static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
+                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
+                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
+                                                  {NULL, 0, NULL}};
+static const bw_config_field plate_fields[] = {
+    V(bending_plate, front, BW_REQUIRED, BW_ABOVE(0), "m", "inflow to the upstream face"),
+    V(bending_plate, thickness, BW_REQUIRED, BW_ABOVE(0), "m", "of the plate"),
+    V(bending_plate, height, BW_REQUIRED, BW_ABOVE(0), "m", "of the plate over the wall"),
+    V(bending_plate, particles_across, BW_REQUIRED, BW_FROM_TO(2, 1000), "", "of the thickness"),
+    V(bending_plate, clamped_layers, BW_OPTIONAL, BW_FROM_TO(1, 16), "",
+      "rows of held particles under the wall"),
+    V(bending_plate, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
+    V(bending_plate, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
+    V(bending_plate, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
+    V(bending_plate, damping_mean, BW_OPTIONAL, BW_AT_LEAST(0), "kg/(m3 s)",
+      "k_d of FSI eq. 9, against the mean of the neighbours"),
+    V(bending_plate, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "k_d of POROUS 3.41"),
+    V(bending_plate, damping_absolute, BW_OPTIONAL, BW_AT_LEAST(0), "kg/(m3 s)",
+      "to bring it to rest"),
+    BW_CONFIG_WORD(bending_plate, surface_correction, BW_OPTIONAL, correction_words,
+                   "stiffness of bonds near surfaces"),
+    BW_CONFIG_END};
+
+static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
+                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
+                                              {"hat2", BW_KERNEL_HAT2, NULL},
+                                              {NULL, 0, NULL}};
+static const bw_config_word profile_words[] = {
+    {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
+    {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
+    {NULL, 0, NULL}};
+static const bw_config_word load_words[] = {
+    {"probes", BW_LOAD_PROBES, "stress seen by normal probes"},
+    {"reaction", BW_LOAD_REACTION, "reaction of the markers, as in FSI"},
+    {NULL, 0, NULL}};
+static const bw_config_field coupling_fields[] = {
+    BW_CONFIG_WORD(bending_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
+    V(bending_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
+    BW_CONFIG_WORD(bending_coupling, probe_profile, BW_OPTIONAL, profile_words,
+                   "of the velocity along a probe"),
+    BW_CONFIG_WORD(bending_coupling, load, BW_OPTIONAL, load_words, "what loads the solid"),
+    V(bending_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
+      "of the markers, inwards from the nominal surface"),
+    V(bending_coupling, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
+      "along the surface; 0: every surface particle is a marker"),
+    V(bending_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
+    V(bending_coupling, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "share of the new fluid load in each step"),
+    V(bending_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "solid sub-step over its stability limit"),
+    BW_CONFIG_END};
+
+static const bw_config_field physics_fields[] = {
+    BW_CONFIG_MAP(bending_config, channel, channel_fields, "the channel"),
+    BW_CONFIG_MAP(bending_config, fluid, fluid_fields, "the fluid"),
+    BW_CONFIG_MAP(bending_config, plate, plate_fields, "the plate"),
+    BW_CONFIG_MAP(bending_config, coupling, coupling_fields, "fluid and solid"), BW_CONFIG_END};
+static const bw_config_field time_fields[] = {
+    V(bending_time, step, BW_REQUIRED, BW_ABOVE(0), "s", "of the fluid; the solid sub-cycles"),
+    V(bending_time, release, BW_OPTIONAL, BW_AT_LEAST(0), "s", "the plate is held until then"),
+    V(bending_time, end, BW_REQUIRED, BW_ABOVE(0), "s", "of the run"), BW_CONFIG_END};
+static const bw_config_field output_fields[] = {
+    V(bending_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "rows of history.csv"),
+    V(bending_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+      "VTK files; 0: at the end"),
+    V(bending_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+      "checkpoint-last.h5; 0: at the end"),
+    BW_CONFIG_END};
+const bw_config_field bending_case_fields[] = {
+    BW_CONFIG_MAP(bending_case, physics, physics_fields, "the set-up"),
+    BW_CONFIG_MAP(bending_case, time, time_fields, "how long"),
+    BW_CONFIG_MAP(bending_case, output, output_fields, "files"), BW_CONFIG_END};
+#undef V
+
+bending_case bending_case_default(void)
+{
+  return (bending_case){.physics = bending_config_default(),
+                        .time = {.step = NAN, .end = NAN},
+                        .output = {.sample_every = 10}};
+}

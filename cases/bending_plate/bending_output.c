@@ -1,0 +1,160 @@
+#include "bending_case.h"
+#include "bw_checkpoint.h"
+#include "bw_vtk.h"
+
+#include <stdio.h>
+
+void bending_describe(bending_run *p)
+{
+  const bending_config *c = &p->flow.config;
+  const double U = c->fluid.bulk_velocity, rho = c->fluid.density, H = c->plate.height;
+  bw_log *log = bw_case_log(p->run);
+  bw_log_info(log, "channel    %d x %d cells of %g m; plate %g x %g m, %lld particles of %g m",
+              c->channel.cells[0], c->channel.cells[1], p->flow.h, c->plate.thickness, H,
+              (long long)bw_pd_bond_total(p->flow.solid), p->flow.ds);
+  bw_log_info(log, "groups     Re = U_b H/nu = %g, E* = E/(rho_f U_b^2) = %g, density ratio %g",
+              U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
+              c->plate.density / rho);
+  const double dt = p->config->time.step;
+  bw_log_info(log, "time step  %g s; solid %d sub-steps (limit %.3g s); %.0f steps, H/U_b = %g s",
+              dt, bw_coupler_substeps(p->flow.coupler, dt), bw_pd_bond_dt_max(p->flow.solid),
+              p->config->time.end / dt, H / U);
+}
+
+static const char *const columns[] = {"time[s]",
+                                      "tip_x_over_height[-]",
+                                      "tip_y_over_height[-]",
+                                      "force_reaction_x[N/m]",
+                                      "force_reaction_y[N/m]",
+                                      "force_probe_x[N/m]",
+                                      "force_probe_y[N/m]",
+                                      "force_control_volume_x[N/m]",
+                                      "force_control_volume_y[N/m]",
+                                      "energy_kinetic[J/m]",
+                                      "energy_elastic[J/m]",
+                                      "dissipated_by_damping[J/m]",
+                                      "work_received_by_plate[J/m]",
+                                      "work_given_by_fluid[J/m]",
+                                      "slip_rms_over_U_b[-]",
+                                      "probes_blocked[-]"};
+
+bw_status bending_open_history(bending_run *p, double restart_time)
+{
+  char *path = NULL;
+  bw_status st = bw_case_path(p->run, "history.csv", &path);
+  BW_THEN(st, bw_history_create(p->flow.comm, path, sizeof columns / sizeof *columns, columns,
+                                restart_time, &p->history));
+  bw_release(&path);
+  return st;
+}
+
+bw_status bending_sample(bending_run *p, bending_measure *m)
+{
+  const double H = p->flow.config.plate.height, U = p->flow.config.fluid.bulk_velocity;
+  BW_TRY(bending_look(&p->flow, m));
+  const double row[sizeof columns / sizeof *columns] = {bw_ns_channel_time(p->flow.fluid),
+                                                        m->tip[0] / H,
+                                                        m->tip[1] / H,
+                                                        m->reaction[0],
+                                                        m->reaction[1],
+                                                        m->probe[0],
+                                                        m->probe[1],
+                                                        m->box[0],
+                                                        m->box[1],
+                                                        m->kinetic,
+                                                        m->elastic,
+                                                        m->damping,
+                                                        m->received,
+                                                        m->given,
+                                                        m->slip / U,
+                                                        (double)m->blocked};
+  bw_history_append(p->history, row);
+  return BW_OK;
+}
+
+static bw_status write_plate(bending_run *p, const char *path)
+{
+  const size_t n = p->flow.n;
+  double *U = NULL, *V = NULL, *damage = NULL;
+  bw_status st = BW_ALLOCATE(&U, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&damage, n));
+  st = bw_comm_agree(p->flow.comm, st);
+  if (st == BW_OK) {
+    bw_pd_bond_get_position(p->flow.solid, p->flow.X);
+    bw_pd_bond_get_velocity(p->flow.solid, V);
+    bw_pd_bond_get_damage(p->flow.solid, damage);
+    for (size_t i = 0; i < 3 * n; i++)
+      U[i] = p->flow.X[i] - p->flow.X0[i];
+    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
+                                   {"velocity", BW_VTK_FLOAT64, 3, V},
+                                   {"displacement", BW_VTK_FLOAT64, 3, U}};
+    st = bw_vtk_write_points(p->flow.comm, path, n, p->flow.X, 3, arrays);
+  }
+  bw_release(&U);
+  bw_release(&V);
+  bw_release(&damage);
+  return st;
+}
+
+static bw_status write_fluid(bending_run *p, const char *path)
+{
+  bw_real *const *u = bw_ns_channel_velocity(p->flow.fluid);
+  const bw_vtk_field fields[] = {
+      {.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
+      {.name = "pressure",
+       .data = {bw_ns_channel_pressure(p->flow.fluid)},
+       .scale = p->flow.config.fluid.density}};
+  return bw_vtk_write_grid(p->flow.grid, path, 2, fields);
+}
+
+/* One file of the series `what` at the present time. */
+static bw_status add_to_series(bending_run *p, const char *what, const char *extension,
+                               bw_status (*write)(bending_run *, const char *))
+{
+  char name[64], series[64], *path = NULL, *series_path = NULL;
+  snprintf(name, sizeof name, "%s-%08lld.%s", what, (long long)p->step, extension);
+  snprintf(series, sizeof series, "%s.pvd", what);
+  bw_status st = bw_case_path(p->run, name, &path);
+  BW_THEN(st, bw_case_path(p->run, series, &series_path));
+  BW_THEN(st, write(p, path));
+  const double time = bw_ns_channel_time(p->flow.fluid);
+  BW_THEN(st, bw_vtk_series_add(p->flow.comm, series_path, time, name));
+  bw_release(&path);
+  bw_release(&series_path);
+  return st;
+}
+
+bw_status bending_picture(bending_run *p)
+{
+  BW_TRY(add_to_series(p, "fluid", "vti", write_fluid));
+  return add_to_series(p, "plate", "vtp", write_plate);
+}
+
+bw_status bending_checkpoint(bending_run *p)
+{
+  const double step = (double)p->step;
+  char *path = NULL;
+  bw_checkpoint *ck = NULL;
+  bw_status st = bw_case_path(p->run, "checkpoint-last.h5", &path);
+  BW_THEN(st, bw_checkpoint_create(p->flow.comm, path, &ck));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/step", 1, &step));
+  BW_THEN(st, bw_coupler_save(p->flow.coupler, ck));
+  if (st == BW_OK) st = bw_checkpoint_close(&ck);
+  bw_checkpoint_abandon(&ck);
+  bw_release(&path);
+  return st;
+}
+
+bw_status bending_restart(bending_run *p, const char *path)
+{
+  double step = 0.0;
+  bw_checkpoint *ck = NULL;
+  BW_TRY(bw_checkpoint_open(p->flow.comm, path, &ck));
+  bw_status st = bw_checkpoint_get_numbers(ck, "case/step", 1, &step);
+  BW_THEN(st, bw_coupler_load(p->flow.coupler, ck));
+  BW_THEN(st, bw_checkpoint_close(&ck));
+  bw_checkpoint_abandon(&ck);
+  p->step = (int64_t)step;
+  return st;
+}

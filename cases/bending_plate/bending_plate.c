@@ -1,0 +1,73 @@
+/* An elastic plate on the wall of a channel, bent by the stream (FSI section 3, last test).
+ *
+ * Run:   build/bin/bending_plate cases/bending_plate/bending_plate.yaml --out out/bending
+ * BUILD modules=coupler,vtk */
+#include "bending_case.h"
+#include "bw_stop.h"
+
+/* What is due after a step: samples, pictures, checkpoints. */
+static bw_status after_step(bending_run *p, bending_measure *m)
+{
+  const bending_output *out = &p->config->output;
+  if (p->step % out->sample_every == 0) BW_TRY(bending_sample(p, m));
+  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(bending_picture(p));
+  if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
+    BW_TRY(bending_checkpoint(p));
+  return BW_OK;
+}
+
+static bw_status advance(bending_run *p)
+{
+  const bending_time *time = &p->config->time;
+  const int64_t end = (int64_t)ceil(time->end / time->step - 1e-9);
+  const int64_t release = (int64_t)ceil(time->release / time->step - 1e-9);
+  bending_measure m = {.slip = NAN};
+  bw_progress *line = NULL;
+  bw_progress_config about = bw_progress_config_default();
+  about.step_start = p->step, about.step_end = end;
+  about.time_start = (double)p->step * time->step, about.time_end = time->end;
+  bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
+  while (st == BW_OK && p->step < end && !bw_stop_requested(p->flow.comm)) {
+    bw_coupler_hold_solid(p->flow.coupler, p->step < release);
+    st = bw_coupler_step(p->flow.coupler, time->step);
+    p->step += st == BW_OK;
+    BW_THEN(st, after_step(p, &m));
+    bw_progress_update(line, p->step, bw_ns_channel_time(p->flow.fluid),
+                       "tip %.4f heights, force %.4g N/m", m.tip[0] / p->flow.config.plate.height,
+                       m.box[0]);
+  }
+  bw_progress_finish(&line);
+  return st;
+}
+
+static bw_status simulate(bending_run *p, const bw_comm *comm)
+{
+  const bw_case_args *args = bw_case_args_of(p->run);
+  BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
+  bending_describe(p);
+  if (args->check) return BW_OK;
+  if (args->restart != NULL) BW_TRY(bending_restart(p, args->restart));
+  const double time = bw_ns_channel_time(p->flow.fluid);
+  BW_TRY(bending_open_history(p, args->restart != NULL ? time : NAN));
+  bw_stop_install();
+  BW_TRY(advance(p));
+  BW_TRY(bending_picture(p));
+  BW_TRY(bending_checkpoint(p));
+  return bw_timer_report(bw_coupler_timer(p->flow.coupler), comm, bw_case_log(p->run));
+}
+
+int main(int argc, char **argv)
+{
+  bending_case config = bending_case_default();
+  const bw_case_about about = {"bending_plate", "an elastic plate bent by a channel flow",
+                               bending_case_fields, sizeof config};
+  bw_comm *world = NULL;
+  bending_run p = {.config = &config};
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &p.run));
+  if (st == BW_OK && !bw_case_args_of(p.run)->stop) st = simulate(&p, world);
+  if (p.history != NULL) BW_THEN(st, bw_history_close(world, &p.history));
+  bending_destroy(&p.flow);
+  st = bw_case_end(world, &p.run, st);
+  return bw_finish(&world, st);
+}

@@ -78,19 +78,20 @@ START_TEST(no_crack_is_no_crack)
 }
 END_TEST
 
-/* Eleven steps of (3, -4)/5 from (1, 2), each with a partner 0.1 to either side; a stranger far
- * off and one that is not joined lie beside. */
+/* Eleven steps of (4, -3)/5 from (1, 2), each with a partner 0.1 to either side; two strangers out
+ * of the window and one that is not joined lie beside. */
 START_TEST(a_drawn_path_is_followed)
 {
   double s[64], t[64];
   size_t n = 0;
   for (int k = 0; k <= 10; k++)
     for (int side = -1; side <= 1; side += 2) {
-      s[n] = 1.0 + 0.6 * k + 0.08 * side;
-      t[n++] = 2.0 - 0.8 * k + 0.06 * side;
+      s[n] = 1.0 + 0.8 * k + 0.06 * side;
+      t[n++] = 2.0 - 0.6 * k + 0.08 * side;
     }
-  s[n] = 9.0, t[n++] = 9.0;
+  s[n] = 9.9, t[n++] = 9.0;
   s[n] = 1.0, t[n++] = 4.0;
+  s[n] = 2.0, t[n++] = 6.0;
   for (size_t a = 0; a < n; a++) /* by rising s, as collected ones are */
     for (size_t b = a + 1; b < n; b++)
       if (s[b] < s[a]) {
@@ -99,21 +100,23 @@ START_TEST(a_drawn_path_is_followed)
         s[b] = keep[0], t[b] = keep[1];
       }
   bw_pd_crack k = {n, s, t};
-  const double lower[2] = {0.0, -10.0}, upper[2] = {9.0, 5.0};
+  const double lower[2] = {0.0, -10.0}, upper[2] = {9.5, 5.0};
   bw_pd_crack_crop(&k, lower, upper);
   ck_assert_uint_eq(k.n, 23);
   bw_check_near(bw_pd_crack_reach(&k, 1.0, 2.0, NULL), sqrt(100.0 + 0.01), 1e-12);
   bw_check_ok(bw_pd_crack_join(&k, 1.0, 2.0, 1.05));
   ck_assert_uint_eq(k.n, 22);
+  bw_check_ok(bw_pd_crack_join(&k, 9.0, -4.0, 1.05)); /* from its other end: against rising s */
+  ck_assert_uint_eq(k.n, 22);
   double tip[2] = {0.0, 0.0};
   (void)bw_pd_crack_reach(&k, 1.0, 2.0, tip);
-  bw_check_near(fabs(tip[0] - 7.0) + fabs(tip[1] + 6.0), 0.14, 1e-12);
+  bw_check_near(fabs(tip[0] - 9.0) + fabs(tip[1] + 4.0), 0.14, 1e-12);
   const bw_pd_crack_line line = bw_pd_crack_fit(&k, 1.0, 2.0, 0.5, 20.0);
   ck_assert_uint_eq(line.n, 20);
-  bw_check_near(line.angle, -atan2(4.0, 3.0), 1e-12);
+  bw_check_near(line.angle, -atan2(3.0, 4.0), 1e-12);
   bw_check_near(line.width, 0.1, 1e-12);
-  const bw_pd_crack_line back = bw_pd_crack_fit(&k, 8.0, -7.3, 0.5, 20.0);
-  bw_check_near(back.angle, acos(-1.0) - atan2(4.0, 3.0), 1e-12);
+  const bw_pd_crack_line back = bw_pd_crack_fit(&k, 10.0, -4.7, 0.5, 20.0);
+  bw_check_near(back.angle, acos(-1.0) - atan2(3.0, 4.0), 1e-12);
   const bw_pd_crack_line few = bw_pd_crack_fit(&k, 1.0, 2.0, 9.5, 20.0);
   ck_assert(isnan(few.angle) && isnan(few.width));
   bw_check_ok(bw_pd_crack_join(&k, 50.0, 50.0, 1.0));

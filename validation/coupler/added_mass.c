@@ -14,103 +14,21 @@
  *            step, c dt = 4 blocks) and its turning change is left to 5 %.
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=300 */
-#include "bw_coupler.h"
-#include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "block.h"
 #include "bw_validation.h"
 
-#include <math.h>
 #include <stdio.h>
 
-enum { CELLS = 32, BLOCK = 8, MEMORY = 60, STEPS = 160 };
-static const double H = 1.0 / CELLS, DT = 2e-3, NU = 1e-2, SPEED = 1e-3;
-
-typedef struct {
-  bw_grid *grid;
-  bw_ns_channel *fluid;
-  bw_pd_bond *solid;
-  bw_coupler *coupler;
-  size_t n;
-  double *X, *V;
-} scene;
-
-static void destroy(scene *s)
-{
-  bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
-  bw_ns_channel_destroy(&s->fluid);
-  bw_grid_destroy(&s->grid);
-  bw_release(&s->X);
-  bw_release(&s->V);
-}
-
-static bw_status make_solid(const bw_comm *comm, double ratio, bool moved, scene *s)
-{
-  const double size = BLOCK * H, speed_of_sound = 4.0 * size / DT, first = 0.5 - 0.5 * size;
-  const bw_shape block = {.kind = BW_SHAPE_BOX,
-                          .lower = {first, first},
-                          .upper = {first + size, first + size, H},
-                          .particle_kind = moved ? BW_PD_PRESCRIBED : BW_PD_FREE};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  c.geometry = BW_PD_PLANE_STRAIN;
-  c.ds = c.thickness = H;
-  c.rho = ratio;
-  c.E = ratio * speed_of_sound * speed_of_sound;
-  c.damping_mean = ratio * speed_of_sound / size; /* rests within a step */
-  c.origin[2] = 0.5 * H;
-  int64_t n = 0;
-  int32_t *site = NULL;
-  uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(1, &block, H, c.origin, true, &n, &site, &kind);
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
-  bw_release(&site);
-  bw_release(&kind);
-  if (st != BW_OK) return st;
-  s->n = bw_pd_bond_count(s->solid);
-  st = BW_ALLOCATE(&s->X, 3 * s->n);
-  BW_THEN(st, BW_ALLOCATE(&s->V, 3 * s->n));
-  if (st == BW_OK) bw_pd_bond_get_position(s->solid, s->X);
-  return bw_comm_agree(comm, st);
-}
-
-static bw_status create(const bw_comm *comm, double ratio, double w, bw_coupler_load_kind load,
-                        bool moved, scene *s)
-{
-  bw_grid_config grid = bw_grid_config_default();
-  bw_ns_channel_config fluid = bw_ns_channel_config_default();
-  bw_coupler_config c = bw_coupler_config_default();
-  *s = (scene){0};
-  grid.n[0] = grid.n[1] = CELLS, grid.n[2] = 1;
-  grid.length[0] = grid.length[1] = 1.0, grid.length[2] = H;
-  grid.periodic[2] = true;
-  grid.halo = 2;
-  fluid.nu = NU;
-  fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
-  c.rho = 1.0;
-  c.nu = NU;
-  c.load = load;
-  c.load_relaxation = w;
-  BW_TRY(bw_grid_create(comm, &grid, &s->grid));
-  BW_TRY(bw_ns_channel_create(s->grid, &fluid, &s->fluid));
-  BW_TRY(make_solid(comm, ratio, moved, s));
-  BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
-  bw_coupler_hold_solid(s->coupler, false);
-  for (size_t i = 0; i < s->n; i++)
-    s->V[3 * i] = SPEED;
-  if (moved)
-    bw_pd_bond_set_prescribed(s->solid, s->V);
-  else
-    bw_pd_bond_set_state(s->solid, s->X, s->V);
-  return BW_OK;
-}
+enum { MEMORY = 60, STEPS = 160 };
+static const double SPEED = 1e-3;
 
 /* g_k over the mass of fluid in the block's place: the answer to a jump of its velocity. */
 static bw_status response(const bw_comm *comm, bw_coupler_load_kind load, double g[MEMORY])
 {
   const double mass = BLOCK * H * BLOCK * H * H;
-  scene s;
+  block_scene s;
   bw_coupler_report r;
-  bw_status st = create(comm, 1.0, 1.0, load, true, &s);
+  bw_status st = block_create(comm, &(block_set_up){1.0, 1.0, load, SPEED, true}, &s);
   BW_THEN(st, bw_coupler_step(s.coupler, DT)); /* the markers take the new velocity at its end */
   for (int k = 0; st == BW_OK && k < MEMORY; k++) {
     st = bw_coupler_step(s.coupler, DT);
@@ -118,7 +36,7 @@ static bw_status response(const bw_comm *comm, bw_coupler_load_kind load, double
     const double F = load == BW_LOAD_PROBES ? r.force_probe[0] : r.force_reaction[0];
     g[k] = -F * DT / SPEED / mass;
   }
-  destroy(&s);
+  block_destroy(&s);
   return st;
 }
 
@@ -146,8 +64,8 @@ static bool recurrence_holds(const double g[MEMORY], double ratio, double w)
 static bw_status run_holds(const bw_comm *comm, double ratio, double w, bw_coupler_load_kind load,
                            bool *holds)
 {
-  scene s;
-  bw_status st = create(comm, ratio, w, load, false, &s);
+  block_scene s;
+  bw_status st = block_create(comm, &(block_set_up){ratio, w, load, SPEED, false}, &s);
   double early = 0.0, late = 0.0, last = SPEED;
   for (int n = 0; st == BW_OK && n < STEPS; n++) {
     st = bw_coupler_step(s.coupler, DT);
@@ -164,7 +82,7 @@ static bw_status run_holds(const bw_comm *comm, double ratio, double w, bw_coupl
     last = mean;
   }
   *holds = st == BW_OK && late <= early;
-  destroy(&s);
+  block_destroy(&s);
   return st == BW_ECFL || st == BW_EDIVERGED ? BW_OK : st; /* that is how growth ends */
 }
 

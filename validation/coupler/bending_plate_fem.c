@@ -127,16 +127,16 @@ static bw_status calibrate(bw_validation *v, double *young)
 {
   bending_plate p = twin(20, E_STAR, 0).plate;
   cantilever_result r = {0};
-  BW_TRY(cantilever_bend(bw_validation_comm(v), &p, 0.1, &r));
+  BW_TRY(cantilever_bend(bw_validation_comm(v), &p, 0.01, &r));
   bw_validation_row(v, &(bw_claim){"cantilever alone, 8 particles, E as it stands",
                                    "cantilever_tip", r.tip, r.theory, 0.17, BW_ANALYTIC,
                                    "Euler-Bernoulli and shear, plane strain", NULL});
   *young = E_STAR * r.tip / r.theory;
   p.young_modulus = *young;
-  const double q = r.theory;
+  const double ten = 10.0 * r.theory; /* geometry takes less than a percent at this deflection */
   BW_TRY(cantilever_bend(bw_validation_comm(v), &p, 0.1 * E_STAR / *young, &r));
-  bw_validation_row(v, &(bw_claim){"cantilever alone, E calibrated", "cantilever_tip_calibrated",
-                                   r.tip, q, 0.01, BW_ANALYTIC,
+  bw_validation_row(v, &(bw_claim){"cantilever alone, E calibrated, ten times the load",
+                                   "cantilever_tip_calibrated", r.tip, ten, 0.01, BW_ANALYTIC,
                                    "Euler-Bernoulli and shear, plane strain", NULL});
   return BW_OK;
 }

@@ -1,0 +1,100 @@
+/* block.h -- a block in fluid at rest in a closed box, plane: free, or moved by force.
+ * Units: box 1 x 1, density of the fluid 1. The block is stiff against a step: its bending does not
+ * matter, sound crosses it four times in a step, and its oscillations die out within one. */
+#pragma once
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "bw_pd_shape.h"
+
+#include <math.h>
+
+enum { CELLS = 32, BLOCK = 8 };
+static const double H = 1.0 / CELLS, DT = 2e-3, NU = 1e-2;
+
+typedef struct {
+  double ratio; /* density of the block over the fluid's */
+  double w;     /* load relaxation */
+  bw_coupler_load_kind load;
+  double speed;
+  bool moved; /* by force; else free, and starting with `speed` */
+} block_set_up;
+
+typedef struct {
+  bw_grid *grid;
+  bw_ns_channel *fluid;
+  bw_pd_bond *solid;
+  bw_coupler *coupler;
+  size_t n;
+  double *X, *V;
+} block_scene;
+
+static inline void block_destroy(block_scene *s)
+{
+  bw_coupler_destroy(&s->coupler);
+  bw_pd_bond_destroy(&s->solid);
+  bw_ns_channel_destroy(&s->fluid);
+  bw_grid_destroy(&s->grid);
+  bw_release(&s->X);
+  bw_release(&s->V);
+}
+
+static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up *b, block_scene *s)
+{
+  const double size = BLOCK * H, speed_of_sound = 4.0 * size / DT, first = 0.5 - 0.5 * size;
+  const bw_shape block = {.kind = BW_SHAPE_BOX,
+                          .lower = {first, first},
+                          .upper = {first + size, first + size, H},
+                          .particle_kind = b->moved ? BW_PD_PRESCRIBED : BW_PD_FREE};
+  bw_pd_bond_config c = bw_pd_bond_config_default();
+  c.geometry = BW_PD_PLANE_STRAIN;
+  c.ds = c.thickness = H;
+  c.rho = b->ratio;
+  c.E = b->ratio * speed_of_sound * speed_of_sound;
+  c.damping_mean = b->ratio * speed_of_sound / size; /* rests within a step */
+  c.origin[2] = 0.5 * H;
+  int64_t n = 0;
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  bw_status st = bw_pd_shape_fill(1, &block, H, c.origin, true, &n, &site, &kind);
+  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
+  bw_release(&site);
+  bw_release(&kind);
+  if (st != BW_OK) return st;
+  s->n = bw_pd_bond_count(s->solid);
+  st = BW_ALLOCATE(&s->X, 3 * s->n);
+  BW_THEN(st, BW_ALLOCATE(&s->V, 3 * s->n));
+  if (st == BW_OK) bw_pd_bond_get_position(s->solid, s->X);
+  return bw_comm_agree(comm, st);
+}
+
+/* Destroy also after a failure. Collective. */
+static inline bw_status block_create(const bw_comm *comm, const block_set_up *b, block_scene *s)
+{
+  bw_grid_config grid = bw_grid_config_default();
+  bw_ns_channel_config fluid = bw_ns_channel_config_default();
+  bw_coupler_config c = bw_coupler_config_default();
+  *s = (block_scene){0};
+  grid.n[0] = grid.n[1] = CELLS, grid.n[2] = 1;
+  grid.length[0] = grid.length[1] = 1.0, grid.length[2] = H;
+  grid.periodic[2] = true;
+  grid.halo = 2;
+  fluid.nu = NU;
+  fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
+  c.rho = 1.0;
+  c.nu = NU;
+  c.load = b->load;
+  c.load_relaxation = b->w;
+  c.count_work = true;
+  BW_TRY(bw_grid_create(comm, &grid, &s->grid));
+  BW_TRY(bw_ns_channel_create(s->grid, &fluid, &s->fluid));
+  BW_TRY(block_make_solid(comm, b, s));
+  BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
+  bw_coupler_hold_solid(s->coupler, false);
+  for (size_t i = 0; i < s->n; i++)
+    s->V[3 * i] = b->speed;
+  if (b->moved)
+    bw_pd_bond_set_prescribed(s->solid, s->V);
+  else
+    bw_pd_bond_set_state(s->solid, s->X, s->V);
+  return BW_OK;
+}

@@ -1,19 +1,22 @@
 /* The front of a step-loaded bar.
  *
- * Claim      A traction switched on at the end of a bar sends a front along it at the speed of the
- *            plane wave; behind it particles move with t/(rho c); the front is about as wide as a
- *            horizon and hardly spreads.
- * Reference  1D wave equation: c = sqrt(M/rho), M = 6/5 E (uniaxial strain: 3D, plane strain), 9/8
- * E (plane stress); velocity t/(rho c). Measured   a bar one cell wide, periodic sideways, with
- * lattice calibration (so M is known to the family's anisotropy); place where the velocity passes
- * half of t/(rho c) at two times; the speed is their distance over the time; mean velocity of the
- * stretch between 0.3 and 0.7 of the way; width from 90 % to 10 % of it. Tolerance  speed: half the
- * anisotropy of the family sum at that m (below 1 %; lattice_sum.h) plus the half-value's wander in
- * the dispersive front, half a horizon in the distance of travel. Velocity: the same anisotropy
- * plus the ripple behind the front that dispersion leaves, averaged over some 30 horizons, 1 %.
- * Width: no claim but below 6 horizons (a front of the third-order dispersion k^3 grows like the
- * cube root of time: with b = 1/24 .. 1/25, (3 b c t/delta)^(1/3) = 1.9 delta after 60 delta,
- * times 2.8 from 90 % to 10 % of the integral of the Airy function). BUILD modules=pd_bond */
+ * Claim      A traction switched on at the end of a bar sends a front along it at the speed of
+ *            the plane wave; behind it particles move with t/(rho c); the front is about as
+ *            wide as a horizon and hardly spreads.
+ * Reference  1D wave equation: c = sqrt(M/rho), M = 6/5 E (uniaxial strain: 3D, plane strain),
+ *            9/8 E (plane stress); velocity t/(rho c).
+ * Measured   a bar one cell wide, periodic sideways, with lattice calibration (so M is known to
+ *            the family's anisotropy); place where the velocity passes half of t/(rho c) at two
+ *            times; the speed is their distance over the time; mean velocity of the stretch
+ *            between 0.3 and 0.7 of the way; width from 90 % to 10 % of it.
+ * Tolerance  speed: half the anisotropy of the family sum at that m (below 1 %; lattice_sum.h)
+ *            plus the half-value's wander in the dispersive front, half a horizon in the
+ *            distance of travel. Velocity: the same anisotropy plus the ripple behind the front
+ *            that dispersion leaves, averaged over some 30 horizons, 1 %. Width: no claim but
+ *            below 6 horizons (a front of the third-order dispersion k^3 grows like the cube
+ *            root of time: with b = 1/24 .. 1/25, (3 b c t/delta)^(1/3) = 1.9 delta after 60
+ *            delta, times 2.8 from 90 % to 10 % of the integral of the Airy function).
+ * BUILD modules=pd_bond */
 #include "body.h"
 #include "lattice_sum.h"
 

@@ -1,16 +1,17 @@
 /* Dispersion of plane waves up to the shortest a lattice has.
  *
- * Claim      Waves of every length have the frequency of the analytic peridynamic curve, as far as
- *            the lattice resolves the horizon; and at every length that of the family sum.
+ * Claim      Waves of every length have the frequency of the analytic peridynamic curve, as far
+ *            as the lattice resolves the horizon; and at every length that of the family sum.
  * Reference  rho w^2 = c0 int (e.d)^2/|xi| (1 - cos k xi_x) dV over the ball (Silling 2000), by
- *            quadrature in polar coordinates: in r by the midpoint rule, the angle likewise, 400
- * and 2000 points; the same sum over the lattice's family, written independently (lattice_sum.h).
- * Measured   in a body periodic and one cell wide: the acceleration of the displacement A sin(kx),
- *            projected on it, is w^2 A (frequencies in time: pd_bond.wave_speed).
- * Tolerance  family sum: 1e-3 for its midpoint fractions. Continuum: the error of the family sum at
- *            k = 0 for k delta <= 3 (waves longer than two horizons), where (k ds)^2/24 of the
- * midpoint rule adds at most 4 % at m = 3. Shorter waves: reported, no claim. BUILD modules=pd_bond
- */
+ *            quadrature in polar coordinates: in r by the midpoint rule, the angle likewise,
+ *            400 and 2000 points; the same sum over the lattice's family, written independently
+ *            (lattice_sum.h).
+ * Measured   in a body periodic and one cell wide: the acceleration of the displacement A
+ *            sin(kx), projected on it, is w^2 A (frequencies in time: pd_bond.wave_speed).
+ * Tolerance  family sum: 1e-3 for its midpoint fractions. Continuum: the error of the family
+ *            sum at k = 0 for k delta <= 3 (waves longer than two horizons), where (k ds)^2/24
+ *            of the midpoint rule adds at most 4 % at m = 3. Shorter waves: reported, no claim.
+ * BUILD modules=pd_bond */
 #include "body.h"
 #include "lattice_sum.h"
 

@@ -16,7 +16,8 @@
  * cracks, two spacings.
  * Energy: 1 %, (dt/dt_max)^2/8 of Verlet at dt/dt_max = 0.35 as in crack_branching_12MPa.
  * --full: spacing 0.5 mm, families with half a cell more, m = 4, a turned lattice, an edge that is
- * thrown instead of pushed; reported beside.
+ * thrown instead of pushed (ADAPT's "initial speed"; nothing breaks); reported beside, rows without
+ * a number left out.
  *
  * BUILD modules=pd_interface
  * TEST ranks=2 timeout=300 */
@@ -86,13 +87,16 @@ static void record(bw_validation *v, const char *how, bool claim_start, bool cla
        BW_PUBLISHED, adapt, extra},
       {"highest speed over 1.82e-6 s", "speed_max_1.82us", o->speed_adapt, 1981.0, INFINITY,
        BW_PUBLISHED, adapt, extra},
+      {"how far the crack got [m]", "reach", o->upper_tip, 0.08, INFINITY, BW_PUBLISHED, adapt,
+       extra},
       {"both cracks reach equally far", "asymmetry", (o->upper_tip - o->lower_tip) / spacing, 0.0,
        path * 2.0, BW_ANALYTIC, "symmetry of the plate", extra},
       {"work equals kinetic, elastic and fracture energy", "energy_error", o->residual, 0.0,
        path * 0.01, BW_CONSERVATION, "first law", extra},
   };
   for (size_t q = 0; q < sizeof rows / sizeof *rows; q++)
-    (void)bw_validation_row(v, &rows[q]);
+    if (isfinite(rows[q].measured) || isfinite(rows[q].tolerance))
+      (void)bw_validation_row(v, &rows[q]);
 }
 
 static bw_status vary(bw_validation *v)

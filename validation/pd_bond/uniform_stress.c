@@ -1,17 +1,20 @@
 /* Stress at particles under a uniform load.
  *
- * Claim      A bar drawn by tractions t at its ends, at rest, has sigma_xx = t in the bulk, in 2D
- * and 3D; its sides are kept from moving by periodicity, so sigma_yy = t nu/(1 - nu) (plane stress:
- * nu t), which is t/3 for the Poisson ratios that bonds fix. With free sides the mean of sigma_xx
- * over a cross-section is t for every surface correction. Reference  equilibrium: the force through
- * every cross-section is t times the area; Hooke. Measured   mean of the collapsed stress tensor
- * over the middle of the bar, at rest by dynamic relaxation. Beside it, without a claim, the middle
- * of the free bar: its skin, two horizons thick, is softer or stiffer than the bulk, which carries
- * the difference. Tolerance  1 % in the bulk, as asked of the module; sigma_yy that of the
- * lattice's anisotropy in addition: the sum over the family of xi_x^2 xi_y^2/|xi|^3 over that of
- * xi_x^4/|xi|^3, written independently (lattice_sum.h), known before the run. The section's mean:
- * the residual 1e-5 of the relaxation times 10, as errors of 24 columns may add up. BUILD
- * modules=pd_bond */
+ * Claim      A bar drawn by tractions t at its ends, at rest, has sigma_xx = t in the bulk, in
+ *            2D and 3D; its sides are kept from moving by periodicity, so sigma_yy = t nu/(1 -
+ *            nu) (plane stress: nu t), which is t/3 for the Poisson ratios that bonds fix. With
+ *            free sides the mean of sigma_xx over a cross-section is t for every surface
+ *            correction.
+ * Reference  equilibrium: the force through every cross-section is t times the area; Hooke.
+ * Measured   mean of the collapsed stress tensor over the middle of the bar, at rest by dynamic
+ *            relaxation. Beside it, without a claim, the middle of the free bar: its skin, two
+ *            horizons thick, is softer or stiffer than the bulk, which carries the difference.
+ * Tolerance  1 % in the bulk, as asked of the module; sigma_yy that of the lattice's anisotropy
+ *            in addition: the sum over the family of xi_x^2 xi_y^2/|xi|^3 over that of
+ *            xi_x^4/|xi|^3, written independently (lattice_sum.h), known before the run. The
+ *            section's mean: the residual 1e-5 of the relaxation times 10, as errors of 24
+ *            columns may add up.
+ * BUILD modules=pd_bond */
 #include "body.h"
 #include "lattice_sum.h"
 

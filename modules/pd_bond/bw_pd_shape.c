@@ -16,7 +16,7 @@ typedef struct {
   const char *name;
   bool (*inside)(const bw_shape *s, int dims, double tie, const double x[3]);
   extent (*bounds)(const bw_shape *s);
-  bool needs_box, needs_radius, needs_pitch, needs_axis;
+  bool needs_box, needs_radius, needs_pitch, needs_axis, needs_mask;
 } shape_row;
 
 /* Half-open, so that a box of n ds holds n sites and two that touch share none. */
@@ -124,6 +124,22 @@ static extent bounds_endless(const bw_shape *s)
   return e;
 }
 
+static bool inside_mask(const bw_shape *s, int dims, double tie, const double x[3])
+{
+  (void)tie;
+  return bw_pd_mask_at(s->mask, dims, x);
+}
+
+static extent bounds_mask(const bw_shape *s)
+{
+  extent e;
+  for (int d = 0; d < 3; d++) {
+    e.lower[d] = s->mask->lower[d];
+    e.upper[d] = s->mask->lower[d] + s->mask->spacing[d] * (double)s->mask->size[d];
+  }
+  return e;
+}
+
 static const shape_row rows[BW_SHAPE_COUNT] = {
     [BW_SHAPE_BOX] = {"box", inside_box, bounds_box, .needs_box = true},
     [BW_SHAPE_SPHERE] = {"sphere", inside_sphere, bounds_sphere, .needs_radius = true},
@@ -135,6 +151,7 @@ static const shape_row rows[BW_SHAPE_COUNT] = {
                             .needs_pitch = true},
     [BW_SHAPE_PORES_FCC] = {"pores_fcc", inside_fcc, bounds_endless, .needs_radius = true,
                             .needs_pitch = true},
+    [BW_SHAPE_MASK] = {"mask", inside_mask, bounds_mask, .needs_mask = true},
 };
 
 const char *bw_shape_name(bw_shape_kind kind)
@@ -166,6 +183,8 @@ static bw_status check_shape(int number, const bw_shape *s, int dims)
     BW_REQUIRE(isfinite(s->pitch) && s->pitch > 0.0, BW_EINPUT,
                "shape %d (%s): pitch = %g has to be positive and finite", number, row->name,
                s->pitch);
+  if (row->needs_mask)
+    BW_REQUIRE(s->mask != NULL, BW_EINPUT, "shape %d (%s): mask is missing", number, row->name);
   if (row->needs_axis)
     BW_REQUIRE(s->axis >= 0 && s->axis <= 2, BW_EINPUT,
                "shape %d (%s): axis = %d has to be 0, 1 or 2", number, row->name, s->axis);

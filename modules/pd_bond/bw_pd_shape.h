@@ -8,7 +8,7 @@
  * Pore lattices (simple cubic, body-centred, face-centred) are overlapping spherical pores of
  * `radius` on a lattice of `pitch` anchored at `centre`. */
 #pragma once
-#include "bw_status.h"
+#include "bw_pd_shape_mask.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -20,6 +20,7 @@ typedef enum {
   BW_SHAPE_PORES_SC, /* centre (of one pore), radius, pitch */
   BW_SHAPE_PORES_BCC,
   BW_SHAPE_PORES_FCC,
+  BW_SHAPE_MASK, /* mask: a voxel image or a closed surface, see bw_pd_shape_mask.h */
   BW_SHAPE_COUNT
 } bw_shape_kind;
 
@@ -28,7 +29,8 @@ typedef struct {
   bool remove;                                         /* false: add */
   double lower[3], upper[3], centre[3], radius, pitch; /* [L]; unused ones ignored */
   int axis;
-  uint8_t particle_kind; /* BW_PD_FREE, ... given to the sites it adds */
+  const bw_pd_mask *mask; /* borrowed */
+  uint8_t particle_kind;  /* BW_PD_FREE, ... given to the sites it adds */
 } bw_shape;
 
 const char *bw_shape_name(bw_shape_kind kind); /* "pores_sc": the word used in YAML. Local. */

@@ -1,0 +1,160 @@
+/* Masks, and voxels of any type from a file. */
+#include "pd_shape_mask.h"
+#include "bw_memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void bw_pd_mask_destroy(bw_pd_mask **mask)
+{
+  if (*mask == NULL) return;
+  bw_release(&(*mask)->solid);
+  bw_release(mask);
+}
+
+bw_status bw_pd_mask__create(const char *path, const int64_t size[3], const double lower[3],
+                             const double spacing[3], bw_pd_mask **out)
+{
+  *out = NULL;
+  double cells = 1;
+  for (int d = 0; d < 3; d++) {
+    BW_REQUIRE(size[d] > 0, BW_EINPUT, "%s: %lld cells in direction %d", path, (long long)size[d],
+               d);
+    BW_REQUIRE(spacing[d] > 0 && isfinite(spacing[d]) && isfinite(lower[d]), BW_EINPUT,
+               "%s: spacing %g and origin %g in direction %d; they must be positive and finite",
+               path, spacing[d], lower[d], d);
+    cells *= (double)size[d];
+  }
+  BW_REQUIRE(cells < 1e11, BW_EINPUT, "%s: %g cells are more than fit into memory", path, cells);
+  bw_pd_mask *mask = NULL;
+  BW_TRY(BW_ALLOCATE(&mask, 1));
+  memcpy(mask->size, size, sizeof mask->size);
+  memcpy(mask->lower, lower, sizeof mask->lower);
+  memcpy(mask->spacing, spacing, sizeof mask->spacing);
+  const bw_status st = BW_ALLOCATE(&mask->solid, (size_t)cells);
+  if (st != BW_OK) bw_pd_mask_destroy(&mask);
+  *out = mask;
+  return st;
+}
+
+bool bw_pd_mask_at(const bw_pd_mask *m, int dims, const double x[3])
+{
+  int64_t at[3] = {0};
+  for (int d = 0; d < dims; d++) {
+    /* a centre on the face of two cells belongs to the upper one, whatever the rounding */
+    const double cell = (x[d] - m->lower[d]) / m->spacing[d] + 1e-9;
+    if (!(cell >= 0 && cell < (double)m->size[d])) return false;
+    at[d] = (int64_t)cell;
+  }
+  return m->solid[at[0] + m->size[0] * (at[1] + m->size[1] * at[2])] != 0;
+}
+
+static const size_t BYTES[BW_PD_VOXEL_COUNT] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+/* One number of `type`, in this machine's byte order. */
+static double number(bw_pd_voxel_type type, const unsigned char *from)
+{
+  union {
+    uint8_t u8;
+    int8_t i8;
+    uint16_t u16;
+    int16_t i16;
+    uint32_t u32;
+    int32_t i32;
+    float f32;
+    double f64;
+  } x;
+  memcpy(&x, from, BYTES[type]);
+  switch (type) {
+  case BW_PD_VOXEL_U8:
+    return x.u8;
+  case BW_PD_VOXEL_I8:
+    return x.i8;
+  case BW_PD_VOXEL_U16:
+    return x.u16;
+  case BW_PD_VOXEL_I16:
+    return x.i16;
+  case BW_PD_VOXEL_U32:
+    return x.u32;
+  case BW_PD_VOXEL_I32:
+    return x.i32;
+  case BW_PD_VOXEL_F32:
+    return (double)x.f32;
+  default:
+    return x.f64;
+  }
+}
+
+static bool machine_is_big(void)
+{
+  const uint16_t one = 1;
+  unsigned char first;
+  memcpy(&first, &one, 1);
+  return first == 0;
+}
+
+/* One row of voxels to a row of the mask. */
+static void threshold(const bw_pd_voxels *v, double low, double high, unsigned char *row,
+                      uint8_t *solid)
+{
+  const size_t bytes = BYTES[v->type];
+  const bool swap = v->big_endian != machine_is_big();
+  for (int64_t i = 0; i < v->size[0]; i++) {
+    unsigned char *one = row + (size_t)i * bytes;
+    for (size_t a = 0; swap && a < bytes / 2; a++) {
+      const unsigned char t = one[a];
+      one[a] = one[bytes - 1 - a], one[bytes - 1 - a] = t;
+    }
+    const double value = number(v->type, one);
+    solid[i] = value >= low && value <= high;
+  }
+}
+
+static bw_status read_rows(FILE *file, const char *path, const bw_pd_voxels *v, double low,
+                           double high, bw_pd_mask *mask)
+{
+  unsigned char *row = NULL;
+  const size_t bytes = (size_t)v->size[0] * BYTES[v->type];
+  const int64_t rows = v->size[1] * v->size[2];
+  BW_TRY(BW_ALLOCATE(&row, bytes));
+  bw_status st = BW_OK;
+  for (int64_t q = 0; q < rows && st == BW_OK; q++) {
+    if (fread(row, 1, bytes, file) == bytes)
+      threshold(v, low, high, row, mask->solid + q * v->size[0]);
+    else
+      st = BW_FAIL(BW_EIO,
+                   "%s: ends after %lld of %lld rows of %lld voxels; size or type is not that of "
+                   "the file",
+                   path, (long long)q, (long long)rows, (long long)v->size[0]);
+  }
+  bw_release(&row);
+  if (st == BW_OK && fgetc(file) != EOF)
+    st = BW_FAIL(BW_EIO,
+                 "%s: goes on after %lld x %lld x %lld voxels of %zu bytes; size, type or skip is "
+                 "not that of the file",
+                 path, (long long)v->size[0], (long long)v->size[1], (long long)v->size[2],
+                 BYTES[v->type]);
+  return st;
+}
+
+bw_status bw_pd_mask_read_raw(const char *path, const bw_pd_voxels *v, double low, double high,
+                              bw_pd_mask **out)
+{
+  *out = NULL;
+  BW_REQUIRE((unsigned)v->type < BW_PD_VOXEL_COUNT, BW_EINPUT, "%s: voxel type %d is unknown", path,
+             (int)v->type);
+  BW_REQUIRE(low <= high, BW_EINPUT, "%s: no value lies between low = %g and high = %g", path, low,
+             high);
+  BW_REQUIRE(v->skip >= 0, BW_EINPUT, "%s: skip = %lld is negative", path, (long long)v->skip);
+  FILE *file = fopen(path, "rb");
+  BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", path);
+  bw_status st = fseek(file, (long)v->skip, SEEK_SET) == 0
+                     ? BW_OK
+                     : BW_FAIL(BW_EIO, "%s: has no byte %lld", path, (long long)v->skip);
+  BW_THEN(st, bw_pd_mask__create(path, v->size, v->lower, v->spacing, out));
+  BW_THEN(st, read_rows(file, path, v, low, high, *out));
+  fclose(file);
+  if (st != BW_OK) bw_pd_mask_destroy(out);
+  return st;
+}

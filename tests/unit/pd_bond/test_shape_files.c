@@ -1,0 +1,325 @@
+/* Bodies from files and random packs.
+ * TEST ranks=1 */
+#include "bw_pd_shape_pack.h"
+#include "pd_test.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Names in a folder of this process. */
+static char *path_of(const char *name)
+{
+  static char path[2][200];
+  static int which;
+  which = 1 - which;
+  const char *folder = getenv("BW_BUILD_DIR");
+  snprintf(path[which], sizeof path[which], "%s/shape_%d_%s", folder != NULL ? folder : ".",
+           (int)getpid(), name);
+  return path[which];
+}
+
+static void write_file(const char *name, const char *head, const void *data, size_t bytes)
+{
+  FILE *file = fopen(path_of(name), "wb");
+  ck_assert_ptr_nonnull(file);
+  ck_assert_uint_eq(fwrite(head, 1, strlen(head), file), strlen(head));
+  ck_assert_uint_eq(fwrite(data, 1, bytes, file), bytes);
+  fclose(file);
+}
+
+/* 3 x 2 x 2 voxels with the values 0..11; solid where 5 <= v <= 8: cells 5, 6, 7, 8. */
+enum { CELLS = 12 };
+static void check_cells(const bw_pd_mask *m, const double lower[3], const double spacing[3])
+{
+  for (int q = 0; q < CELLS; q++) {
+    ck_assert_int_eq(m->solid[q], q >= 5 && q <= 8);
+    const double x[3] = {lower[0] + (q % 3 + 0.4) * spacing[0],
+                         lower[1] + (q / 3 % 2 + 0.6) * spacing[1],
+                         lower[2] + (q / 6 + 0.5) * spacing[2]};
+    ck_assert_int_eq(bw_pd_mask_at(m, 3, x), q >= 5 && q <= 8);
+  }
+  const double beyond[3] = {lower[0] + 3.01 * spacing[0], lower[1], lower[2]};
+  ck_assert(!bw_pd_mask_at(m, 3, beyond));
+}
+
+/* Every type in both byte orders, after three bytes of something else. */
+START_TEST(raw_voxels_of_every_type)
+{
+  const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  for (int type = 0; type < BW_PD_VOXEL_COUNT; type++)
+    for (int big = 0; big < 2; big++) {
+      unsigned char data[8 * CELLS], one[8];
+      for (int q = 0; q < CELLS; q++) {
+        const float f = (float)q;
+        const double d = q;
+        memset(one, 0, sizeof one);
+        one[0] = (unsigned char)q;
+        if (type == BW_PD_VOXEL_F32) memcpy(one, &f, sizeof f);
+        if (type == BW_PD_VOXEL_F64) memcpy(one, &d, sizeof d);
+        for (size_t b = 0; b < bytes[type]; b++)
+          data[bytes[type] * (size_t)q + b] = one[big ? bytes[type] - 1 - b : b];
+      }
+      write_file("v.raw", "abc", data, bytes[type] * CELLS);
+      const bw_pd_voxels v = {.type = (bw_pd_voxel_type)type,
+                              .big_endian = big == 1,
+                              .size = {3, 2, 2},
+                              .lower = {1, 2, 3},
+                              .spacing = {0.5, 1, 2},
+                              .skip = 3};
+      bw_pd_mask *m = NULL;
+      bw_check_ok(bw_pd_mask_read_raw(path_of("v.raw"), &v, 5, 8, &m));
+      check_cells(m, v.lower, v.spacing);
+      bw_pd_mask_destroy(&m);
+    }
+  remove(path_of("v.raw"));
+}
+END_TEST
+
+static const unsigned char CONTENT[CELLS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+
+/* The centre of the first voxel is at (1, 2, 3). */
+static void check_image(const char *name, const char *head, bool attached)
+{
+  bw_pd_mask *m = NULL;
+  char data[64];
+  snprintf(data, sizeof data, "%s.raw", name);
+  write_file(name, head, CONTENT, attached ? CELLS : 0);
+  if (!attached) {
+    /* the header names the data file by the last part of its path */
+    const char *full = path_of(data), *last = strrchr(full, '/');
+    char whole[600];
+    snprintf(whole, sizeof whole, head, last != NULL ? last + 1 : full);
+    write_file(name, whole, CONTENT, 0);
+    write_file(data, "", CONTENT, CELLS);
+  }
+  bw_check_ok(bw_pd_mask_read_image(path_of(name), 5, 8, &m));
+  check_cells(m, (double[3]){0.75, 1.5, 2}, (double[3]){0.5, 1, 2});
+  bw_pd_mask_destroy(&m);
+  remove(path_of(name));
+  remove(path_of(data));
+}
+
+START_TEST(images_in_four_forms)
+{
+  check_image("a.nrrd",
+              "NRRD0004\n# a comment\ntype: uint8\ndimension: 3\nsizes: 3 2 2\nencoding: raw\n"
+              "space directions: (0.5,0,0) (0,1,0) (0,0,2)\nspace origin: (1,2,3)\n"
+              "key:=value\n\n",
+              true);
+  check_image("b.nhdr",
+              "NRRD0001\ntype: unsigned char\ndimension: 3\nsizes: 3 2 2\nencoding: raw\n"
+              "spacings: 0.5 1 2\nspace origin: (1,2,3)\ndata file: %s\n",
+              false);
+  check_image("c.mhd",
+              "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\n"
+              "ElementSpacing = 0.5 1 2\nOffset = 1 2 3\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n"
+              "ElementDataFile = %s\n",
+              false);
+  check_image("d.mha",
+              "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementSpacing = 0.5 1 2\n"
+              "Position = 1 2 3\nCompressedData = False\nElementDataFile = LOCAL\n",
+              true);
+}
+END_TEST
+
+static void refuse(const char *name, const char *head, size_t bytes, const char *word)
+{
+  bw_pd_mask *m = NULL;
+  write_file(name, head, CONTENT, bytes);
+  ck_assert_int_ne(bw_pd_mask_read_image(path_of(name), 5, 8, &m), BW_OK);
+  ck_assert_ptr_null(m);
+  ck_assert_msg(strstr(bw_last_message(), name) != NULL && strstr(bw_last_message(), word) != NULL,
+                "%s: message \"%s\" lacks \"%s\"", name, bw_last_message(), word);
+  remove(path_of(name));
+}
+
+#define NRRD_START "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 2\n"
+START_TEST(bad_images_are_refused_by_name)
+{
+  bw_pd_mask *m = NULL;
+  refuse("short.nrrd", NRRD_START "encoding: raw\n\n", CELLS - 1, "ends after 3 of 4 rows");
+  refuse("long.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n", CELLS,
+         "goes on");
+  refuse("zip.nrrd", NRRD_START "encoding: gzip\n\n", CELLS, "gzip");
+  refuse("turned.nrrd", NRRD_START "space directions: (0,1,0) (1,0,0) (0,0,1)\n\n", CELLS, "axes");
+  refuse("type.nrrd", "NRRD0004\ntype: block\ndimension: 3\nsizes: 3 2 2\n\n", CELLS, "block");
+  refuse("lacks.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\n\n", CELLS, "size");
+  refuse("four.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 1\n\n", CELLS, "4 dim");
+  refuse("order.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n",
+         CELLS, "order");
+  refuse("zero.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 0 2\n\n", CELLS, "0 voxels");
+  refuse("comp.mhd", "NDims = 3\nDimSize = 3 2 2\nCompressedData = True\n", CELLS, "compressed");
+  refuse("rgb.mhd", "NDims = 3\nElementNumberOfChannels = 3\n", CELLS, "3 numbers");
+  refuse("gone.mhd",
+         "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = gone.mhd.absent\n",
+         0, "cannot be opened");
+  refuse("other.png", "PNG", CELLS, "neither");
+  bw_check_status(bw_pd_mask_read_image(path_of("absent.nrrd"), 5, 8, &m), BW_EIO);
+}
+END_TEST
+
+/* Corners of a tetrahedron 0, (a,0,0), (0,b,0), (0,0,c), outward or not: parity does not care. */
+static void tetrahedron(float a, float b, float c, int faces, const char *name, bool text)
+{
+  const float p[4][3] = {{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}};
+  const int face[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  FILE *file = fopen(path_of(name), "wb");
+  ck_assert_ptr_nonnull(file);
+  const char head[80] = "solid in name only";
+  const float normal[3] = {0, 0, 0};
+  const uint32_t n = (uint32_t)faces;
+  if (text) fprintf(file, "solid t\n");
+  if (!text) fwrite(head, 1, 80, file), fwrite(&n, 4, 1, file);
+  for (int f = 0; f < faces; f++) {
+    if (text) fprintf(file, "facet normal 0 0 0\nouter loop\n");
+    if (!text) fwrite(normal, 4, 3, file);
+    for (int k = 0; k < 3; k++) {
+      const float *x = p[face[f][k]];
+      if (text) fprintf(file, "vertex %g %g %g\n", (double)x[0], (double)x[1], (double)x[2]);
+      if (!text) fwrite(x, 4, 3, file);
+    }
+    if (text) fprintf(file, "endloop\nendfacet\n");
+    if (!text) fwrite("", 1, 1, file), fwrite("", 1, 1, file);
+  }
+  if (text) fprintf(file, "endsolid t\n");
+  fclose(file);
+}
+
+/* Cells with x/a + y/b + z/c < 1 at their centre. */
+START_TEST(surfaces_are_filled)
+{
+  for (int text = 0; text < 2; text++) {
+    bw_pd_mask *m = NULL;
+    tetrahedron(7.1f, 5.3f, 6.2f, 4, "t.stl", text == 1);
+    bw_check_ok(bw_pd_mask_read_stl(path_of("t.stl"), 2, 0.5, &m));
+    int64_t want = 0, found = 0;
+    for (int64_t q = 0; q < m->size[0] * m->size[1] * m->size[2]; q++)
+      found += m->solid[q];
+    for (int k = 0; k < 40; k++)
+      for (int j = 0; j < 40; j++)
+        for (int i = 0; i < 40; i++) {
+          const double x[3] = {0.5 * i + 0.25, 0.5 * j + 0.25, 0.5 * k + 0.25};
+          const bool in = x[0] / 14.2 + x[1] / 10.6 + x[2] / 12.4 < 1;
+          ck_assert_int_eq(bw_pd_mask_at(m, 3, x), in);
+          want += in;
+        }
+    ck_assert_int_eq(found, want);
+    ck_assert_int_gt(found, 2000);
+    const bw_shape shape = {.kind = BW_SHAPE_MASK, .mask = m};
+    int64_t n;
+    int32_t *site;
+    uint8_t *kind;
+    bw_check_ok(bw_pd_shape_fill(1, &shape, 0.5, (double[3]){0}, false, &n, &site, &kind));
+    ck_assert_int_eq(n, want);
+    bw_release(&site);
+    bw_release(&kind);
+    bw_pd_mask_destroy(&m);
+  }
+  remove(path_of("t.stl"));
+}
+END_TEST
+
+START_TEST(bad_surfaces_are_refused_by_name)
+{
+  bw_pd_mask *m = NULL;
+  tetrahedron(7, 5, 6, 3, "open.stl", false);
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "not closed"));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "open.stl"));
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 0, 0.5, &m), BW_EINPUT);
+  write_file("open.stl", "no surface at all", CONTENT, CELLS);
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
+  write_file("open.stl", "solid\nouter loop\nvertex 1 2\nvertex", CONTENT, 0);
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
+  write_file("open.stl", "solid nothing\nendsolid", CONTENT, 0);
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
+  remove(path_of("open.stl"));
+  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EIO);
+  const bw_shape shape = {.kind = BW_SHAPE_MASK};
+  int64_t n;
+  int32_t *site;
+  uint8_t *kind;
+  bw_check_status(bw_pd_shape_fill(1, &shape, 1, (double[3]){0}, false, &n, &site, &kind),
+                  BW_EINPUT);
+}
+END_TEST
+
+static bw_pd_pack_config pack_config(bool planar)
+{
+  bw_pd_pack_config c = bw_pd_pack_config_default();
+  for (int d = 0; d < 3; d++)
+    c.lower[d] = 1, c.upper[d] = 11, c.periodic[d] = d == 0;
+  c.radius_min = 0.6, c.radius_max = 0.9;
+  c.gap = 0.05, c.fraction = 0.25, c.planar = planar;
+  return c;
+}
+
+/* Nearest distance of any two, images too, is the gap; the fraction is reached and not by more than
+ * a ball; images are what crosses the periodic sides. */
+static void check_pack(bool planar)
+{
+  const bw_pd_pack_config c = pack_config(planar);
+  int balls, count;
+  bw_shape *s = NULL;
+  bw_check_ok(bw_pd_pack_spheres(&c, &balls, &count, &s));
+  const double pi = acos(-1.0), box = planar ? 100 : 1000;
+  double filled = 0, last = 0;
+  int crossing = 0;
+  for (int a = 0; a < count; a++) {
+    for (int b = 0; b < a; b++) {
+      double d2 = 0;
+      for (int d = 0; d < (planar ? 2 : 3); d++)
+        d2 += pow(s[a].centre[d] - s[b].centre[d], 2);
+      ck_assert_double_ge(sqrt(d2), s[a].radius + s[b].radius + c.gap - 1e-12);
+    }
+    if (a >= balls) continue;
+    last = planar ? pi * pow(s[a].radius, 2) : 4.0 / 3 * pi * pow(s[a].radius, 3);
+    filled += last;
+    crossing += s[a].centre[0] - s[a].radius < 1 || s[a].centre[0] + s[a].radius > 11;
+    ck_assert(s[a].radius >= 0.6 && s[a].radius <= 0.9);
+  }
+  ck_assert(filled >= 0.25 * box && filled - last < 0.25 * box);
+  ck_assert_int_eq(count - balls, crossing);
+  ck_assert_int_gt(crossing, 0);
+  bw_release(&s);
+}
+
+START_TEST(packs_keep_their_distance)
+{
+  check_pack(false);
+  check_pack(true);
+}
+END_TEST
+
+START_TEST(packs_follow_their_seed)
+{
+  bw_pd_pack_config c = pack_config(false);
+  int balls, count;
+  bw_shape *s[3] = {NULL};
+  for (int q = 0; q < 3; q++) {
+    c.seed = q < 2 ? 5 : 6;
+    bw_check_ok(bw_pd_pack_spheres(&c, &balls, &count, &s[q]));
+  }
+  for (int d = 0; d < 3; d++) {
+    ck_assert_double_eq(s[0][7].centre[d], s[1][7].centre[d]);
+    ck_assert_double_ne(s[0][7].centre[d], s[2][7].centre[d]);
+  }
+  for (int q = 0; q < 3; q++)
+    bw_release(&s[q]);
+  c.fraction = 0.7, c.max_attempts = 2000;
+  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "no place"));
+  c = pack_config(false), c.radius_min = NAN;
+  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
+  c = pack_config(false), c.upper[1] = 1;
+  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(raw_voxels_of_every_type),         BW_TEST(images_in_four_forms),
+    BW_TEST(bad_images_are_refused_by_name),   BW_TEST(surfaces_are_filled),
+    BW_TEST(bad_surfaces_are_refused_by_name), BW_TEST(packs_keep_their_distance),
+    BW_TEST(packs_follow_their_seed)};
+BW_CHECK_MAIN("pd_bond.shape_files", tests)

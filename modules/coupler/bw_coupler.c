@@ -115,7 +115,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   st = create_parts(c);
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
-  c->block = (int)fmax(1.0, floor(k + 0.5));
+  c->block = (int)fmax(1.0, floor(k + 1e-9));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
   BW_THEN(st, bw_coupler__follow_surface(c));
   if (st != BW_OK) bw_coupler_destroy(&c);

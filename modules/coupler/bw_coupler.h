@@ -56,7 +56,7 @@ typedef struct {
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
   int n_iter;                /* forcing iterations [-]                      default 2 */
   double retraction;         /* of the markers, in grid spacings [-]        default 0.3 */
-  double marker_spacing;     /* along the surface, in grid spacings, rounded to whole particles;
+  double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);
                                 0: every surface particle is a marker   default 0 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
   bw_probe_profile profile;  /* of the velocity along a probe               default quadratic */

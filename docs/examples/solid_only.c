@@ -1,8 +1,9 @@
-/* A notched bar is pulled apart: one end held, the other drawn at 1 m/s, until it snaps.
+/* A notched bar is pulled apart: one end held, the other drawn away, until it snaps.
  * BUILD modules=pd_bond
  * TEST ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
+#include "bw_pd_load.h"
 #include "bw_pd_shape.h"
 #include <stdio.h>
 
@@ -35,11 +36,12 @@ static bw_status pull(const bw_comm *world)
     V[3 * i] = V[3 * i] > 0.030 ? 1.0 : 0.0; /* only grips listen */
     V[3 * i + 1] = 0;
   }
-  bw_pd_bond_set_prescribed(bar, V);
 
   const double dt = 0.5 * bw_pd_bond_dt_max(bar);
+  const bw_pd_ramp ramp = {BW_PD_RAMP_SMOOTH, 0, 100 * dt};
   bw_pd_bond_ledger e = {0};
   for (int step = 1; step <= 1200; step++) {
+    bw_pd_load_move(bar, &ramp, (step - 1) * dt, dt, V);
     BW_TRY(bw_pd_bond_step(bar, dt));
     if (step % 100 != 0) continue;
     e = bw_pd_bond_account(bar);

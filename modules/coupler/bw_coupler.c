@@ -15,7 +15,9 @@ bw_coupler_config bw_coupler_config_default(void)
                              .probe_length = 2.0,
                              .profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
-                             .load_relaxation = 0.1};
+                             .load_relaxation = 0.1,
+                             .coupling_iterations = 1,
+                             .coupling_residual = 1e-4};
 }
 
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
@@ -26,6 +28,10 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
              "coupler: solid_safety = %g: must lie in (0, 1]", q->solid_safety);
   BW_REQUIRE(q->load_relaxation > 0.0 && q->load_relaxation <= 1.0, BW_EINPUT,
              "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
+  BW_REQUIRE(q->coupling_iterations >= 1, BW_EINPUT,
+             "coupler: coupling_iterations = %d: at least 1 (explicit)", q->coupling_iterations);
+  BW_REQUIRE(q->coupling_residual > 0.0, BW_EINPUT,
+             "coupler: coupling_residual = %g: must be > 0, 1e-4 or so", q->coupling_residual);
   BW_REQUIRE(fabs(q->retraction) <= 2.0, BW_EINPUT,
              "coupler: retraction = %g grid spacings: must lie in [-2, 2]", q->retraction);
   BW_REQUIRE(q->marker_spacing >= 0.0 && q->marker_spacing <= 4.0, BW_EINPUT,
@@ -91,6 +97,9 @@ static bw_status create_arrays(bw_coupler *c)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
   BW_TRY(BW_ALLOCATE(&c->flag, n));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
+  for (int q = 0; q < 3 && c->config.coupling_iterations > 1; q++)
+    BW_TRY(BW_ALLOCATE(&c->iterate[q], 3 * n));
+  if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__state_create(c, &c->start));
   BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &c->p_mean));
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
 }
@@ -137,6 +146,9 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_release(&c->p_mean);
   bw_release(&c->inside);
   bw_coupler__state_release(&c->kept);
+  bw_coupler__state_release(&c->start);
+  for (int q = 0; q < 3; q++)
+    bw_release(&c->iterate[q]);
   bw_coupler__blocks_release(&c->blocks);
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);

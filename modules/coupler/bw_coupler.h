@@ -14,6 +14,13 @@
  * exact, the error in time is of first order, and a delayed added mass damps. w = 1 is POROUS's
  * plain explicit scheme.
  *
+ * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
+ * same state, with the markers moving at the velocity that the solid reached at the end of the last
+ * try, under-relaxed by Aitken's rule (Kuettler & Wall 2008; the first factor is load_relaxation),
+ * until the velocity of the surface changes by less than the residual. The load is then the whole
+ * load of the same step. Markers stay where the surface was at the beginning of the step.
+ *
+ *
  * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
  * pressure swings between the sub-steps; what acted over the step is sum_r gamma_r p_r, and that is
  * what the probes read (the pressure conjugate to ERRATA 18's mean force).
@@ -63,6 +70,9 @@ typedef struct {
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
   bw_coupler_load_kind load; /*                                             default probes */
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
+  int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
+  double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
+                                that ends the iteration [-]             default 1e-4 */
   bool count_work;           /* work_given of the report (an exchange per step)  default false */
   bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
@@ -94,6 +104,9 @@ typedef struct {
                                      -rho int sum Q dV.V dt; received: the solid's ledger, external
                                      [M L^2/T^2]; 0 without count_work */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
+  int iterations;                 /* of the last step (1: explicit) and ... */
+  double residual;                /* ... what it ended with [-]; 0 when explicit */
+  int64_t unconverged;            /* steps so far that used up their iterations */
   int64_t markers, markers_outside, probes_shortened, probes_blocked;
   double surface_area; /* [L^2] */
   double imbalance;    /* most markers on a rank over the mean [-] */

@@ -62,6 +62,13 @@ struct bw_coupler {
   bw_coupler__blocks blocks;
   double work_given; /* of this rank's markers [M L^2/T^2] */
   bw_coupler__state kept;
+  /* Iterated coupling: state at the beginning of the step; guess of the surface's velocity, its
+   * residual and the one before (n,3) each. */
+  bw_coupler__state start;
+  double *iterate[3];
+  int iterations;
+  double residual;
+  int64_t unconverged;
 };
 
 /* Surface, markers, probe points to where the solid is now. Collective. */
@@ -84,5 +91,16 @@ void bw_coupler__blocks_reaction(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
 /* c->force, relaxed, to the force density F of the particles. Local. */
-void bw_coupler__relax_load(bw_coupler *c);
+void bw_coupler__relax_load(bw_coupler *c, double relaxation);
 void bw_coupler__state_release(bw_coupler__state *s);
+bw_status bw_coupler__state_create(const bw_coupler *c,
+                                   bw_coupler__state *s) BW_MUST_CHECK; /* Local */
+void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s);
+/* Fluid and solid as they were; surface and markers stay. Collective. */
+bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s) BW_MUST_CHECK;
+
+/* Phases of a step, and the step that repeats them (step.c, iterate.c). Collective. */
+bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt) BW_MUST_CHECK;
+bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
+bw_status bw_coupler__advance_solid(bw_coupler *c, double dt) BW_MUST_CHECK;
+bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;

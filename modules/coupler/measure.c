@@ -21,7 +21,10 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .markers = ibm.markers,
                          .markers_outside = ibm.outside,
                          .imbalance = ibm.imbalance,
-                         .work_given = c->work_given};
+                         .work_given = c->work_given,
+                         .iterations = c->iterations,
+                         .residual = c->residual,
+                         .unconverged = c->unconverged};
   double box[3];
   int64_t count[2];
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */

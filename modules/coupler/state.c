@@ -27,7 +27,7 @@ static void list_fields(const bw_coupler *c, bw_real *field[N_FIELDS])
   field[3] = bw_ns_channel_pressure(c->fluid);
 }
 
-static bw_status state_create(const bw_coupler *c, bw_coupler__state *s)
+bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
 {
   bw_real *field[N_FIELDS];
   list_fields(c, field);
@@ -39,7 +39,7 @@ static bw_status state_create(const bw_coupler *c, bw_coupler__state *s)
   return BW_ALLOCATE(&s->F, 3 * c->n);
 }
 
-static void capture(const bw_coupler *c, bw_coupler__state *s)
+void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   bw_real *field[N_FIELDS];
@@ -58,8 +58,9 @@ static void capture(const bw_coupler *c, bw_coupler__state *s)
 bw_status bw_coupler_keep(bw_coupler *c)
 {
   if (c->kept.rows == NULL)
-    BW_TRY(bw_comm_agree(bw_grid_comm(bw_ns_channel_grid(c->fluid)), state_create(c, &c->kept)));
-  capture(c, &c->kept);
+    BW_TRY(bw_comm_agree(bw_grid_comm(bw_ns_channel_grid(c->fluid)),
+                         bw_coupler__state_create(c, &c->kept)));
+  bw_coupler__state_capture(c, &c->kept);
   return BW_OK;
 }
 
@@ -99,7 +100,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
                                  (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
 
-static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
+bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   bw_real *field[N_FIELDS];
@@ -110,12 +111,11 @@ static bw_status restore(bw_coupler *c, const bw_coupler__state *s)
   bw_ns_channel_set_gradient(c->fluid, s->fluid_numbers[1]);
   bw_ns_channel_refresh(c->fluid);
   c->p_mean_known = false;
-  c->work_given = 0.0;
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
-  return bw_coupler__follow_surface(c);
+  return BW_OK;
 }
 
 bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck)
@@ -133,8 +133,10 @@ bw_status bw_coupler_save_kept(bw_coupler *c, bw_checkpoint *ck)
 bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
-  if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, state_create(c, &c->kept)));
+  if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, bw_coupler__state_create(c, &c->kept)));
   BW_TRY(read_state(c, &c->kept, ck));
   c->kept.filled = true;
-  return restore(c, &c->kept);
+  c->work_given = 0.0;
+  BW_TRY(bw_coupler__state_restore(c, &c->kept));
+  return bw_coupler__follow_surface(c);
 }

@@ -24,7 +24,7 @@ static void add_pressure(bw_coupler *c, int r)
 }
 
 /* Fluid with no slip at the markers, POROUS 3.70-3.73 and 3.79-3.82. */
-static bw_status advance_fluid(bw_coupler *c, double dt)
+bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   bw_timer_start(c->timer, BW_PART_FORCING);
@@ -52,7 +52,7 @@ static bw_status advance_fluid(bw_coupler *c, double dt)
   return bw_ns_channel_check(c->fluid, dt);
 }
 
-static bw_status load_solid(bw_coupler *c, double dt)
+bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
 {
   bw_timer_start(c->timer, BW_PART_PROBES);
   const bool probes = c->config.load == BW_LOAD_PROBES;
@@ -60,14 +60,14 @@ static bw_status load_solid(bw_coupler *c, double dt)
   if (!probes || c->config.count_work) bw_coupler__reaction_force(c);
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
-  bw_coupler__relax_load(c);
+  bw_coupler__relax_load(c, relaxation);
   bw_pd_bond_set_force(c->solid, c->F);
   bw_timer_stop(c->timer, BW_PART_PROBES);
   return st;
 }
 
 /* Solid sub-cycled until it has caught up with the fluid, POROUS 3.47-3.49. */
-static bw_status advance_solid(bw_coupler *c, double dt)
+bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
 {
   const int substeps = bw_coupler_substeps(c, dt);
   bw_status st = BW_OK;
@@ -107,9 +107,14 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
     BW_TRY(bw_ns_channel_check(c->fluid, dt)); /* later: by the step before */
   c->checked_dt = dt;
   count_work(c, dt);
-  BW_TRY(advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */
-  if (c->held) return BW_OK;
-  BW_TRY(load_solid(c, dt));    /* stress of the new flow on the surface */
-  BW_TRY(advance_solid(c, dt)); /* X, V, bonds at t + dt */
-  return move_surface(c);       /* surface and markers at t + dt */
+  c->iterations = 1;
+  if (c->held) return bw_coupler__advance_fluid(c, dt);
+  if (c->config.coupling_iterations > 1) {
+    BW_TRY(bw_coupler__iterate(c, dt));
+  } else {
+    BW_TRY(bw_coupler__advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */
+    BW_TRY(bw_coupler__load_solid(c, dt, c->config.load_relaxation)); /* stress of the new flow */
+    BW_TRY(bw_coupler__advance_solid(c, dt));                         /* X, V, bonds at t + dt */
+  }
+  return move_surface(c); /* surface and markers at t + dt */
 }

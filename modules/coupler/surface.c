@@ -172,9 +172,9 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
 }
 
 /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */
-void bw_coupler__relax_load(bw_coupler *c)
+void bw_coupler__relax_load(bw_coupler *c, double relaxation)
 {
-  const double w = c->config.load_relaxation, volume = bw_pd_bond_volume(c->solid);
+  const double w = relaxation, volume = bw_pd_bond_volume(c->solid);
   for (size_t i = 0; i < 3 * c->n; i++)
     c->F[i] *= 1.0 - w;
   for (size_t q = 0; q < c->n_surface; q++)

@@ -12,6 +12,8 @@
  * Reference  the recurrence, with g measured on a block that is moved by force.
  * Tolerance  10 %: bisections to 3 % each; what the block's own elasticity (Cauchy number of the
  *            step, c dt = 4 blocks) and its turning change is left to 5 %.
+ *            iterated coupling has no such limit in the recurrence; what is left comes from the
+ *            surface's own motions: with probes a tenth of the fluid's density has to hold.
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=300 */
 #include "block.h"
@@ -28,7 +30,9 @@ static bw_status response(const bw_comm *comm, bw_coupler_load_kind load, double
   const double mass = BLOCK * H * BLOCK * H * H;
   block_scene s;
   bw_coupler_report r;
-  bw_status st = block_create(comm, &(block_set_up){1.0, 1.0, load, SPEED, true}, &s);
+  bw_status st = block_create(
+      comm, &(block_set_up){.ratio = 1.0, .w = 1.0, .load = load, .speed = SPEED, .moved = true},
+      &s);
   BW_THEN(st, bw_coupler_step(s.coupler, DT)); /* the markers take the new velocity at its end */
   for (int k = 0; st == BW_OK && k < MEMORY; k++) {
     st = bw_coupler_step(s.coupler, DT);
@@ -62,10 +66,14 @@ static bool recurrence_holds(const double g[MEMORY], double ratio, double w)
 
 /* Does a small motion of a free block stay small? */
 static bw_status run_holds(const bw_comm *comm, double ratio, double w, bw_coupler_load_kind load,
-                           bool *holds)
+                           int iterations, bool *holds)
 {
   block_scene s;
-  bw_status st = block_create(comm, &(block_set_up){ratio, w, load, SPEED, false}, &s);
+  bw_status st = block_create(
+      comm,
+      &(block_set_up){
+          .ratio = ratio, .w = w, .load = load, .speed = SPEED, .iterations = iterations},
+      &s);
   double early = 0.0, late = 0.0, last = SPEED;
   for (int n = 0; st == BW_OK && n < STEPS; n++) {
     st = bw_coupler_step(s.coupler, DT);
@@ -88,7 +96,7 @@ static bw_status run_holds(const bw_comm *comm, double ratio, double w, bw_coupl
 
 /* Smallest density ratio that holds, between 0.01 and 100, to 3 %. */
 static bw_status critical(const bw_comm *comm, const double g[MEMORY], double w,
-                          bw_coupler_load_kind load, double *ratio)
+                          bw_coupler_load_kind load, int iterations, double *ratio)
 {
   double low = log(0.01), high = log(100.0);
   while (high - low > 0.03) {
@@ -97,7 +105,7 @@ static bw_status critical(const bw_comm *comm, const double g[MEMORY], double w,
     if (g != NULL)
       holds = recurrence_holds(g, exp(middle), w);
     else
-      BW_TRY(run_holds(comm, exp(middle), w, load, &holds));
+      BW_TRY(run_holds(comm, exp(middle), w, load, iterations, &holds));
     *(holds ? &high : &low) = middle;
   }
   *ratio = exp(0.5 * (low + high));
@@ -106,7 +114,7 @@ static bw_status critical(const bw_comm *comm, const double g[MEMORY], double w,
 
 static bw_status run(bw_validation *v)
 {
-  static const double relaxation[] = {1.0, 0.3, 0.1};
+  static const double relaxation[] = {1.0, 0.3, 0.1, 1.0};
   static const char *const name[] = {[BW_LOAD_PROBES] = "probes", [BW_LOAD_REACTION] = "reaction"};
   const bw_comm *comm = bw_validation_comm(v);
   for (int load = BW_LOAD_PROBES; load <= BW_LOAD_REACTION; load++) {
@@ -120,15 +128,22 @@ static bw_status run(bw_validation *v)
     snprintf(extra, sizeof extra, "\"added_mass_over_displaced\": %.3f", total);
     bw_validation_row(v, &(bw_claim){text, "first_share", early, 1.0, INFINITY, BW_ANALYTIC,
                                      "1 if projection kept no slip", extra});
-    for (int q = 0; q < 3; q++) {
+    for (int q = 0; q < 4; q++) {
+      const int its = q == 3 ? 100 : 0;
       const double w = relaxation[q], direct = total / (2.0 / w - 1.0);
       double predicted = NAN, measured = NAN;
-      BW_TRY(critical(comm, g, w, (bw_coupler_load_kind)load, &predicted));
-      BW_TRY(critical(comm, NULL, w, (bw_coupler_load_kind)load, &measured));
-      snprintf(text, sizeof text, "smallest density ratio that holds, %s, w = %g", name[load], w);
+      if (its == 0) BW_TRY(critical(comm, g, w, (bw_coupler_load_kind)load, 0, &predicted));
+      BW_TRY(critical(comm, NULL, w, (bw_coupler_load_kind)load, its, &measured));
+      snprintf(text, sizeof text, "smallest density ratio that holds, %s, %s, w = %g", name[load],
+               its > 0 ? "iterated" : "explicit", w);
       snprintf(extra, sizeof extra, "\"w\": %g, \"w_below_2_over_1_plus_ratio\": %.4g", w, direct);
-      bw_validation_row(v, &(bw_claim){text, "critical_density_ratio", measured, predicted, 0.1,
-                                       BW_ANALYTIC, "recurrence with the fluid's answer", extra});
+      const bool claimed = its == 0 || load == BW_LOAD_PROBES;
+      bw_validation_row(v, &(bw_claim){text, "critical_density_ratio", measured,
+                                       its > 0 ? 0.0 : predicted, claimed ? 0.1 : INFINITY,
+                                       BW_ANALYTIC,
+                                       its > 0 ? "a tenth of the fluid's density, or lighter, holds"
+                                               : "recurrence with the fluid's answer",
+                                       extra});
     }
   }
   return BW_OK;

@@ -16,7 +16,8 @@ typedef struct {
   double w;     /* load relaxation */
   bw_coupler_load_kind load;
   double speed;
-  bool moved; /* by force; else free, and starting with `speed` */
+  int iterations; /* 0: explicit */
+  bool moved;     /* by force; else free, and starting with `speed` */
 } block_set_up;
 
 typedef struct {
@@ -85,6 +86,11 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   c.load = b->load;
   c.load_relaxation = b->w;
   c.count_work = true;
+  if (b->iterations > 0) {
+    c.coupling_iterations = b->iterations;
+    c.load_relaxation = 0.1;    /* Aitken's first factor */
+    c.coupling_residual = 1e-8; /* noise far below the motions that are judged */
+  }
   BW_TRY(bw_grid_create(comm, &grid, &s->grid));
   BW_TRY(bw_ns_channel_create(s->grid, &fluid, &s->fluid));
   BW_TRY(block_make_solid(comm, b, s));

@@ -18,8 +18,7 @@ typedef struct {
 double bw_pd_ramp_value(const bw_pd_ramp *ramp, double time); /* Local. */
 
 /* For the step from `time` to time + dt: prescribed particles get the velocity that puts them at
- * X0 + value(time + dt) U, U (n,3) [L], when they stood at value(time) U before. Verlet only: RK3's
- * drift lags the velocity. Local. */
+ * X0 + value(time + dt) U, U (n,3) [L], when they stood at value(time) U before. Local. */
 void bw_pd_load_displace(bw_pd_bond *pd, const bw_pd_ramp *ramp, double time, double dt,
                          const double U[]);
 /* The same with a velocity V (n,3) [L/T] that is ramped: value(time + dt/2) V. Local. */

@@ -20,9 +20,10 @@ START_TEST(ramps_start_and_end)
 }
 END_TEST
 
-static bw_pd_bond *bar(void)
+static bw_pd_bond *bar(bw_pd_integrator integrator)
 {
   bw_pd_bond_config c = pd_soft(BW_PD_PLANE_STRESS);
+  c.integrator = integrator;
   pd_body box = pd_box(12, 4, 1);
   for (int64_t q = 0; q < box.n; q++)
     if (box.site[3 * q] >= 9) box.kind[q] = BW_PD_PRESCRIBED;
@@ -32,9 +33,9 @@ static bw_pd_bond *bar(void)
 }
 
 /* Steps of uneven length: the displacement is the ramp's, its speed the product's. */
-START_TEST(prescribed_particles_follow_the_ramp)
+static void follow(bw_pd_integrator integrator)
 {
-  bw_pd_bond *pd = bar();
+  bw_pd_bond *pd = bar(integrator);
   const size_t n = bw_pd_bond_count(pd);
   const double dt = 0.4 * bw_pd_bond_dt_max(pd);
   const bw_pd_ramp ramp = {BW_PD_RAMP_SMOOTH, 2.3 * dt, 10 * dt};
@@ -63,12 +64,18 @@ START_TEST(prescribed_particles_follow_the_ramp)
       bw_check_near(V[3 * i], 0.005, 20 * BW_REAL_EPSILON);
   bw_pd_bond_destroy(&pd);
 }
+
+START_TEST(prescribed_particles_follow_the_ramp)
+{
+  follow(BW_PD_VERLET);
+  follow(BW_PD_RK3);
+}
 END_TEST
 
 /* Traction times area, and weight: F summed over volumes. Prescribed particles take none. */
 START_TEST(forces_add_up)
 {
-  bw_pd_bond *pd = bar();
+  bw_pd_bond *pd = bar(BW_PD_VERLET);
   double F[3 * 48] = {0}, total[3] = {0};
   const double dv = bw_pd_bond_volume(pd), traction[3] = {3, -4, 0}, g[3] = {0, -10, 0};
   bw_check_ok(bw_pd_load_traction(pd, (double[3]){0, 0, 5}, (double[3]){1.2, 9, 6}, 2, traction,
@@ -104,7 +111,7 @@ static void swirl(const double X0[3], double V[3], const void *data)
  * m (a^2 + b^2)/12 w less the cells' own (they are points) m ds^2/6 w. */
 START_TEST(launches)
 {
-  bw_pd_bond *pd = bar();
+  bw_pd_bond *pd = bar(BW_PD_VERLET);
   const double m = 48 * 2 * bw_pd_bond_volume(pd), centre[3] = {3, 1, 0};
   bw_check_ok(bw_pd_load_launch(pd, (double[3]){0, 0, 0}, (double[3]){0, 0, 1.5}, centre));
   bw_pd_bond_ledger l = bw_pd_bond_account(pd);

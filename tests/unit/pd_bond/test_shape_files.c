@@ -273,6 +273,9 @@ static void check_pack(bool planar)
         d2 += pow(s[a].centre[d] - s[b].centre[d], 2);
       ck_assert_double_ge(sqrt(d2), s[a].radius + s[b].radius + c.gap - 1e-12);
     }
+    /* an image reaches into the box from outside */
+    ck_assert(s[a].centre[0] > 1 - s[a].radius && s[a].centre[0] < 11 + s[a].radius);
+    ck_assert(a < balls || s[a].centre[0] < 1 || s[a].centre[0] > 11);
     if (a >= balls) continue;
     last = planar ? pi * pow(s[a].radius, 2) : 4.0 / 3 * pi * pow(s[a].radius, 3);
     filled += last;

@@ -1,11 +1,14 @@
 /* Claim: the statistics of channel turbulence at Re_b = 5600 are those of spectral simulations
  * (FSI section 3, second test; figures 4a and 4b).
  *
- * Reference  Moser, Kim & Mansour (1999), Re_tau 178.12 at Re_b 5586: data/channel.
- * Measured   Re_tau = (h/2) u_tau/nu with u_tau of the mean wall shear; U_b+, U_c+ (mean of the
- *            cells next to the centre line); U+ over y+, in per cent of the reference; total stress
- *            against the straight line and u'v', both over tau_w; peaks of the rms profiles.
- *            Beside each: the 95 % half width of batch means.
+ * Reference: Moser, Kim & Mansour (1999), Re_tau 178.12 at Re_b 5586: data/channel. For Re_tau it
+ * is 179.0: theirs, Lee & Moser's (182.09 at 5714) and del Alamo & Jimenez's (186.34 at 5856)
+ * become 178.5, 178.9 and 179.1 at 5600 with Re_tau ~ Re_b^0.88 (Pope 2000, 7.54).
+ *
+ * Measured: Re_tau = (h/2) u_tau/nu with u_tau of the mean wall shear; U_b+, U_c+ (mean of the
+ * cells next to the centre line); U+ over y+, relative to the reference; total stress against the
+ * straight line and u'v', both over tau_w; peaks of the rms profiles. Beside each: the 95 % half
+ * width of batch means.
  *
  * --full: 192 x 128 x 160 cells in 2 pi h x h x pi h, 40 h/U_b to spin up and 80 (10 eddy
  * turnovers) of statistics, on from $BW_BUILD_DIR/verification/channel_turbulence/checkpoint.h5 if
@@ -17,8 +20,9 @@
  * It can say that turbulence of about the right strength lives on the coarse cells, not more:
  * laminar flow has Re_tau 91.7 (-49 %) and no stress; boxes this small hold a healthy wall layer
  * (Jimenez & Moin 1991, JFM 225). Tolerances: 10 % for scalars, 15 % for profiles, a fifth and a
- * third of the distance to laminar flow; the coarse cells take some 7 % of it (as 96 x 64 x 80
- * cells of the whole box do: docs/verification), sampling 1 % of Re_tau in 8 eddy turnovers.
+ * third of the distance to laminar flow; the coarse cells take some 6 % of it (96 x 64 x 80 cells
+ * of the whole box, coarser in z, 9 %: docs/verification), sampling 1 % of Re_tau in 8 eddy
+ * turnovers.
  *
  * Budgets, in both forms: total stress T = nu dU/dy - <uv> over a time S,
  *   T(y) = T(0) - G y + int_0^y (U(S) - U(0))/S dy
@@ -32,7 +36,7 @@
  * exact to round-off: 1e-12.
  *
  * BUILD modules=ns_channel,checkpoint
- * TEST  ranks=2 timeout=300 */
+ * TEST  ranks=1 timeout=300 */
 #include "../../cases/channel_turbulence/channel_flow.h"
 #include "bw_validation.h"
 
@@ -135,7 +139,7 @@ static void scalar_rows(report *r)
   const tolerances *o = r->tolerance;
   const double half = 0.5 * r->f->config->reynolds;
   const bw_ns_estimate u = channel_u_tau(r->f, r->work);
-  row(r, "Re_tau", "friction Reynolds number", half * u.mean, 178.12, o->scalar, half * u.interval);
+  row(r, "Re_tau", "friction Reynolds number", half * u.mean, 179.0, o->scalar, half * u.interval);
   /* 15.6803: integral of the reference profile, data/channel/channel_scalars_retau180.csv */
   row(r, "U_b_plus", "bulk velocity in wall units", 1.0 / u.mean, 15.6803, o->scalar,
       u.interval / (u.mean * u.mean));

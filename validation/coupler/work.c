@@ -17,6 +17,7 @@
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=120 */
 #include "block.h"
+#include "bw_real.h"
 #include "bw_validation.h"
 
 #include <stdio.h>
@@ -64,9 +65,11 @@ static bw_status run(bw_validation *v)
   BW_TRY(brake(comm, BW_LOAD_PROBES, DT, &probes));
   static const char law[] = "Newton's third law";
   const double e1 = a.given / a.received - 1.0, e2 = half.given / half.received - 1.0;
+  const double kicks = 100.0 * a.substeps, lost = 0.07; /* of its speed, while kicked */
+  const double round_off = kicks * BW_REAL_EPSILON / lost;
   const bw_claim rows[] = {
-      {"impulse given and received", "momentum", a.momentum, a.impulse, 1e-2 / a.substeps,
-       BW_CONSERVATION, law, NULL},
+      {"impulse given and received", "momentum", a.momentum, a.impulse,
+       1e-2 / a.substeps + round_off, BW_CONSERVATION, law, NULL},
       {"work given and received", "work", a.given, a.received, 0.01, BW_CONSERVATION, law, NULL},
       {"work at half the step", "work_half", half.given, half.received, 0.005, BW_CONSERVATION, law,
        NULL},

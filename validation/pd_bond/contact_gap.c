@@ -93,6 +93,8 @@ static bw_status measure(bw_validation *v, double mach)
 
 static bw_status run(bw_validation *v)
 {
+  BW_REQUIRE(bw_comm_size(bw_validation_comm(v)) == 1, BW_EINPUT,
+             "contact_gap: compares all particles with all; run it on one rank");
   BW_TRY(measure(v, 0.02));
   BW_TRY(measure(v, 0.1));
   return measure(v, 0.3);

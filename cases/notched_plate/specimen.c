@@ -131,8 +131,30 @@ static bw_status make_solid(specimen *p)
   return st;
 }
 
+/* Body force per stress of each traction [1/m]: the loaded part of the edge over the volume of the
+ * particles that take it, rows ds on a lattice along the edge. Collective. */
+static void share_tractions(specimen *p)
+{
+  const specimen_shape *s = &p->config.shape;
+  const bool solid = p->config.solid.geometry == BW_PD_3D;
+  const double depth = solid ? p->ds * round(s->thickness / p->ds) : s->thickness;
+  int64_t count[SPECIMEN_LOADS] = {0};
+  for (int q = 0; q < p->config.n_loads; q++)
+    for (size_t h = 0; h < p->n; h++)
+      count[q] += loaded(p, &p->config.loads[q], &p->X0[3 * h]);
+  bw_comm_sum_int(p->comm, SPECIMEN_LOADS, count);
+  for (int q = 0; q < p->config.n_loads; q++) {
+    const specimen_load *load = &p->config.loads[q];
+    const bool upright = load->edge == SPECIMEN_LEFT || load->edge == SPECIMEN_RIGHT;
+    const double length = upright ? s->height : s->length;
+    const double part = fmin(load->to, length) - fmax(load->from, 0.0);
+    const double volume = (double)count[q] * bw_pd_bond_volume(p->solid);
+    p->share[q] = count[q] > 0 ? part * depth / volume : 0.0;
+  }
+}
+
 /* Body force at the present time; nothing to do once all of it acts. */
-static bw_status apply_traction(specimen *p)
+static void apply_traction(specimen *p)
 {
   memset(p->F, 0, 3 * p->n * sizeof *p->F);
   p->rising = false;
@@ -144,10 +166,9 @@ static bw_status apply_traction(specimen *p)
     for (size_t h = 0; h < p->n; h++)
       if (loaded(p, load, &p->X0[3 * h]))
         for (size_t d = 0; d < 2; d++)
-          p->F[3 * h + d] += part * load->value[d] / (load->rows * p->ds);
+          p->F[3 * h + d] += part * load->value[d] * p->share[q];
   }
   bw_pd_bond_set_force(p->solid, p->F);
-  return BW_OK;
 }
 
 /* Velocities that are held and those given at the start. */
@@ -219,7 +240,8 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   BW_THEN(st, BW_ALLOCATE(&p->past, (size_t)p->room));
   BW_TRY(bw_comm_agree(comm, st));
   bw_pd_bond_get_reference(p->solid, p->X0);
-  BW_TRY(apply_traction(p));
+  share_tractions(p);
+  apply_traction(p);
   BW_TRY(apply_velocity(p));
   bw_pd_bond_get_damage(p->solid, p->damage);
   for (size_t h = 0; h < p->n; h++)
@@ -339,7 +361,7 @@ bw_status specimen_step(specimen *p)
   BW_TRY(bw_pd_bond_step(p->solid, p->config.time.step));
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
-  if (p->rising) BW_TRY(apply_traction(p));
+  if (p->rising) apply_traction(p);
   if (p->steps % p->config.follow.every == 0 && p->looks + 1 < p->room) BW_TRY(follow(p));
   return BW_OK;
 }

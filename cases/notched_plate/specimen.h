@@ -31,7 +31,7 @@ typedef struct {
 
 typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;
 typedef enum {
-  SPECIMEN_TRACTION, /* value [Pa], as a body force value/(rows ds) */
+  SPECIMEN_TRACTION, /* value [Pa], as a body force on the particles of the rows, equal for each */
   SPECIMEN_VELOCITY, /* value [m/s], held (0: clamped) */
   SPECIMEN_START     /* value [m/s], at t = 0 only */
 } specimen_kind;
@@ -91,9 +91,10 @@ typedef struct {
   double ds, time;
   int64_t steps, events;
   size_t n;
-  double *X0, *damage, *F; /* (n,3), (n), (n,3) of the tractions */
-  bool *notched;           /* (n) cracked by the notches: no part of the crack */
-  bool rising;             /* some traction still rises */
+  double *X0, *damage, *F;      /* (n,3), (n), (n,3) of the tractions */
+  bool *notched;                /* (n) cracked by the notches: no part of the crack */
+  double share[SPECIMEN_LOADS]; /* body force per stress of each load [1/m] */
+  bool rising;                  /* some traction still rises */
   specimen_crack crack;
   int64_t looks, room;
   double (*past)[2]; /* (room) the tip at the start and at each look [m] */

@@ -40,3 +40,27 @@ plot MKM using 2:4 every ::1 with points pt 6 ps 0.6 lc "black" title "Moser et 
      centres using 2:7 every ::1 with lines lw 2 lc 2 title "w", \
      centres using 2:15 every ::1 with lines lw 2 lc 4 title "p"
 unset multiplot
+
+# The budget of k, two-point correlations and spectra (no reference at hand).
+set output (exists("png2") ? png2 : run."/budget.png")
+set multiplot layout 1,3
+set title "budget of k over u_{/Symbol t}^4/{/Symbol n}"
+set xlabel "y^+"; set xrange [0:60]; set yrange [-0.25:0.25]; set key top right
+plot centres using 2:29 every ::1 with lines lw 2 lc 7 title "production", \
+     centres using 2:31 every ::1 with lines lw 2 lc 6 title "dissipation", \
+     centres using 2:33 every ::1 with lines lw 2 lc 2 title "turbulent transport", \
+     centres using 2:35 every ::1 with lines lw 2 lc 4 title "pressure transport", \
+     centres using 2:37 every ::1 with lines lw 2 lc 1 title "viscous diffusion", \
+     centres using 2:($29+$31+$33+$35+$37) every ::1 with lines dt 2 lc "black" title "sum"
+set title "R_{uu} at y^+ = 15"
+set xlabel "r/h"; set xrange [0:*]; set yrange [-0.4:1]
+plot run."/correlations_x.csv" using 1:5 every ::1 with lines lw 2 lc 7 title "along x", \
+     run."/correlations_z.csv" using 1:5 every ::1 with lines lw 2 lc 6 title "along z"
+set title "spectra over u_{/Symbol t}^2 h at y^+ = 15"
+set xlabel "k h"; set logscale xy; set xrange [0.8:400]; set yrange [1e-9:10]; set format y "10^{%L}"
+set key bottom left
+plot run."/spectra_x.csv" using 1:5 every ::1 with lines lw 2 lc 7 title "u along x", \
+     run."/spectra_x.csv" using 1:6 every ::1 with lines lw 2 lc 6 title "v along x", \
+     run."/spectra_z.csv" using 1:5 every ::1 with lines lw 2 lc 2 title "u along z", \
+     run."/spectra_z.csv" using 1:6 every ::1 with lines lw 2 lc 4 title "v along z"
+unset multiplot

@@ -14,6 +14,7 @@ static const double H = 1.0 / CELLS, DT = 2e-3, NU = 1e-2;
 typedef struct {
   double ratio; /* density of the block over the fluid's */
   double w;     /* load relaxation */
+  double dt;    /* of the steps to come: says what is stiff */
   bw_coupler_load_kind load;
   double speed;
   int iterations; /* 0: explicit */
@@ -41,7 +42,7 @@ static inline void block_destroy(block_scene *s)
 
 static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up *b, block_scene *s)
 {
-  const double size = BLOCK * H, speed_of_sound = 4.0 * size / DT, first = 0.5 - 0.5 * size;
+  const double size = BLOCK * H, speed_of_sound = 4.0 * size / b->dt, first = 0.5 - 0.5 * size;
   const bw_shape block = {.kind = BW_SHAPE_BOX,
                           .lower = {first, first},
                           .upper = {first + size, first + size, H},

@@ -34,9 +34,9 @@ typedef void (*bw_ns_velocity_fn)(const double x[3], double t, void *context, do
 typedef struct {
   bw_ns_side_kind kind;       /*                                          default wall */
   double velocity[3];         /* of the wall; of a uniform inflow [L/T]   default 0 */
-  bw_ns_profile profile;      /* inflow only                              default uniform */
+  bw_ns_profile profile;      /* of an inflow; wall: uniform or callback    default uniform */
   double bulk_velocity;       /* of a Poiseuille inflow (plane, in y) [L/T] */
-  bw_ns_velocity_fn function; /* of a callback inflow */
+  bw_ns_velocity_fn function; /* of a callback inflow or wall (tangential part of u is used) */
   void *context;              /* borrowed for the life of the solver */
 } bw_ns_side;
 

@@ -37,6 +37,12 @@ static size_t plane_size(const bw_ns_plane *p)
   return (size_t)p->extent[0] * (size_t)p->extent[1];
 }
 
+/* A wall whose velocity a function gives. */
+static bool moves(const bw_ns_side *side)
+{
+  return side->kind == BW_SIDE_WALL && side->profile == BW_PROFILE_CALLBACK;
+}
+
 bw_status bw_ns__planes_create(bw_ns_channel *ns)
 {
   const bw_grid_view *g = ns->g;
@@ -51,7 +57,8 @@ bw_status bw_ns__planes_create(bw_ns_channel *ns)
         p->extent[q] = g->m[t] + 2 * g->halo[t];
       }
       for (int c = 0; c < ns->components && p->here; c++)
-        if (kind == BW_SIDE_INFLOW || (kind == BW_SIDE_OUTFLOW && c == d))
+        if (kind == BW_SIDE_INFLOW || (kind == BW_SIDE_OUTFLOW && c == d) ||
+            (moves(&ns->config.side[d][s]) && c != d))
           BW_TRY(BW_ALLOCATE(&p->value[c], plane_size(p)));
     }
   return BW_OK;
@@ -85,7 +92,7 @@ static void fill_from_function(bw_ns_channel *ns, int d, int s, double t)
   bw_ns_plane *p = &ns->plane[d][s];
   const int t0 = tangent(d, 0), t1 = tangent(d, 1);
   for (int c = 0; c < ns->components; c++)
-    for (int b = 0; b < p->extent[1]; b++)
+    for (int b = 0; b < p->extent[1] && p->value[c] != NULL; b++)
       for (int a = 0; a < p->extent[0]; a++) {
         double x[3], u[3] = {0, 0, 0};
         x[d] = s == 0 ? 0.0 : ns->g->length[d];
@@ -160,6 +167,7 @@ double bw_ns__inflow(bw_ns_channel *ns, double t)
       const bool here = ns->plane[d][s].here;
       any |= side->kind == BW_SIDE_OUTFLOW;
       if (side->kind == BW_SIDE_OUTFLOW && here) net[1] += plane_flux(ns, d, s, NULL);
+      if (moves(side) && here) fill_from_function(ns, d, s, t);
       if (side->kind != BW_SIDE_INFLOW || !here) continue;
       if (side->profile == BW_PROFILE_CALLBACK) fill_from_function(ns, d, s, t);
       if (side->profile == BW_PROFILE_POISEUILLE) fill_poiseuille(ns, s);

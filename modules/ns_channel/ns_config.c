@@ -62,6 +62,9 @@ static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c
                "ns_channel: %s %s side: a wall moves tangentially only, but velocity[%d] is %g; "
                "use an inflow for blowing",
                dn, sn, d, side->velocity[d]);
+  if (side->kind == BW_SIDE_WALL && side->profile == BW_PROFILE_CALLBACK)
+    BW_REQUIRE(side->function != NULL, BW_EINPUT,
+               "ns_channel: %s %s side: a callback wall needs side.function", dn, sn);
   if (side->kind == BW_SIDE_OUTFLOW)
     BW_REQUIRE(s == 1, BW_EINPUT,
                "ns_channel: %s %s side: an outflow must be an upper side; let "

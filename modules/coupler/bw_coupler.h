@@ -6,20 +6,19 @@
  *   solid    K sub-steps of dt/K, K the smallest whole number that keeps the solid stable
  *   surface  interface, markers, probe points follow the solid
  *
- * Added mass. The fluid answers to the acceleration a of the surface with a pressure that acts on
- * the solid one step later: m_s a' = F - m_a a, which grows by m_a/m_s in every step, however small
- * dt is. In a medium that fills a channel m_a exceeds the solid's own mass (POROUS asks for a
- * density ratio above 1; measured: README). The load is therefore relaxed, F' = (1 - w) F + w
- * (traction of the flow),   stable for w < 2/(1 + m_a/m_s), a filter of time dt/w: steady loads are
- * exact, the error in time is of first order, and a delayed added mass damps. w = 1 is POROUS's
- * plain explicit scheme.
+ * Added mass. The fluid answers to a jump of the surface's velocity with a force -g_k dV/dt in step
+ * k after it (sum g_k = m_a; projection undoes part of what forcing did, so the answer takes
+ * several steps, however short they are). The load is therefore relaxed, F' = (1 - w) F + w (load
+ * of the flow): steady loads are exact, motions faster than dt/w see a filtered load. What holds
+ * are the w for which m a_{n+1} = F'_n, F_n = -sum_k g_k a_{n-k} does not grow; all of g at once
+ * would give w < 2/(1 + m_a/m). Measured limits: README. w = 1 is POROUS's plain explicit scheme.
+ * A flexible solid may need a smaller w with a smaller dt: keep dt/w (README).
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, with the markers moving at the velocity that the solid reached at the end of the last
  * try, under-relaxed by Aitken's rule (Kuettler & Wall 2008; the first factor is load_relaxation),
  * until the velocity of the surface changes by less than the residual. The load is then the whole
  * load of the same step. Markers stay where the surface was at the beginning of the step.
- *
  *
  * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
  * pressure swings between the sub-steps; what acted over the step is sum_r gamma_r p_r, and that is

@@ -289,6 +289,8 @@ START_TEST(contradictions_are_refused)
   refused(channel, &c, "forcing_value");
   c = good, c.side[1][0].velocity[1] = 1;
   refused(closed, &c, "tangentially");
+  c = good, c.side[1][0].profile = BW_PROFILE_CALLBACK;
+  refused(closed, &c, "a callback wall needs side.function");
   c = good, c.side[0][0].kind = BW_SIDE_INFLOW, c.side[0][0].velocity[0] = 1;
   refused(closed, &c, "add an outflow");
   c = good, c.side[0][1].kind = BW_SIDE_OUTFLOW;

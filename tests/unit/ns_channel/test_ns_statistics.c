@@ -2,7 +2,6 @@
  * TEST ranks=1,2,4 */
 #include "bw_ns_statistics.h"
 #include "ns_support.h"
-
 #include <complex.h>
 
 static const int cells[3] = {12, 9, 10};
@@ -388,7 +387,7 @@ START_TEST(refuses_what_has_no_plane)
   bw_ns_statistics *s = NULL;
   const bw_ns_channel_config c = ns_config(open, nu);
   bw_ns_channel *ns = ns_solver(ns_grid(bw_check_world(), cells, box, open, 0, 1), &c);
-  bw_check_status(bw_ns_statistics_create(ns, &s), BW_EINPUT);
+  bw_check_status(bw_ns_statistics_create(ns, &s), BW_EINPUT); /* and no object is made */
   ck_assert_ptr_null(s);
   ns_free(&ns);
 }

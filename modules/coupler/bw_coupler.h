@@ -12,7 +12,7 @@
  * of the flow): steady loads are exact, motions faster than dt/w see a filtered load. What holds
  * are the w for which m a_{n+1} = F'_n, F_n = -sum_k g_k a_{n-k} does not grow; all of g at once
  * would give w < 2/(1 + m_a/m). Measured limits: README. w = 1 is POROUS's plain explicit scheme.
- * A flexible solid may need a smaller w with a smaller dt: keep dt/w (README).
+ * Waves of the lattice are fed by the late load: damp them (damping_mean; README).
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, with the markers moving at the velocity that the solid reached at the end of the last

@@ -118,7 +118,6 @@ void porous_enter_phase(porous_run *p)
   bw_pd_bond_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
   bw_pd_bond_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
                          f->settling_rate * p->config->solid.density);
-  if (p->phase == PHASE_BREAKAGE && p->step == 0) p->breakage_start = bw_ns_channel_time(p->fluid);
 }
 
 static void uniform_stream(const double x[3], double t, void *context, double u[3])

@@ -52,6 +52,7 @@ const porous_phase *porous_phase_of(const porous_config *q, int phase);
 extern const char *const porous_phase_name[PHASE_COUNT];
 
 /* ---- the objects of a run (porous_build.c) ---- */
+enum { N_PROGRESS = 5 }; /* numbers of a checkpoint: phase, steps, settling check */
 typedef struct {
   const porous_config *config;
   bw_case *run;
@@ -64,9 +65,8 @@ typedef struct {
   int phase;                        /* PHASE_... */
   int64_t step;                     /* steps done in this phase */
   int64_t total_step;               /* since the start of the flow */
-  double breakage_start;            /* time at which breakage was enabled [s] */
   double last_drop, last_drop_time; /* pressure drop at the previous settling check */
-  double kept_progress[6];          /* what a checkpoint says of the run, of the last good state */
+  double kept_progress[N_PROGRESS]; /* what a checkpoint says of the run, of the last good state */
   double broken;                    /* bonds, at the last sample */
   bool stopped;                     /* a signal asked for an end in good order */
 } porous_run;

@@ -97,12 +97,10 @@ bw_status porous_picture(porous_run *p)
   return add_to_series(p, "solid", "vtp", write_solid);
 }
 
-enum { N_PROGRESS = 6 };
-
 static void progress_of(const porous_run *p, double progress[N_PROGRESS])
 {
-  const double now[N_PROGRESS] = {p->phase,          (double)p->step, (double)p->total_step,
-                                  p->breakage_start, p->last_drop,    p->last_drop_time};
+  const double now[N_PROGRESS] = {p->phase, (double)p->step, (double)p->total_step, p->last_drop,
+                                  p->last_drop_time};
   memcpy(progress, now, sizeof now);
 }
 
@@ -152,9 +150,8 @@ bw_status porous_restart(porous_run *p, const char *path)
     p->phase = (int)progress[0];
     p->step = (int64_t)progress[1];
     p->total_step = (int64_t)progress[2];
-    p->breakage_start = progress[3];
-    p->last_drop = progress[4];
-    p->last_drop_time = progress[5];
+    p->last_drop = progress[3];
+    p->last_drop_time = progress[4];
     porous_enter_phase(p); /* before loading: new damping would ask for new forces */
     st = bw_coupler_load(p->coupler, ck);
   }

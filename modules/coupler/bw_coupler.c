@@ -161,11 +161,6 @@ void bw_coupler_hold_solid(bw_coupler *c, bool held)
   c->held = held;
 }
 
-const bw_pd_interface *bw_coupler_interface(const bw_coupler *c)
-{
-  return c->interface;
-}
-
 bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c)
 {
   return c->interface;

@@ -54,29 +54,18 @@ static const tolerances goal = {0.015, 0.02, 0.03, 0.01, 0.03, 0.04, "192 x 128 
 static const tolerances rough = {
     0.10, 0.15, 0.15, 0.05, 0.15, 0.15, "32 x 64 x 32, 2 h x h x 0.8 h"};
 
-/* ---- the reference: columns y+, U+, u_rms, v_rms, w_rms, -uv of the half channel ---- */
-enum { Y, U, U_RMS, V_RMS, W_RMS, UV, COLUMNS };
+/* ---- the reference: y/h, y+, U+, u_rms, v_rms, w_rms, -uv of the half channel ---- */
+enum { Y_H, Y, U, U_RMS, V_RMS, W_RMS, UV, COLUMNS, MOST = 128 };
 typedef struct {
   int n;
-  double row[128][COLUMNS];
+  double row[MOST][COLUMNS];
 } table;
 
 static bw_status read_reference(table *t)
 {
-  const char *root = getenv("BW_SOURCE_DIR");
-  char path[512], line[512];
-  snprintf(path, sizeof path, "%s/data/channel/channel_MKM1999_retau180.csv",
-           root != NULL ? root : ".");
-  FILE *in = fopen(path, "r");
-  BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s (set BW_SOURCE_DIR to the source folder)", path);
-  t->n = 0;
-  while (t->n < 128 && fgets(line, sizeof line, in) != NULL) {
-    double *r = t->row[t->n];
-    t->n += sscanf(line, "%*f,%lf,%lf,%lf,%lf,%lf,%lf", &r[Y], &r[U], &r[U_RMS], &r[V_RMS],
-                   &r[W_RMS], &r[UV]) == COLUMNS;
-  }
-  fclose(in);
-  BW_REQUIRE(t->n == 65, BW_EINPUT, "%s: %d rows, 65 expected", path, t->n);
+  BW_TRY(bw_validation_table("channel/channel_MKM1999_retau180.csv", COLUMNS, MOST, &t->row[0][0],
+                             &t->n));
+  BW_REQUIRE(t->n == 65, BW_EINPUT, "the reference has %d rows, 65 expected", t->n);
   return BW_OK;
 }
 

@@ -43,6 +43,39 @@ double bw_validation_order(double h1, double e1, double h2, double e2)
   return log(e1 / e2) / log(h1 / h2);
 }
 
+static bool read_row(const char *line, int columns, double row[])
+{
+  char *end = NULL;
+  for (int q = 0; q < columns; q++, line = end + 1) {
+    row[q] = strtod(line, &end);
+    if (end == line || (q + 1 < columns && *end != ',')) return false;
+  }
+  return true;
+}
+
+bw_status bw_validation_table(const char *file, int columns, int most, double table[], int *rows)
+{
+  enum { MOST_COLUMNS = 32 };
+  const char *root = getenv("BW_SOURCE_DIR");
+  char path[512], line[1024];
+  double row[MOST_COLUMNS];
+  snprintf(path, sizeof path, "%s/data/%s", root != NULL ? root : ".", file);
+  BW_REQUIRE(columns <= MOST_COLUMNS, BW_EINPUT, "%s: more than %d columns", path, MOST_COLUMNS);
+  FILE *in = fopen(path, "r");
+  BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s (set BW_SOURCE_DIR to the source folder)", path);
+  *rows = 0;
+  while (fgets(line, sizeof line, in) != NULL) {
+    if (!read_row(line, columns, row)) continue;
+    if (*rows < most)
+      memcpy(table + (size_t)columns * (size_t)*rows, row, (size_t)columns * sizeof *row);
+    ++*rows;
+  }
+  fclose(in);
+  BW_REQUIRE(*rows > 0 && *rows <= most, BW_EINPUT, "%s: %d rows of %d numbers, 1 to %d expected",
+             path, *rows, columns, most);
+  return BW_OK;
+}
+
 /* JSON has no inf and nan. */
 static void put_number(FILE *f, const char *key, double x)
 {

@@ -36,6 +36,12 @@ const char *bw_validation_folder(const bw_validation *v); /* for plots and data 
 /* Record one row; true when it passes (false for NaN). The same on all ranks. */
 bool bw_validation_row(bw_validation *v, const bw_claim *claim);
 
+/* The rows of data/FILE that begin with `columns` numbers between commas, in table (most, columns),
+ * row-major; comments and heads are passed over. *rows: how many. BW_EIO when the file cannot be
+ * read, BW_EINPUT when it has none or more than `most`. Local. */
+bw_status bw_validation_table(const char *file, int columns, int most, double table[],
+                              int *rows) BW_MUST_CHECK;
+
 /* log(e1/e2)/log(h1/h2): the order seen between two resolutions. */
 double bw_validation_order(double h1, double e1, double h2, double e2);
 

@@ -134,7 +134,8 @@ function(_bw_run label name target head)
              COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} $<TARGET_FILE:${target}> ${args}
              WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
     set_tests_properties(${label}.${name}.np${np} PROPERTIES LABELS ${label} PROCESSORS ${np}
-                         TIMEOUT ${timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}")
+                         TIMEOUT ${timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}"
+                         RESOURCE_LOCK ${label}.${name}) # its files are the same on any np
   endforeach()
 endfunction()
 
@@ -174,7 +175,8 @@ function(bw_unit_tests)
   endforeach()
 endfunction()
 
-# validation/MODULE/CLAIM.c: the quick form is a test, `run validate --full` gives --full
+# validation/MODULE/CLAIM.c: the quick form is a test, `run validate --full` gives --full. After
+# them all, the report of what they found.
 function(bw_validations)
   add_library(bw_validation STATIC validation/support/bw_validation.c)
   target_include_directories(bw_validation PUBLIC validation/support)
@@ -191,6 +193,12 @@ function(bw_validations)
       _bw_run(validation ${module}.${name} ${target} ${head})
     endif()
   endforeach()
+  get_directory_property(claims TESTS)
+  list(FILTER claims INCLUDE REGEX "^validation\\.")
+  add_test(NAME validation.report
+           COMMAND /usr/bin/python3 tools/report.py ${CMAKE_BINARY_DIR}/verification
+           WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(validation.report PROPERTIES LABELS validation DEPENDS "${claims}")
 endfunction()
 
 # bench/NAME.c: build/bin/bench_NAME, run by `./run bench NAME`; no test fails on a clock

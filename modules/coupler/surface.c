@@ -141,7 +141,7 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
-  bw_probe_set_velocity(c->probe, c->marker_V);
+  bw_probe_set_velocity(c->probe, c->marker_V, NULL);
   surface_acceleration(c, dt);
   bw_probe_traction(c->probe, u, p, c->accel, c->traction, c->flag);
   bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);

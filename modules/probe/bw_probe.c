@@ -67,9 +67,10 @@ void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid)
   probe->obstacles = solid;
 }
 
-void bw_probe_set_velocity(bw_probe *probe, const double V[])
+void bw_probe_set_velocity(bw_probe *probe, const double V[], const double spin[])
 {
   probe->V = V;
+  probe->spin = spin;
 }
 
 static double dot(const double a[3], const double b[3])
@@ -77,71 +78,81 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Of one surface point. */
+typedef struct {
+  const double *V, *spin, *A; /* (3) */
+} surface_motion;
+
+static const double *row_of(const double x[], size_t i)
+{
+  static const double zero[3] = {0.0, 0.0, 0.0};
+  return x == NULL ? zero : x + 3 * i;
+}
+
 typedef struct {
   double slope, curvature; /* at the wall: df/dn, d2f/dn2 */
 } wall_end;
 
-/* f = wall + a eta + b eta^2 with the value and slope that the tip's weights see of it:
- *   value = wall + a dl + b (dl^2 + square),  slope = a + 2 b dl. */
+/* f = wall + a eta + b eta^2 with the tip's value and slope. */
 static wall_end parabola_through(const bw_probe__along *f, double wall, double dl)
 {
-  const double b = (f->slope * dl - (f->value - wall)) / (dl * dl - f->square);
+  const double b = (f->slope * dl - (f->value - wall)) / (dl * dl);
   return (wall_end){f->slope - 2.0 * b * dl, 2.0 * b};
 }
 
-/* p on the wall, where its slope is known; the same parabola. */
+/* p on the wall, where its slope is known. */
 static double wall_pressure(const bw_probe__along *p, double slope, double dl)
 {
-  const double b = (p->slope - slope) / (2.0 * dl);
-  return p->value - slope * dl - b * (dl * dl + p->square);
+  return p->value - 0.5 * dl * (p->slope + slope);
 }
 
 /* POROUS 3.85-3.94: velocity gradient of the tip, trapezoidal pressure. */
 static void linear_profile(const bw_probe *b, const bw_probe__reply *r, const double n[3],
-                           double dl, const double V[3], const double A[3], double t[3])
+                           double dl, const surface_motion *s, double t[3])
 {
-  (void)V;
-  const double p = r->p.value - 0.5 * dl * (r->p.slope - dot(A, n));
+  const double p = wall_pressure(&r->p, -dot(s->A, n), dl);
   for (int c = 0; c < 3; c++)
     t[c] = b->rho * (-p * n[c] + b->nu * (r->u[c].slope + r->gtn[c]));
 }
 
-/* With a = du/dn at the wall, grad u = a n + (derivatives along the wall): the tangential part
- * of (grad u)^T.n is that of the tip (where it differs by O(dl^2)), its normal part is a.n; a
- * rotating rigid body then feels none, as it must. */
+/* With a = du/dn at the wall and the surface turning as a rigid one does there,
+ *   grad u = a n + derivatives along the wall,  (grad u)^T.n = (a.n) n + n x spin.
+ * The tip's own (grad u)^T.n would be wrong by the curvature of the wall: even where the wall is
+ * at rest, u at the tip turns as n does along the wall, -u_e/R. */
 static void quadratic_profile(const bw_probe *b, const bw_probe__reply *r, const double n[3],
-                              double dl, const double V[3], const double A[3], double t[3])
+                              double dl, const surface_motion *s, double t[3])
 {
+  const double *w = s->spin;
+  const double turn[3] = {n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2],
+                          n[0] * w[1] - n[1] * w[0]};
   double slope[3], an = 0.0, bend = 0.0;
   for (int c = 0; c < 3; c++) {
-    const wall_end w = parabola_through(&r->u[c], V[c], dl);
-    slope[c] = w.slope;
-    an += w.slope * n[c];
-    bend += w.curvature * n[c];
+    const wall_end e = parabola_through(&r->u[c], s->V[c], dl);
+    slope[c] = e.slope;
+    an += e.slope * n[c];
+    bend += e.curvature * n[c];
   }
-  const double p = wall_pressure(&r->p, b->nu * bend - dot(A, n), dl);
-  const double change = an - dot(r->gtn, n);
+  const double p = wall_pressure(&r->p, b->nu * bend - dot(s->A, n), dl);
   for (int c = 0; c < 3; c++)
-    t[c] = b->rho * (-p * n[c] + b->nu * (slope[c] + r->gtn[c] + change * n[c]));
+    t[c] = b->rho * (-p * n[c] + b->nu * (slope[c] + an * n[c] + turn[c]));
 }
 
 typedef void (*profile_fn)(const bw_probe *b, const bw_probe__reply *r, const double n[3],
-                           double dl, const double V[3], const double A[3], double t[3]);
+                           double dl, const surface_motion *s, double t[3]);
 static const profile_fn profile_of[BW_PROBE_PROFILES] = {
     [BW_PROBE_LINEAR] = linear_profile, [BW_PROBE_QUADRATIC] = quadratic_profile};
 
 void bw_probe_traction(bw_probe *b, bw_real *const u[3], const bw_real *p, const double A[],
                        double traction[], unsigned char flag[])
 {
-  static const double zero[3] = {0.0, 0.0, 0.0};
   for (size_t q = 0; q < b->held; q++)
     b->reply[q] = bw_probe__at_tip(b, u, p, &b->received[q]);
   if (b->plan != NULL) bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
   if (b->n > 0) memset(traction, 0, 3 * b->n * sizeof *traction);
   for (size_t s = 0; s < b->n_sent; s++) {
     const size_t i = b->sent_from[s];
-    profile_of[b->profile](b, &b->answer[s], b->point[i].normal, b->length[i],
-                           b->V == NULL ? zero : b->V + 3 * i, A == NULL ? zero : A + 3 * i,
+    const surface_motion m = {row_of(b->V, i), row_of(b->spin, i), row_of(A, i)};
+    profile_of[b->profile](b, &b->answer[s], b->point[i].normal, b->length[i], &m,
                            traction + 3 * i);
   }
   if (flag != NULL && b->n > 0) memcpy(flag, b->flag, b->n);

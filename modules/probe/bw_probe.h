@@ -8,9 +8,11 @@
  * Where the velocity gradient of t is taken:
  *   BW_PROBE_LINEAR     at the tip, as the documents do: first order in dl;
  *   BW_PROBE_QUADRATIC  at the wall, from the parabola through the velocity V of the surface and
- *                       the velocity and its slope at the tip, du/dn = 2 (u_e - V)/dl - du/dn|e,
- *                       with what the kernel makes of a parabola (its second moment) taken out:
- *                       exact for parabolas; dp/dn|wall gains mu d2u_n/dn2.
+ *                       the velocity and its slope at the tip, du/dn = 2 (u_e - V)/dl - du/dn|e;
+ *                       dp/dn|wall gains mu d2u_n/dn2; derivatives along the wall are those of the
+ *                       surface, which turns with a given spin; values at the tip are those of
+ *                       the parabola through the nearest nodes. Exact for parabolas, second
+ *                       order in dl on curved walls too.
  * A probe whose stencil leaves the box through a side that is not periodic, or whose tip lies in
  * another solid (bw_probe_set_obstacles), is shortened once to dl = h and flagged; when that does
  * not help either its traction is zero and it is flagged blocked. Never silently wrong.
@@ -52,10 +54,10 @@ void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid);
 bw_status bw_probe_set_points(bw_probe *probe, size_t n, const double X[],
                               const double N[]) BW_MUST_CHECK;
 
-/* Velocity V (n,3) [L/T] of the surface at the points of the last set_points, for
- * BW_PROBE_QUADRATIC (the linear profile does not use it). Borrowed until the next
- * set_points, which forgets it; NULL: at rest. Local. */
-void bw_probe_set_velocity(bw_probe *probe, const double V[]);
+/* Velocity V (n,3) [L/T] and rate of rotation spin (n,3) [1/T] of the surface at the points of the
+ * last set_points, for BW_PROBE_QUADRATIC (the linear profile does not use them). Borrowed until
+ * the next set_points, which forgets them; NULL: at rest, not turning. Local. */
+void bw_probe_set_velocity(bw_probe *probe, const double V[], const double spin[]);
 
 /* traction (n,3) [M/(L T^2)] at the points, from u[3] [L/T] and p/rho (valid halos) and the
  * acceleration A (n,3) [L/T^2] of the surface (NULL: zero). flag (n) may be NULL. Collective. */

@@ -143,7 +143,7 @@ bw_status bw_probe_set_points(bw_probe *b, size_t n, const double X[], const dou
   BW_THEN(st, reserve(b, n, 0));
   BW_TRY(bw_comm_agree(comm, st));
   b->n = n;
-  b->V = NULL;
+  b->V = b->spin = NULL;
   for (size_t i = 0; i < n; i++)
     memcpy(b->point[i].normal, N + 3 * i, sizeof b->point[i].normal);
   fit_into_box(b, X);

@@ -3,6 +3,17 @@
 
 #include <math.h>
 
+/* Parabola through the three nodes nearest to s: moments 1, 0, 0. */
+static void lagrange(double s, int first, double at[PROBE_WIDTH])
+{
+  const int nearest = (int)floor(s + 0.5);
+  const double r = s - nearest, value[3] = {0.5 * r * (r - 1.0), 1.0 - r * r, 0.5 * r * (r + 1.0)};
+  for (int q = 0; q < PROBE_WIDTH; q++) {
+    const int node = first + q - nearest + 1;
+    at[q] = node >= 0 && node < 3 ? value[node] : 0.0;
+  }
+}
+
 /* Weights of direction d. The average over the stencil's four edges along a direction of
  * differences is the product of one slope and two means; both ends of a difference are a cell
  * apart, so that the lower end's weights are the upper end's, one node on. */
@@ -21,14 +32,12 @@ static void weights_of(const bw_probe *probe, const double x[3], int place, int 
   for (int q = 0; q <= PROBE_WIDTH; q++)
     end[q] = k->phi(s + 0.5 - (double)(first + q));
   w->first = first;
-  w->square = 0.0;
   for (int q = 0; q < PROBE_WIDTH; q++) {
-    const double r = s - (double)(first + q);
-    w->at[q] = k->phi(r);
+    w->at[q] = k->phi(s - (double)(first + q));
     w->mean[q] = 0.5 * (end[q] + end[q + 1]);
     w->slope[q] = (end[q] - end[q + 1]) / h;
-    w->square += w->at[q] * r * r * h * h;
   }
+  if (probe->profile == BW_PROBE_QUADRATIC) lagrange(s, first, w->at);
 }
 
 void bw_probe__weigh(const bw_probe *probe, const double x[3], bw_probe__tip *tip)
@@ -75,19 +84,14 @@ bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int
     }
   return (bw_probe__sample){
       .value = dot(at, w[0]->at),
-      .grad = {dot(dx, w[0]->slope), dot(dy, w[0]->mean), dot(dz, w[0]->mean)},
-      .square = {w[0]->square, w[1]->square, w[2]->square}};
+      .grad = {dot(dx, w[0]->slope), dot(dy, w[0]->mean), dot(dz, w[0]->mean)}};
 }
 
-/* First moments vanish, so of ((x - tip).n)^2 only the squares of each direction remain; its slope
- * is exactly 0, because the two ends of a difference are a whole cell apart: same weights. */
 static bw_probe__along along_normal(const bw_probe__sample *s, const double n[3])
 {
   bw_probe__along a = {.value = s->value};
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < 3; d++)
     a.slope += s->grad[d] * n[d];
-    a.square += s->square[d] * n[d] * n[d];
-  }
   return a;
 }
 

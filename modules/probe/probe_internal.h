@@ -6,11 +6,12 @@
 enum { PROBE_CENTRE, PROBE_FACE, PROBE_PLACES }; /* where nodes sit in one direction */
 enum { PROBE_WIDTH = 4 };                        /* nodes per direction, padded with zeros */
 
-/* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2); and
- * what `at` makes of (x - tip)^2, whose true value is 0. */
+/* Weights of one direction: the tip itself, mean and difference over (tip - h/2, tip + h/2). At the
+ * tip the kernel's for the linear profile. The kernel adds half its second moment times the
+ * Laplacian, and that costs an order of h where the wall is curved (du/dn/R): for the quadratic
+ * profile the tip is read from the parabola through the nearest nodes. */
 typedef struct {
   double at[PROBE_WIDTH], mean[PROBE_WIDTH], slope[PROBE_WIDTH]; /* slope [1/L] */
-  double square;                                                 /* [L^2] */
   int first;                                                     /* lowest local node */
 } bw_probe__weights;
 
@@ -18,9 +19,9 @@ typedef struct {
   bw_probe__weights w[PROBE_PLACES][3];
 } bw_probe__tip;
 
-/* A field and its gradient at a tip, and the second moment of each direction. */
+/* A field and its gradient at a tip. */
 typedef struct {
-  double value, grad[3], square[3];
+  double value, grad[3];
 } bw_probe__sample;
 
 /* What travels to the tip's rank, and what comes back. */
@@ -30,7 +31,6 @@ typedef struct {
 
 typedef struct {
   double value, slope; /* at the tip, and its derivative along n */
-  double square;       /* the value for the function eta^2 of the distance from the tip along n */
 } bw_probe__along;
 
 typedef struct {
@@ -45,7 +45,7 @@ struct bw_probe {
   double h, full, rho, nu; /* full: dl of a free probe [L] */
   bw_probe_profile profile;
   const bw_real *obstacles; /* borrowed, NULL: none */
-  const double *V;          /* borrowed, NULL: at rest */
+  const double *V, *spin;   /* borrowed, NULL: at rest */
 
   size_t n, room;        /* points of this rank */
   bw_probe__item *point; /* (n) tip and normal */

@@ -2,6 +2,19 @@
  * TEST ranks=1,2,3,4 */
 #include "probe_test.h"
 
+/* How a surface turns whose points follow the linear field: dn/dt = -(G^T n) less its part along
+ * n = spin x n. */
+static void spin_of_linear(bool flat, const double n[3], double spin[3])
+{
+  const int dims = flat ? 2 : 3;
+  double g[3] = {0.0, 0.0, 0.0};
+  for (int c = 0; c < dims; c++)
+    for (int d = 0; d < dims; d++)
+      g[d] += G[c][d] * n[c];
+  for (int c = 0; c < 3; c++)
+    spin[c] = g[(c + 1) % 3] * n[(c + 2) % 3] - g[(c + 2) % 3] * n[(c + 1) % 3];
+}
+
 START_TEST(linear_fields_give_exact_tractions)
 {
   static const int sizes[2][3] = {{14, 12, 10}, {14, 12, 1}};
@@ -9,20 +22,22 @@ START_TEST(linear_fields_give_exact_tractions)
   const int me = bw_comm_rank(comm);
   for (int t = 0; t < 4; t++) {
     const bool flat = t % 2 == 1, quadratic = t >= 2;
-    double X[POINTS][3], N[POINTS][3], A[POINTS][3], V[POINTS][3], got[POINTS][3], want[3];
+    double X[POINTS][3], N[POINTS][3], A[POINTS][3], V[POINTS][3], W[POINTS][3], got[POINTS][3],
+        want[3];
     unsigned char flag[POINTS];
     fixture f;
     make(&f, comm, sizes[flat], 0.3, false, quadratic ? BW_PROBE_QUADRATIC : BW_PROBE_LINEAR);
     fill(&f, flat ? linear_flat : linear);
     for (unsigned q = 0; q < POINTS; q++) {
       scatter(&f, q + 1000u * (unsigned)me, 2.5, X[q], N[q]);
+      spin_of_linear(flat, N[q], W[q]);
       for (int c = 0; c < 3; c++) { /* half the points: DU/Dt = -grad p/rho */
         A[q][c] = quadratic || q % 2 == 0 ? -GRAD_P[c] : 0.3 * c + 0.1;
         V[q][c] = (flat ? linear_flat : linear)(c, X[q]);
       }
     }
     bw_check_ok(bw_probe_set_points(f.probe, POINTS, X[0], N[0]));
-    bw_probe_set_velocity(f.probe, V[0]);
+    bw_probe_set_velocity(f.probe, V[0], W[0]);
     bw_probe_traction(f.probe, f.u, f.p, A[0], got[0], flag);
     for (int q = 0; q < POINTS; q++) {
       expected(flat, X[q], N[q], A[q], 0.6, want);
@@ -140,7 +155,7 @@ START_TEST(parabolas_over_a_slanted_wall_are_exact)
     unsigned char flag;
     X[2] = -distance(X) / SLANT[2];
     bw_check_ok(bw_probe_set_points(f.probe, 1, X, SLANT));
-    bw_probe_set_velocity(f.probe, V);
+    bw_probe_set_velocity(f.probe, V, NULL);
     bw_probe_traction(f.probe, f.u, f.p, A, t, &flag);
     ck_assert_int_eq(flag, BW_PROBE_FREE);
     for (int c = 0; c < 3; c++)
@@ -150,6 +165,7 @@ START_TEST(parabolas_over_a_slanted_wall_are_exact)
 }
 END_TEST
 
+static const double SPIN[3] = {0.0, 0.0, 1.3};
 static double spinning(int c, const double x[3])
 {
   return c == 0 ? -1.3 * x[1] : c == 1 ? 1.3 * x[0] : 0.0;
@@ -169,13 +185,51 @@ START_TEST(rigid_rotation_feels_no_shear)
       for (int c = 0; c < 3; c++)
         V[c] = spinning(c, X);
       bw_check_ok(bw_probe_set_points(f.probe, 1, X, N));
-      bw_probe_set_velocity(f.probe, V);
+      bw_probe_set_velocity(f.probe, V, SPIN);
       bw_probe_traction(f.probe, f.u, f.p, NULL, t, NULL);
       for (int c = 0; c < 2; c++)
         bw_check_near(t[c], 0.0, ROUND_OFF);
     }
     drop(&f);
   }
+}
+END_TEST
+
+/* u = -y q, v = x q with q = (r - R)/r: nothing at r = R, du/dr = 1 there. */
+enum { AROUND = 24 };
+static const double RADIUS = 1.0, MIDDLE = 2.0;
+static double around(int c, const double x[3])
+{
+  const double y[2] = {x[0] - MIDDLE, x[1] - MIDDLE}, r = hypot(y[0], y[1]);
+  return c == 0 ? -y[1] * (r - RADIUS) / r : c == 1 ? y[0] * (r - RADIUS) / r : 0.0;
+}
+
+/* Flow around a curved wall at rest, u = r - R: the shear is mu, whatever the curvature. What the
+ * profile leaves is second order in h; the gradient along the wall read at the tip would miss
+ * u(tip)/r = 2 h/R of it, and the kernel's second moment at the tip h/(6 R). */
+START_TEST(curved_walls_cost_no_order)
+{
+  double worst[2] = {0.0, 0.0};
+  for (int refine = 0; refine < 2; refine++) {
+    const int cells = 60 << refine, n[3] = {cells, cells, 1};
+    const double h = 2.0 * MIDDLE / cells;
+    fixture f;
+    make(&f, bw_check_world(), n, h, false, BW_PROBE_QUADRATIC);
+    fill(&f, around);
+    for (int q = 0; q < AROUND; q++) {
+      const double angle = 6.283185307179586 * q / AROUND;
+      const double N[3] = {cos(angle), sin(angle), 0.0};
+      const double X[3] = {MIDDLE + RADIUS * N[0], MIDDLE + RADIUS * N[1], 0.5 * h};
+      double t[3];
+      bw_check_ok(bw_probe_set_points(f.probe, 1, X, N));
+      bw_probe_traction(f.probe, f.u, f.p, NULL, t, NULL);
+      const double shear = (N[0] * t[1] - N[1] * t[0]) / (RHO * NU);
+      worst[refine] = fmax(worst[refine], fabs(shear - 1.0));
+    }
+    ck_assert_double_le(worst[refine], h * h);
+    drop(&f);
+  }
+  ck_assert_double_ge(worst[0], 3.0 * worst[1]); /* 4 when it is second order */
 }
 END_TEST
 
@@ -227,5 +281,6 @@ static const bw_check_test tests[] = {BW_TEST(linear_fields_give_exact_tractions
                                       BW_TEST(wall_shear_of_a_parabola_is_exact_to_its_order),
                                       BW_TEST(parabolas_over_a_slanted_wall_are_exact),
                                       BW_TEST(rigid_rotation_feels_no_shear),
+                                      BW_TEST(curved_walls_cost_no_order),
                                       BW_TEST(the_answer_does_not_depend_on_ranks)};
 BW_CHECK_MAIN("probe", tests)

@@ -118,9 +118,33 @@ static bw_status diagonal(const header *h, const char *key, const char *value, d
   return BW_OK;
 }
 
-static bw_status nrrd_field(header *h, const char *key, const char *value)
+/* Which end of a number comes first: `value` is one of two words. */
+static bw_status set_order(header *h, const char *key, const char *value, const char *big,
+                           const char *little)
+{
+  h->ordered = true;
+  h->v.big_endian = strcmp(value, big) == 0;
+  BW_REQUIRE(h->v.big_endian || strcmp(value, little) == 0, BW_EINPUT,
+             "%s: \"%s\" is \"%s\"; it has to be %s or %s", h->path, key, value, big, little);
+  return BW_OK;
+}
+
+static bw_status set_skip(header *h, const char *key, const char *value)
 {
   double x;
+  BW_TRY(numbers(h, key, value, 1, &x));
+  BW_REQUIRE(x >= 0 && x < 1e15, BW_EINPUT, "%s: \"%s\" is %g; data start at 0 bytes or later",
+             h->path, key, x);
+  h->v.skip = (int64_t)x;
+  return BW_OK;
+}
+
+/* Fields that say where the numbers are or where they belong, in a way that is not read. */
+static const char *const nrrd_not_read[] = {"line skip", "lineskip", "axis mins", "axismins",
+                                            "axis maxs", "axismaxs", NULL};
+
+static bw_status nrrd_field(header *h, const char *key, const char *value)
+{
   if (strcmp(key, "type") == 0) return set_type(h, nrrd_types, value);
   if (strcmp(key, "dimension") == 0) return set_dims(h, key, value);
   if (strcmp(key, "sizes") == 0) return set_size(h, key, value);
@@ -130,11 +154,11 @@ static bw_status nrrd_field(header *h, const char *key, const char *value)
   if (strcmp(key, "encoding") == 0)
     BW_REQUIRE(strcmp(value, "raw") == 0, BW_EINPUT,
                "%s: the encoding is \"%s\"; only raw is read (unu save -e raw)", h->path, value);
-  if (strcmp(key, "endian") == 0) h->v.big_endian = strcmp(value, "big") == 0, h->ordered = true;
-  if (strcmp(key, "byte skip") == 0 || strcmp(key, "byteskip") == 0) {
-    BW_TRY(numbers(h, key, value, 1, &x));
-    h->v.skip = (int64_t)x;
-  }
+  if (strcmp(key, "endian") == 0) return set_order(h, key, value, "big", "little");
+  if (strcmp(key, "byte skip") == 0 || strcmp(key, "byteskip") == 0) return set_skip(h, key, value);
+  for (const char *const *other = nrrd_not_read; *other != NULL; other++)
+    BW_REQUIRE(strcmp(key, *other) != 0, BW_EINPUT, "%s: the field \"%s\" is not read", h->path,
+               key);
   if (strcmp(key, "data file") == 0 || strcmp(key, "datafile") == 0)
     snprintf(h->data, sizeof h->data, "%s", value);
   return BW_OK;
@@ -142,7 +166,7 @@ static bw_status nrrd_field(header *h, const char *key, const char *value)
 
 static bw_status meta_field(header *h, const char *key, const char *value)
 {
-  double x, one[3];
+  double one[3];
   if (strcmp(key, "ElementType") == 0) return set_type(h, meta_types, value);
   if (strcmp(key, "NDims") == 0) return set_dims(h, key, value);
   if (strcmp(key, "DimSize") == 0) return set_size(h, key, value);
@@ -156,11 +180,8 @@ static bw_status meta_field(header *h, const char *key, const char *value)
     BW_REQUIRE(strcmp(value, "1") == 0, BW_EINPUT, "%s: %s numbers per voxel; one is read", h->path,
                value);
   if (strcmp(key, "ElementByteOrderMSB") == 0 || strcmp(key, "BinaryDataByteOrderMSB") == 0)
-    h->v.big_endian = strcmp(value, "True") == 0, h->ordered = true;
-  if (strcmp(key, "HeaderSize") == 0) {
-    BW_TRY(numbers(h, key, value, 1, &x));
-    h->v.skip = (int64_t)x;
-  }
+    return set_order(h, key, value, "True", "False");
+  if (strcmp(key, "HeaderSize") == 0) return set_skip(h, key, value);
   if (strcmp(key, "ElementDataFile") == 0) { /* the last line of the header */
     h->has_end = true;
     h->attached = strcmp(value, "LOCAL") == 0;
@@ -205,6 +226,8 @@ static bw_status read_header(FILE *file, header *h, bool nrrd)
 /* The data file lies beside the header, unless its path is absolute. */
 static bw_status beside(const header *h, size_t room, char out[])
 {
+  BW_REQUIRE(strncmp(h->data, "LIST", 4) != 0 && strchr(h->data, '%') == NULL, BW_EINPUT,
+             "%s: the data are in more than one file, \"%s\"; one is read", h->path, h->data);
   const char *slash = strrchr(h->path, '/');
   const int folder = slash == NULL || h->data[0] == '/' ? 0 : (int)(slash - h->path) + 1;
   const int n = snprintf(out, room, "%.*s%s", folder, h->path, h->data);

@@ -35,6 +35,7 @@ static bw_status check(const bw_pd_pack_config *c, double *box)
   BW_REQUIRE(c->radius_min > 0 && isfinite(c->radius_max) && c->radius_max >= c->radius_min,
              BW_EINPUT, "pack: radius_min = %g, radius_max = %g must be positive and in order",
              c->radius_min, c->radius_max);
+  BW_REQUIRE(isfinite(c->gap), BW_EINPUT, "pack: gap = %g is not finite", c->gap);
   for (int d = 0; d < dims_of(c); d++) {
     BW_REQUIRE(isfinite(c->lower[d]) && isfinite(c->upper[d]) && c->upper[d] > c->lower[d],
                BW_EINPUT, "pack: lower[%d] = %g has to be below upper[%d] = %g", d, c->lower[d], d,
@@ -44,7 +45,6 @@ static bw_status check(const bw_pd_pack_config *c, double *box)
                "pack: the periodic side %d is %g long; a ball of radius %g would meet itself", d,
                c->upper[d] - c->lower[d], c->radius_max);
   }
-  BW_REQUIRE(isfinite(c->gap), BW_EINPUT, "pack: gap = %g is not finite", c->gap);
   BW_REQUIRE(c->fraction > 0 && isfinite(c->fraction), BW_EINPUT,
              "pack: fraction = %g must be positive", c->fraction);
   BW_REQUIRE(c->max_attempts > 0, BW_EINPUT, "pack: max_attempts = %d must be positive",

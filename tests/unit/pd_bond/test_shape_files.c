@@ -148,6 +148,20 @@ START_TEST(bad_images_are_refused_by_name)
   refuse("four.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 1\n\n", CELLS, "4 dim");
   refuse("order.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n",
          CELLS, "order");
+  refuse("skip.nrrd", NRRD_START "line skip: 2\nencoding: raw\n\n", CELLS, "line skip");
+  refuse("mins.nrrd", NRRD_START "axis mins: 0 0 0\nencoding: raw\n\n", CELLS, "axis mins");
+  refuse("back.nrrd", NRRD_START "byte skip: -1\nencoding: raw\n\n", CELLS, "byte skip");
+  refuse("endian.nrrd", NRRD_START "endian: middle\nencoding: raw\n\n", CELLS, "middle");
+  refuse("flat.nrrd", NRRD_START "spacings: 1 0 1\nencoding: raw\n\n", CELLS, "spacing 0");
+  refuse("where.nrrd", NRRD_START "space origin: (0,nan,0)\nencoding: raw\n\n", CELLS, "origin");
+  refuse("order2.mhd", "NDims = 3\nElementByteOrderMSB = Maybe\n", CELLS, "Maybe");
+  refuse("list.mhd",
+         "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = LIST\n", CELLS,
+         "LIST");
+  refuse("turned.mha", "NDims = 3\nTransformMatrix = 0 1 0 1 0 0 0 0 1\n", CELLS, "axes");
+  refuse("short.mha",
+         "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n", 5,
+         "ends after 1 of 4 rows");
   refuse("zero.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 0 2\n\n", CELLS, "0 voxels");
   refuse("comp.mhd", "NDims = 3\nDimSize = 3 2 2\nCompressedData = True\n", CELLS, "compressed");
   refuse("rgb.mhd", "NDims = 3\nElementNumberOfChannels = 3\n", CELLS, "3 numbers");
@@ -156,6 +170,50 @@ START_TEST(bad_images_are_refused_by_name)
          0, "cannot be opened");
   refuse("other.png", "PNG", CELLS, "neither");
   bw_check_status(bw_pd_mask_read_image(path_of("absent.nrrd"), 5, 8, &m), BW_EIO);
+}
+END_TEST
+
+static void refuse_raw(const bw_pd_voxels *v, double low, double high, const char *word)
+{
+  bw_pd_mask *m = NULL;
+  ck_assert_int_ne(bw_pd_mask_read_raw(path_of("r.raw"), v, low, high, &m), BW_OK);
+  ck_assert_ptr_null(m);
+  ck_assert_msg(strstr(bw_last_message(), "r.raw") != NULL &&
+                    strstr(bw_last_message(), word) != NULL,
+                "message \"%s\" lacks \"%s\"", bw_last_message(), word);
+}
+
+/* A raw file of 12 bytes against layouts that are not its own. */
+START_TEST(wrong_layouts_are_refused_by_name)
+{
+  const bw_pd_voxels good = {.size = {3, 2, 2}, .spacing = {1, 1, 1}};
+  bw_pd_voxels v = good;
+  write_file("r.raw", "", CONTENT, CELLS);
+  refuse_raw(&v, 8, 5, "low = 8");
+  refuse_raw(&v, NAN, 5, "low = nan");
+  v.size[2] = 3;
+  refuse_raw(&v, 5, 8, "ends after 4 of 6 rows");
+  v.size[2] = 1;
+  refuse_raw(&v, 5, 8, "goes on after 3 x 2 x 1");
+  v.size[2] = -2;
+  refuse_raw(&v, 5, 8, "-2 cells");
+  v = good, v.type = BW_PD_VOXEL_U16;
+  refuse_raw(&v, 5, 8, "size or type");
+  v = good, v.type = BW_PD_VOXEL_COUNT;
+  refuse_raw(&v, 5, 8, "voxel type");
+  v = good, v.skip = -1;
+  refuse_raw(&v, 5, 8, "skip = -1");
+  v = good, v.skip = 40;
+  refuse_raw(&v, 5, 8, "ends after 0");
+  v = good, v.spacing[1] = 0;
+  refuse_raw(&v, 5, 8, "spacing 0");
+  v = good, v.lower[0] = NAN;
+  refuse_raw(&v, 5, 8, "origin nan");
+  for (int d = 0; d < 3; d++)
+    v.size[d] = 100000, v.lower[d] = 0;
+  refuse_raw(&v, 5, 8, "memory");
+  remove(path_of("r.raw"));
+  refuse_raw(&good, 5, 8, "cannot be opened");
 }
 END_TEST
 
@@ -220,22 +278,43 @@ START_TEST(surfaces_are_filled)
 }
 END_TEST
 
-START_TEST(bad_surfaces_are_refused_by_name)
+static void refuse_surface(double scale, double spacing, bw_status status, const char *word)
 {
   bw_pd_mask *m = NULL;
-  tetrahedron(7, 5, 6, 3, "open.stl", false);
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "not closed"));
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "open.stl"));
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 0, 0.5, &m), BW_EINPUT);
-  write_file("open.stl", "no surface at all", CONTENT, CELLS);
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
-  write_file("open.stl", "solid\nouter loop\nvertex 1 2\nvertex", CONTENT, 0);
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
-  write_file("open.stl", "solid nothing\nendsolid", CONTENT, 0);
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EINPUT);
-  remove(path_of("open.stl"));
-  bw_check_status(bw_pd_mask_read_stl(path_of("open.stl"), 1, 0.5, &m), BW_EIO);
+  bw_check_status(bw_pd_mask_read_stl(path_of("bad.stl"), scale, spacing, &m), status);
+  ck_assert_ptr_null(m);
+  ck_assert_msg(strstr(bw_last_message(), "bad.stl") != NULL &&
+                    strstr(bw_last_message(), word) != NULL,
+                "message \"%s\" lacks \"%s\"", bw_last_message(), word);
+}
+
+static void refuse_text(const char *text, const char *word)
+{
+  write_file("bad.stl", text, CONTENT, 0);
+  refuse_surface(1, 0.5, BW_EINPUT, word);
+}
+
+START_TEST(bad_surfaces_are_refused_by_name)
+{
+  tetrahedron(7, 5, 6, 3, "bad.stl", false);
+  refuse_surface(1, 0.5, BW_EINPUT, "not closed");
+  refuse_surface(0, 0.5, BW_EINPUT, "scale = 0");
+  refuse_surface(1, -0.5, BW_EINPUT, "spacing = -0.5");
+  refuse_surface(1e9, 0.5, BW_EINPUT, "is scale = 1e+09 right?");
+  tetrahedron(7, NAN, 6, 4, "bad.stl", false);
+  refuse_surface(1, 0.5, BW_EINPUT, "not finite");
+  tetrahedron(7, 5, 6, 4, "bad.stl", false);
+  ck_assert_int_eq(truncate(path_of("bad.stl"), 84 + 3 * 50 + 20), 0);
+  refuse_surface(1, 0.5, BW_EINPUT, "are not those of 4 triangles");
+  refuse_text("no surface at all", "is no STL file");
+  refuse_text("", "is no STL file");
+  refuse_text("solid\nouter loop\nvertex 1 2\nvertex", "not three numbers");
+  refuse_text("solid\nvertex 0 0 0\nvertex 1 0 0\nendloop", "2 corners");
+  refuse_text("solid\nvertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0", "more than 3");
+  refuse_text("solid\nvertex 0 0 0 vertex 1 0 0 vertex 1 1 0", "ends within facet 0");
+  refuse_text("solid nothing\nendsolid", "no triangle");
+  remove(path_of("bad.stl"));
+  refuse_surface(1, 0.5, BW_EIO, "cannot be opened");
   const bw_shape shape = {.kind = BW_SHAPE_MASK};
   int64_t n;
   int32_t *site;
@@ -295,6 +374,41 @@ START_TEST(packs_keep_their_distance)
 }
 END_TEST
 
+static void refuse_pack(const bw_pd_pack_config *c, const char *word)
+{
+  int balls, count;
+  bw_shape *s = NULL;
+  bw_check_status(bw_pd_pack_spheres(c, &balls, &count, &s), BW_EINPUT);
+  ck_assert_ptr_null(s);
+  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "message \"%s\" lacks \"%s\"",
+                bw_last_message(), word);
+}
+
+START_TEST(impossible_packs_are_refused_by_name)
+{
+  const bw_pd_pack_config good = pack_config(false);
+  bw_pd_pack_config c = good;
+  c.fraction = 0.7, c.max_attempts = 2000;
+  refuse_pack(&c, "no place");
+  c = good, c.radius_min = NAN;
+  refuse_pack(&c, "radius_min = nan");
+  c = good, c.radius_max = 0.5;
+  refuse_pack(&c, "radius_max = 0.5");
+  c = good, c.upper[1] = 1;
+  refuse_pack(&c, "upper[1] = 1");
+  c = good, c.upper[0] = 2.5;
+  refuse_pack(&c, "would meet itself");
+  c = good, c.gap = INFINITY;
+  refuse_pack(&c, "gap = inf");
+  c = good, c.fraction = 0;
+  refuse_pack(&c, "fraction = 0");
+  c = good, c.max_attempts = 0;
+  refuse_pack(&c, "max_attempts = 0");
+  c = good, c.radius_min = 1e-6;
+  refuse_pack(&c, "too many");
+}
+END_TEST
+
 START_TEST(packs_follow_their_seed)
 {
   bw_pd_pack_config c = pack_config(false);
@@ -310,19 +424,16 @@ START_TEST(packs_follow_their_seed)
   }
   for (int q = 0; q < 3; q++)
     bw_release(&s[q]);
-  c.fraction = 0.7, c.max_attempts = 2000;
-  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "no place"));
-  c = pack_config(false), c.radius_min = NAN;
-  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
-  c = pack_config(false), c.upper[1] = 1;
-  bw_check_status(bw_pd_pack_spheres(&c, &balls, &count, &s[0]), BW_EINPUT);
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(raw_voxels_of_every_type),         BW_TEST(images_in_four_forms),
-    BW_TEST(bad_images_are_refused_by_name),   BW_TEST(surfaces_are_filled),
-    BW_TEST(bad_surfaces_are_refused_by_name), BW_TEST(packs_keep_their_distance),
-    BW_TEST(packs_follow_their_seed)};
+static const bw_check_test tests[] = {BW_TEST(raw_voxels_of_every_type),
+                                      BW_TEST(images_in_four_forms),
+                                      BW_TEST(bad_images_are_refused_by_name),
+                                      BW_TEST(surfaces_are_filled),
+                                      BW_TEST(bad_surfaces_are_refused_by_name),
+                                      BW_TEST(packs_keep_their_distance),
+                                      BW_TEST(packs_follow_their_seed),
+                                      BW_TEST(wrong_layouts_are_refused_by_name),
+                                      BW_TEST(impossible_packs_are_refused_by_name)};
 BW_CHECK_MAIN("pd_bond.shape_files", tests)

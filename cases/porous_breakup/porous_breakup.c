@@ -48,6 +48,7 @@ static bw_status end_phase(porous_run *p)
                 porous_pressure_drop(p));
   BW_TRY(porous_sample(p));
   BW_TRY(porous_picture(p));
+  if (p->phase != PHASE_FLOW) BW_TRY(porous_stress_csv(p));
   snprintf(name, sizeof name, "checkpoint-%s.h5", porous_phase_name[p->phase]);
   p->phase++;
   p->step = 0;

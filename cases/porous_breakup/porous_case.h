@@ -4,6 +4,7 @@
 #include "bw_coupler.h"
 #include "bw_history.h"
 #include "bw_pd_shape.h"
+#include "bw_pd_stress.h"
 
 /* ---- what the YAML file says (tables in porous_config.c) ---- */
 typedef struct {
@@ -112,6 +113,18 @@ double porous_pressure_drop(porous_run *p); /* over rho U_b^2 [-]. Collective. *
 
 /* Has the pressure drop stopped changing? Asked every step, looks every tenth of h/U_b. Local. */
 bool porous_settled(porous_run *p, double drop);
+
+/* ---- stress and strain of the medium (porous_stress.c) ---- */
+typedef struct {
+  double *stress, *strain; /* (n,3) principal values, largest first; Cauchy [Pa], Green [-] */
+  double *von_mises;       /* (n) [Pa] */
+} porous_tensors;
+bw_status porous_tensors_make(porous_run *p, porous_tensors *t) BW_MUST_CHECK; /* Collective. */
+void porous_tensors_release(porous_tensors *t);
+/* stress-PHASE.csv: probability densities over the particles that are not clamped, of the largest
+ * principal stress and von Mises' over E s0, and the largest principal strain over s0. Collective.
+ */
+bw_status porous_stress_csv(porous_run *p) BW_MUST_CHECK;
 
 /* ---- files (porous_output.c) ---- */
 bw_status porous_open_history(porous_run *p, double restart_time) BW_MUST_CHECK;

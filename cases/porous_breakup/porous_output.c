@@ -42,6 +42,7 @@ static bw_status write_solid(porous_run *p, const char *path)
   const size_t n = bw_pd_bond_count(p->solid);
   double *X = NULL, *V = NULL, *U = NULL, *damage = NULL;
   int64_t *piece = NULL;
+  porous_tensors t = {0};
   bw_pd_fragment *fragments = NULL;
   size_t n_fragments = 0;
   bw_status st = BW_ALLOCATE(&X, 3 * n);
@@ -52,6 +53,7 @@ static bw_status write_solid(porous_run *p, const char *path)
   st = bw_comm_agree(p->comm, st);
   BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), piece, &n_fragments,
                                         &fragments));
+  BW_THEN(st, porous_tensors_make(p, &t));
   if (st == BW_OK) {
     bw_pd_bond_get_position(p->solid, X);
     bw_pd_bond_get_velocity(p->solid, V);
@@ -62,9 +64,12 @@ static bw_status write_solid(porous_run *p, const char *path)
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
                                    {"velocity", BW_VTK_FLOAT64, 3, V},
                                    {"displacement", BW_VTK_FLOAT64, 3, U},
+                                   {"principal_stress", BW_VTK_FLOAT64, 3, t.stress},
+                                   {"von_mises", BW_VTK_FLOAT64, 1, t.von_mises},
+                                   {"principal_strain", BW_VTK_FLOAT64, 3, t.strain},
                                    {"fragment", BW_VTK_INT64, 1, piece},
                                    {"id", BW_VTK_INT64, 1, bw_pd_bond_id(p->solid)}};
-    st = bw_vtk_write_points(p->comm, path, n, X, 5, arrays);
+    st = bw_vtk_write_points(p->comm, path, n, X, sizeof arrays / sizeof *arrays, arrays);
   }
   bw_release(&X);
   bw_release(&V);
@@ -72,6 +77,7 @@ static bw_status write_solid(porous_run *p, const char *path)
   bw_release(&damage);
   bw_release(&piece);
   bw_release(&fragments);
+  porous_tensors_release(&t);
   return st;
 }
 

@@ -1,5 +1,6 @@
 /* Bodies from files.
  * TEST ranks=1 */
+#include "bw_pd_shape.h"
 #include "pd_test.h"
 
 #include <stdio.h>

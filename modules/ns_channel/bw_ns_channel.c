@@ -104,11 +104,10 @@ bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config
   if (st == BW_OK) {
     ns->grid = grid, ns->g = bw_grid_look(grid), ns->comm = comm, ns->config = *config;
     ns->components = ns->g->n[2] == 1 ? 2 : 3;
-    for (int d = 0; d < ns->components; d++)
-      ns->has_outflow |= config->side[d][1].kind == BW_SIDE_OUTFLOW;
     st = local_create(ns);
   }
   st = bw_comm_agree(comm, st);
+  BW_THEN(st, bw_ns__inflow_create(ns)); /* before the pressure's solver: its own is gone by then */
   if (st == BW_OK) {
     ns->viscous_rate = viscous_rate(ns);
     st = poisson_create(ns);

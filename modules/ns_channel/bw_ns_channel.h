@@ -9,8 +9,9 @@
  * with alpha = 8/15, 5/12, 3/4; beta = 0, -17/60, -5/12; gamma = alpha + beta. Second-order
  * central differences in the divergence form that keeps kinetic energy.
  * Boundaries, per side: periodic; wall (no-slip, moving tangentially; free-slip); inflow
- * (uniform, Poiseuille, callback); outflow (convective du/dt + U_c du/dn = 0 with U_c the bulk
- * velocity, then a uniform correction that balances mass globally).
+ * (uniform, laminar profile, callback); outflow (convective du/dt + U_c du/dn = 0 with U_c the bulk
+ * velocity, slowed where fluid comes back, then a uniform correction that balances mass globally).
+ * Any side may be any of them; velocities count along +x, +y, +z whatever the side.
  * 2D: n[2] == 1 computes and stores nothing for w.
  * Halos: u, v, w, p valid (all layers) after create, set_velocity, step and project; after
  * predict too. Life: config_default -> create -> set_velocity -> { step } -> destroy. */
@@ -35,7 +36,8 @@ typedef struct {
   bw_ns_side_kind kind;       /*                                          default wall */
   double velocity[3];         /* of the wall; of a uniform inflow [L/T]   default 0 */
   bw_ns_profile profile;      /* of an inflow; wall: uniform or callback    default uniform */
-  double bulk_velocity;       /* of a Poiseuille inflow (plane, in y) [L/T] */
+  double bulk_velocity;       /* of a Poiseuille inflow: the laminar profile of its section, a plane
+                                 channel, a duct, or half of one at a free-slip side [L/T] */
   bw_ns_velocity_fn function; /* of a callback inflow or wall (tangential part of u is used) */
   void *context;              /* borrowed for the life of the solver */
 } bw_ns_side;

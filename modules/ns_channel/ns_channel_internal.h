@@ -42,6 +42,12 @@ typedef struct {
   int extent[2], low[2]; /* indices low .. low+extent-1 in the tangential directions */
 } bw_ns_plane;
 
+/* Visit a layer of a side: value[b][a] of the plane, field[base + a step0 + b step1]. */
+typedef struct {
+  const bw_ns_plane *p;
+  ptrdiff_t base, step0, step1;
+} bw_ns_walk;
+
 typedef struct bw_ns_implicit bw_ns_implicit; /* ns_implicit.c */
 
 /* Momentum balance of a box, see bw_ns_channel_control_volume. */
@@ -66,8 +72,7 @@ struct bw_ns_channel {
   size_t scratch_size;
   bw_ns_sweep sweep;
   bw_ns_plane plane[3][2];
-  bool has_outflow;
-  double outflow_area;
+  double outflow_area; /* of all outflow sides; 0: there is none */
   bw_ns_implicit *implicit;
   double time;
   double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
@@ -108,14 +113,32 @@ double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *co
 /* ns_boundary.c */
 bw_status bw_ns__planes_create(bw_ns_channel *ns);
 void bw_ns__planes_destroy(bw_ns_channel *ns);
-double bw_ns__inflow(bw_ns_channel *ns, double t); /* set planes; net influx. Collective. */
-void bw_ns__outflow_capture(bw_ns_channel *ns);    /* planes <- field. Local. */
-void bw_ns__outflow_advance(bw_ns_channel *ns, double dt, double influx); /* Collective. */
-void bw_ns__outflow_balance(bw_ns_channel *ns, double influx);            /* Collective. */
 void bw_ns__faces(bw_ns_channel *ns);           /* planes -> normal velocity on the faces. Local. */
 void bw_ns__ghosts_velocity(bw_ns_channel *ns); /* beyond physical boundaries. Local. */
 void bw_ns__ghosts_scalar(bw_ns_channel *ns, bw_real *p);
+bw_ns_walk bw_ns__walk(const bw_ns_channel *ns, int d, int s, int index); /* layer `index` of d */
+int bw_ns__face_index(const bw_ns_channel *ns, int d, int s); /* of the side's own face */
+
+/* The two directions along a side normal to d, in order. */
+static inline int bw_ns__tangent(int d, int which)
+{
+  return which == 0 ? (d == 0 ? 1 : 0) : (d == 2 ? 1 : 2);
+}
+
+static inline size_t bw_ns__plane_size(const bw_ns_plane *p)
+{
+  return (size_t)p->extent[0] * (size_t)p->extent[1];
+}
+
+/* ns_inflow.c */
+bw_status bw_ns__inflow_create(bw_ns_channel *ns); /* steady profiles, areas. Collective. */
+double bw_ns__inflow(bw_ns_channel *ns, double t); /* callbacks; net influx. Collective. */
 double bw_ns__side_flux(const bw_ns_channel *ns, int d, int s); /* out of the box, local share */
+
+/* ns_outflow.c */
+void bw_ns__outflow_capture(bw_ns_channel *ns); /* planes <- field. Local. */
+void bw_ns__outflow_advance(bw_ns_channel *ns, double dt, double influx); /* Collective. */
+void bw_ns__outflow_balance(bw_ns_channel *ns, double influx);            /* Collective. */
 
 /* ns_box.c. All local; nothing where no box is watched. */
 void bw_ns__box_fluxes(bw_ns_channel *ns, int r, double dt, double gradient); /* before the sweep */

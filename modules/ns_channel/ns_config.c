@@ -17,6 +17,31 @@ bw_ns_channel_config bw_ns_channel_config_default(void)
   return c;
 }
 
+/* A laminar profile needs a section that has one: walls at rest, free slip or periodicity around
+ * the side, and at least one wall. */
+static bw_status section_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
+{
+  bool wall = false;
+  for (int e = 0; e < (g->n[2] == 1 ? 2 : 3); e++)
+    for (int q = 0; q < 2 && e != d; q++) {
+      const bw_ns_side *around = &c->side[e][q];
+      const double *v = around->velocity;
+      const bool at_rest = around->kind == BW_SIDE_WALL && around->profile == BW_PROFILE_UNIFORM &&
+                           v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0;
+      wall |= at_rest;
+      BW_REQUIRE(at_rest || around->kind == BW_SIDE_FREE_SLIP || around->kind == BW_SIDE_PERIODIC,
+                 BW_EINPUT,
+                 "ns_channel: %s %s side: around a Poiseuille inflow there are walls at rest, free "
+                 "slip or periodic sides; the %s %s one is none of them; use a callback",
+                 direction_name[d], end_name[s], direction_name[e], end_name[q]);
+    }
+  BW_REQUIRE(wall, BW_EINPUT,
+             "ns_channel: %s %s side: a Poiseuille inflow needs walls at rest beside it; make the "
+             "inflow uniform, or give it a wall",
+             direction_name[d], end_name[s]);
+  return BW_OK;
+}
+
 static bw_status inflow_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
 {
   const bw_ns_side *side = &c->side[d][s];
@@ -25,23 +50,11 @@ static bw_status inflow_check(const bw_grid_view *g, const bw_ns_channel_config 
     BW_REQUIRE(side->function != NULL, BW_EINPUT,
                "ns_channel: %s %s side: a callback inflow needs side.function", dn, sn);
   if (side->profile != BW_PROFILE_POISEUILLE) return BW_OK;
-  BW_REQUIRE(d == 0, BW_EINPUT,
-             "ns_channel: %s %s side: a Poiseuille inflow is plane in y and "
-             "enters through an x side; use a callback",
-             dn, sn);
   BW_REQUIRE(isfinite(side->bulk_velocity), BW_EINPUT,
              "ns_channel: %s %s side: side.bulk_velocity of the Poiseuille inflow is %g; "
              "give a finite velocity",
              dn, sn, side->bulk_velocity);
-  for (int q = 0; q < 2; q++) {
-    const double *v = c->side[1][q].velocity;
-    BW_REQUIRE(!g->periodic[1] && c->side[1][q].kind == BW_SIDE_WALL && v[0] == 0.0 && v[2] == 0.0,
-               BW_EINPUT,
-               "ns_channel: %s %s side: a Poiseuille inflow needs walls at rest at both "
-               "y sides; the %s one is not",
-               dn, sn, end_name[q]);
-  }
-  return BW_OK;
+  return section_check(g, c, d, s);
 }
 
 static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
@@ -65,11 +78,6 @@ static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c
   if (side->kind == BW_SIDE_WALL && side->profile == BW_PROFILE_CALLBACK)
     BW_REQUIRE(side->function != NULL, BW_EINPUT,
                "ns_channel: %s %s side: a callback wall needs side.function", dn, sn);
-  if (side->kind == BW_SIDE_OUTFLOW)
-    BW_REQUIRE(s == 1, BW_EINPUT,
-               "ns_channel: %s %s side: an outflow must be an upper side; let "
-               "the flow go along +%s",
-               dn, dn, sn);
   if (side->kind == BW_SIDE_INFLOW) BW_TRY(inflow_check(g, c, d, s));
   return BW_OK;
 }
@@ -98,8 +106,11 @@ static bw_status balance_check(const bw_grid_view *g, const bw_ns_channel_config
              "ns_channel: a callback inflow needs an outflow side that takes what enters");
   BW_REQUIRE(outflow || fabs(net) <= 1e-12 * gross, BW_EINPUT,
              "ns_channel: %g more volume enters than leaves; add an outflow side", net);
-  BW_REQUIRE(!outflow || net > 0.0 || callback, BW_EINPUT,
-             "ns_channel: net inflow is %g; an outflow needs a positive one", net);
+  BW_REQUIRE(
+      !outflow || net > 0.0 || callback, BW_EINPUT,
+      "ns_channel: net inflow is %g; an outflow needs a positive one (velocities count along "
+      "+x, +y, +z: through an upper side fluid enters with a negative one)",
+      net);
   return BW_OK;
 }
 

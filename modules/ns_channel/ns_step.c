@@ -208,10 +208,10 @@ void bw_ns_channel_refresh(bw_ns_channel *ns)
 static void sample(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context, double t)
 {
   const bw_grid_view *g = ns->g;
-  for (int c = 0; c < ns->components; c++)
-    for (int k = 1; k <= g->m[2]; k++)
-      for (int j = 1; j <= g->m[1]; j++)
-        for (int i = 1; i <= g->m[0]; i++) {
+  for (int c = 0; c < ns->components; c++) /* from the lower face on: an outflow keeps it */
+    for (int k = c == 2 ? 0 : 1; k <= g->m[2]; k++)
+      for (int j = c == 1 ? 0 : 1; j <= g->m[1]; j++)
+        for (int i = c == 0 ? 0 : 1; i <= g->m[0]; i++) {
           const int y = j + g->lo[1];
           double u[3] = {0, 0, 0};
           const double x[3] = {(c == 0 ? i : i - 0.5) * g->spacing[0],

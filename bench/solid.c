@@ -27,8 +27,8 @@ static void advance(void *context)
     BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
 }
 
-static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, double rival,
-                         double triad)
+static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, double disorder,
+                         double rival, double triad)
 {
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
   bw_pd_bond_config c = bw_pd_bond_config_default();
@@ -38,6 +38,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   uint8_t *kind = NULL;
   c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = 3.015;
   c.family_reach = BW_PD_REACH_HORIZON;
+  c.disorder = disorder;
   bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &w.pd));
   if (st == BW_OK) {
@@ -68,9 +69,10 @@ static bw_status run(bw_bench *b)
   const double triad = bw_bench_triad(comm);
   bw_comm *self = NULL;
   bw_status st = bw_comm_self(&self);
-  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "block_48x32x32_np1", 154, triad));
+  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "block_48x32x32_np1", 0, 154, triad));
+  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "cloud_48x32x32_np1", 0.3, NAN, triad));
   st = bw_comm_agree(comm, st); /* the others wait here */
-  if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 72, triad));
+  if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 0, 72, triad));
   bw_comm_destroy(&self);
   return st;
 }

@@ -35,14 +35,21 @@ static bool inside(const specimen *p, const double x[3])
   return true;
 }
 
-static uint8_t kind_at(const specimen *p, const double x[3])
+static uint8_t loads_at(const specimen *p, const double x[3])
+{
+  uint8_t loads = 0;
+  for (int q = 0; q < p->config.n_loads; q++)
+    if (loaded(p, &p->config.loads[q], x)) loads |= (uint8_t)(1u << q);
+  return loads;
+}
+
+static uint8_t kind_of(const specimen *p, uint8_t loads)
 {
   uint8_t kind = BW_PD_FREE;
   for (int q = 0; q < p->config.n_loads; q++) {
     const specimen_load *load = &p->config.loads[q];
-    if (!loaded(p, load, x)) continue;
-    if (load->kind == SPECIMEN_VELOCITY) kind |= BW_PD_PRESCRIBED;
-    if (load->unbreakable) kind |= BW_PD_UNBREAKABLE;
+    if (loads >> q & 1 && load->kind == SPECIMEN_VELOCITY) kind |= BW_PD_PRESCRIBED;
+    if (loads >> q & 1 && load->unbreakable) kind |= BW_PD_UNBREAKABLE;
   }
   return kind;
 }
@@ -65,6 +72,8 @@ static bw_pd_bond_config material(const specimen *p)
   c.volume_fraction = (bw_pd_volume_fraction)s->volume_fraction;
   c.family_reach = (bw_pd_family_reach)s->family_reach;
   c.integrator = (bw_pd_integrator)s->integrator;
+  c.disorder = s->disorder;
+  c.disorder_seed = s->disorder_seed;
   c.axes[0][0] = e[0], c.axes[0][1] = e[1];
   c.axes[1][0] = -e[1], c.axes[1][1] = e[0];
   const double half[2] = {0.5 * shape->length, 0.5 * shape->height};
@@ -74,7 +83,8 @@ static bw_pd_bond_config material(const specimen *p)
 }
 
 /* Sites of the plate, x fastest; written when site is not NULL. Returns how many. */
-static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site, uint8_t *kind)
+static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site, uint8_t *loads,
+                    uint8_t *kind)
 {
   const specimen_shape *s = &p->config.shape;
   const int columns = (int)lround(s->length / p->ds), rows = (int)lround(s->height / p->ds);
@@ -91,7 +101,8 @@ static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site
         if (!inside(p, x)) continue;
         if (site != NULL) {
           site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
-          kind[n] = kind_at(p, x);
+          loads[n] = loads_at(p, x);
+          kind[n] = kind_of(p, loads[n]);
         }
         n++;
       }
@@ -112,21 +123,34 @@ static bw_status cut_notches(specimen *p)
   return BW_OK;
 }
 
+/* The rows of this rank's particles from those of all. Collective. */
+static bw_status own_loads(specimen *p, const uint8_t all[])
+{
+  p->n = bw_pd_bond_count(p->solid);
+  BW_TRY(bw_comm_agree(p->comm, BW_ALLOCATE(&p->loads, p->n)));
+  for (size_t h = 0; h < p->n; h++)
+    p->loads[h] = all[bw_pd_bond_id(p->solid)[h]];
+  return BW_OK;
+}
+
 static bw_status make_solid(specimen *p)
 {
   const bw_pd_bond_config c = material(p);
-  const int64_t n = scan(p, &c, NULL, NULL);
+  const int64_t n = scan(p, &c, NULL, NULL, NULL);
   BW_REQUIRE(n > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
              p->config.shape.thickness, p->ds);
   int32_t *site = NULL;
-  uint8_t *kind = NULL;
+  uint8_t *loads = NULL, *kind = NULL;
   bw_status st = BW_ALLOCATE(&site, 3 * (size_t)n);
+  BW_THEN(st, BW_ALLOCATE(&loads, (size_t)n));
   BW_THEN(st, BW_ALLOCATE(&kind, (size_t)n));
   st = bw_comm_agree(p->comm, st);
-  if (st == BW_OK) (void)scan(p, &c, site, kind);
+  if (st == BW_OK) (void)scan(p, &c, site, loads, kind);
   BW_THEN(st, bw_pd_bond_create(p->comm, &c, n, site, kind, &p->solid));
+  BW_THEN(st, own_loads(p, loads));
   BW_THEN(st, cut_notches(p));
   bw_release(&site);
+  bw_release(&loads);
   bw_release(&kind);
   return st;
 }
@@ -141,7 +165,7 @@ static void share_tractions(specimen *p)
   int64_t count[SPECIMEN_LOADS] = {0};
   for (int q = 0; q < p->config.n_loads; q++)
     for (size_t h = 0; h < p->n; h++)
-      count[q] += loaded(p, &p->config.loads[q], &p->X0[3 * h]);
+      count[q] += p->loads[h] >> q & 1;
   bw_comm_sum_int(p->comm, SPECIMEN_LOADS, count);
   for (int q = 0; q < p->config.n_loads; q++) {
     const specimen_load *load = &p->config.loads[q];
@@ -164,7 +188,7 @@ static void apply_traction(specimen *p)
     const double part = load->rise > 0.0 ? fmin(1.0, p->time / load->rise) : 1.0;
     p->rising = p->rising || part < 1.0;
     for (size_t h = 0; h < p->n; h++)
-      if (loaded(p, load, &p->X0[3 * h]))
+      if (p->loads[h] >> q & 1)
         for (size_t d = 0; d < 2; d++)
           p->F[3 * h + d] += part * load->value[d] * p->share[q];
   }
@@ -182,8 +206,7 @@ static bw_status apply_velocity(specimen *p)
     for (int q = 0; q < p->config.n_loads; q++) {
       const specimen_load *load = &p->config.loads[q];
       for (size_t h = 0; load->kind != SPECIMEN_TRACTION && h < p->n; h++)
-        if (loaded(p, load, &p->X0[3 * h]))
-          V[3 * h] = load->value[0], V[3 * h + 1] = load->value[1];
+        if (p->loads[h] >> q & 1) V[3 * h] = load->value[0], V[3 * h + 1] = load->value[1];
     }
     bw_pd_bond_get_position(p->solid, X);
     bw_pd_bond_set_state(p->solid, X, V);
@@ -230,9 +253,7 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   p->ds = config->shape.length / config->shape.particles;
   p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, 0.0};
   BW_TRY(make_solid(p));
-  p->n = bw_pd_bond_count(p->solid);
-  const double look = config->follow.every * config->time.step;
-  p->room = (int64_t)(config->time.end / look) + 2;
+  p->room = (int64_t)(config->time.end / (config->follow.every * config->time.step)) + 2;
   bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
   BW_THEN(st, BW_ALLOCATE(&p->notched, p->n));
@@ -257,12 +278,13 @@ bw_status specimen_find(specimen *p, bw_pd_crack *crack)
 {
   const bw_pd_crack_config look = bw_pd_crack_config_default();
   const specimen_follow *f = &p->config.follow;
+  const double gap = (1.5 + 2.0 * p->config.solid.disorder) * p->ds; /* diagonal neighbours */
   bw_pd_bond_get_damage(p->solid, p->damage);
   for (size_t h = 0; h < p->n; h++)
     if (p->notched[h]) p->damage[h] = 0.0;
   BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, crack));
   bw_pd_crack_crop(crack, f->lower, f->upper);
-  return bw_comm_agree(p->comm, bw_pd_crack_join(crack, f->from[0], f->from[1], 1.5 * p->ds));
+  return bw_comm_agree(p->comm, bw_pd_crack_join(crack, f->from[0], f->from[1], gap));
 }
 
 bw_status specimen_fit(specimen *p, bw_pd_crack_line *line)
@@ -370,6 +392,7 @@ void specimen_destroy(specimen *p)
 {
   bw_pd_bond_destroy(&p->solid);
   bw_release(&p->X0);
+  bw_release(&p->loads);
   bw_release(&p->damage);
   bw_release(&p->notched);
   bw_release(&p->F);

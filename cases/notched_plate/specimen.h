@@ -27,6 +27,8 @@ typedef struct {
   int geometry; /* enums of bw_pd_bond.h */
   double young_modulus, density, fracture_energy, horizon_ratio;
   int surface_correction, volume_fraction, family_reach, integrator;
+  double disorder; /* of the particles off their sites, in spacings   default 0: a lattice */
+  int disorder_seed;
 } specimen_solid;
 
 typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;
@@ -92,6 +94,7 @@ typedef struct {
   int64_t steps, events;
   size_t n;
   double *X0, *damage, *F;      /* (n,3), (n), (n,3) of the tractions */
+  uint8_t *loads;               /* (n) bit q: its site is in the rows of load q */
   bool *notched;                /* (n) cracked by the notches: no part of the crack */
   double share[SPECIMEN_LOADS]; /* body force per stress of each load [1/m] */
   bool rising;                  /* some traction still rises */

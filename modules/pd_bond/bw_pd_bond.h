@@ -5,6 +5,10 @@
  * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4), in
  * Verlet that of the half-step velocity.
  * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
+ * With `disorder` it is a cloud instead: X0 is off that place by a vector drawn evenly from a ball
+ * (2D: a disc) of radius disorder ds, the same for the same site, seed and axes, whatever else
+ * there is; all particles keep the volume of a cell, and the families are those of the true
+ * places. xi from here on is the true one.
  * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
  * at the end of every step when breakage is enabled: it holds during the whole step and is gone
  * from the force the next step starts with. Both ends decide alike, on any number of ranks.
@@ -53,16 +57,19 @@ typedef struct {
   bw_pd_surface_correction surface_correction; /* default volume */
   bw_pd_calibration calibration;               /* default none */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
-  bw_pd_integrator integrator;     /* default Verlet */
-  double damping_pair;             /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
-  double damping_mean;             /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
-  double damping_absolute;         /* -k V (settling) [M/(L^3 T)]          default 0 */
-  bool contact;      /* repulsion of particles nearer than ds that no intact bond joins
-                        (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
-  double origin[3];  /* of the lattice [L]                   default 0 */
-  double axes[3][3]; /* rows: lattice directions             default identity */
-  double period[3];  /* periodic length per direction [L], 0: not periodic. Must be a whole
-                        number of ds along that axis         default 0 */
+  double disorder;       /* particles start up to this many ds off their sites, 0.4 at most; then
+                            volume_fraction is linear or none, 2D and 3D     default 0 */
+  int32_t disorder_seed; /* another number, another cloud                    default 0 */
+  bw_pd_integrator integrator; /* default Verlet */
+  double damping_pair;         /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
+  double damping_mean;         /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
+  double damping_absolute;     /* -k V (settling) [M/(L^3 T)]          default 0 */
+  bool contact;                /* repulsion of particles nearer than ds that no intact bond joins
+                                  (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
+  double origin[3];            /* of the lattice [L]                   default 0 */
+  double axes[3][3];           /* rows: lattice directions             default identity */
+  double period[3]; /* periodic length per direction [L], 0: not periodic. Must be a whole
+                       number of ds along that axis         default 0 */
 } bw_pd_bond_config;
 
 bw_pd_bond_config bw_pd_bond_config_default(void);

@@ -7,7 +7,7 @@ static void motion(const bw_pd_bond *pd, double book[7])
   const double mass = pd->config.rho * pd->dv;
   for (size_t i = 0; i < pd->n; i++) {
     double X[3], p[3];
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X);
+    bw_pd_bond__reference(pd, i, X);
     for (int k = 0; k < 3; k++) {
       X[k] += (double)pd->u[k][pd->place[i]];
       p[k] = mass * (double)pd->v[k][i];

@@ -10,8 +10,11 @@ void bw_pd_bond_get_damage(const bw_pd_bond *pd, double damage[])
       if (!(pd->block[b].mask >> lane & 1)) continue;
       double family = 0, intact = 0;
       for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
-        const double gamma = pd->stencil.fraction[pd->slot[q].direction];
-        if (pd->slot[q].family >> lane & 1) family += gamma;
+        if (!(pd->slot[q].family >> lane & 1)) continue;
+        const double gamma = bw_pd_bond__rest(pd, pd->slot[q].direction, pd->block[b].first + lane,
+                                              pd->slot[q].base + lane)
+                                 .fraction;
+        family += gamma;
         if (pd->slot[q].mask >> lane & 1) intact += gamma;
       }
       damage[bw_pd_bond__owner(&pd->block[b], lane)] = family > 0 ? 1 - intact / family : 0;
@@ -67,7 +70,7 @@ bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd)
   double X[3];
   if (!pd->current) bw_pd_bond__refresh(pd, false);
   for (size_t e = 0; e < pd->n_extended; e++) {
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * e, X);
+    bw_pd_bond__reference(pd, e, X);
     for (size_t k = 0; k < 3; k++)
       pd->extended_X[3 * e + k] = (bw_real)(X[k] + (double)pd->u[k][pd->place[e]]);
   }

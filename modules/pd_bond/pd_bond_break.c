@@ -6,12 +6,12 @@
 static const double TOUCH = 1e-9; /* crack edges reach this far beyond their ends, in ds */
 
 /* Present length of the bond of storage place h and a slot's lane [L]. */
-static double length(const bw_pd_bond *pd, int32_t h, const bw_pd_slot *slot, int lane)
+static double length(const bw_pd_bond *pd, int32_t h, const bw_pd_slot *slot, int lane,
+                     const double xi[3])
 {
   double r2 = 0;
   for (int k = 0; k < 3; k++) {
-    const bw_real z = (pd->u[k][slot->base + lane] - pd->u[k][h]) +
-                      (bw_real)pd->stencil.xi[3 * slot->direction + k];
+    const bw_real z = (pd->u[k][slot->base + lane] - pd->u[k][h]) + (bw_real)xi[k];
     r2 += (double)z * (double)z;
   }
   return sqrt(r2);
@@ -21,11 +21,10 @@ static double length(const bw_pd_bond *pd, int32_t h, const bw_pd_slot *slot, in
 void bw_pd_bond__break(bw_pd_bond *pd, bw_pd_block *block, bw_pd_slot *slot, int lane)
 {
   const int32_t h = block->first + lane;
-  const double r0 = pd->stencil.r0[slot->direction];
-  const double s = length(pd, h, slot, lane) / r0 - 1;
+  const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, slot->base + lane);
+  const double s = length(pd, h, slot, lane, rest.xi) / rest.r0 - 1;
   const double alpha = bw_pd_bond__alpha(pd, h, slot->base + lane);
-  pd->done_fracture +=
-      0.25 * pd->c0 * alpha * s * s * r0 * pd->stencil.fraction[slot->direction] * pd->dv * pd->dv;
+  pd->done_fracture += 0.25 * pd->c0 * alpha * s * s * rest.r0 * rest.fraction * pd->dv * pd->dv;
   slot->mask = (uint8_t)(slot->mask ^ (1u << lane));
   block->broken = true;
   pd->events++;
@@ -96,16 +95,12 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
 }
 
 /* The bond from the end that is first in lattice order, so that both ends decide alike. */
-static void ends(const bw_pd_bond *pd, const int32_t site[3], int direction, double p[3],
-                 double q[3])
+static void ends(const bw_pd_bond *pd, const bw_pd_block *block, const bw_pd_slot *slot, int lane,
+                 double p[3], double q[3])
 {
-  const int32_t *o = pd->stencil.offset + 3 * direction;
-  const bool forward = 2 * direction >= pd->stencil.n;
-  int32_t there[3];
-  for (int k = 0; k < 3; k++)
-    there[k] = site[k] + o[k];
-  bw_pd_bond__reference(&pd->config, site, forward ? p : q);
-  bw_pd_bond__reference(&pd->config, there, forward ? q : p);
+  const bool forward = 2 * slot->direction >= pd->stencil.n;
+  bw_pd_bond__reference(pd, (size_t)bw_pd_bond__owner(block, lane), forward ? p : q);
+  bw_pd_bond__reference(pd, (size_t)pd->occupant[slot->base + lane], forward ? q : p);
 }
 
 /* The crack has an image in every period. */
@@ -133,7 +128,7 @@ static void cut_block(bw_pd_bond *pd, bw_pd_block *block, const cut *c)
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
       if (!(slot->mask >> lane & 1)) continue;
       double x[3], y[3];
-      ends(pd, pd->site + 3 * (size_t)bw_pd_bond__owner(block, lane), slot->direction, x, y);
+      ends(pd, block, slot, lane, x, y);
       if (!crosses_image(pd, c, x, y)) continue;
       bw_pd_bond__break(pd, block, slot, lane);
       pd->precracked++;

@@ -4,7 +4,8 @@
  * is that of elasticity. Fracture: every direction xi holds xi.n Gamma dV/2 of its bonds' energy
  * c0 s^2 |xi| per area of a plane normal to the lattice direction n, so
  *   G0 = 1/2 c0 s0^2 sum_{xi.n > 0} |xi| xi.n Gamma dV.
- * V0 of the volume method is the full family's own volume: alpha = 1 in the bulk. */
+ * V0 of the volume method is the full family's own volume: alpha = 1 in the bulk.
+ * In a cloud every family differs: the sums are means over many, and of all directions n. */
 #include "pd_bond_internal.h"
 
 #include <math.h>
@@ -18,22 +19,45 @@ double bw_pd_bond__classical_dilation(const bw_pd_bond_config *c)
   return factor[c->geometry] * c->E;
 }
 
-/* After material and stencil, and after every change of G0. */
-void bw_pd_bond__calibrate(bw_pd_bond *pd)
+static void lattice_sums(bw_pd_bond *pd)
 {
   const bw_pd_stencil *s = &pd->stencil;
+  for (int q = 0; q < s->n; q++) {
+    const double w = s->fraction[q] * pd->dv, along = pd->config.ds * s->offset[3 * q];
+    pd->full.volume += w;
+    pd->full.moment += w * s->r0[q];
+    pd->full.crossing += along > 0 ? w * s->r0[q] * along : 0;
+  }
+}
+
+/* The mean of xi.n > 0 over all n is |xi|/pi in the plane and |xi|/4 in space. */
+static bw_status cloud_sums(bw_pd_bond *pd)
+{
+  const double ds = pd->config.ds;
+  double mean[3];
+  BW_TRY(bw_pd_bond__cloud_means(pd, mean));
+  pd->full.volume = pd->dv * mean[0];
+  pd->full.moment = pd->dv * ds * mean[1];
+  pd->full.crossing = pd->dv * ds * ds * mean[2] / (pd->dimension == 3 ? 4 : PI);
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__full_family(bw_pd_bond *pd)
+{
+  if (pd->config.calibration == BW_PD_CALIBRATION_NONE) return BW_OK;
+  if (pd->config.disorder > 0) return cloud_sums(pd);
+  lattice_sums(pd);
+  return BW_OK;
+}
+
+/* After material and the sums, and after every change of G0. */
+void bw_pd_bond__calibrate(bw_pd_bond *pd)
+{
   const bw_pd_bond_config *c = &pd->config;
   const double d = pd->horizon;
-  double volume = 0, moment = 0, crossing = 0;
   pd->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
   if (c->calibration == BW_PD_CALIBRATION_NONE) return;
-  for (int q = 0; q < s->n; q++) {
-    const double w = s->fraction[q] * pd->dv, along = c->ds * s->offset[3 * q];
-    volume += w;
-    moment += w * s->r0[q];
-    crossing += along > 0 ? w * s->r0[q] * along : 0;
-  }
-  pd->full_volume = volume;
-  pd->c0 = 4 * bw_pd_bond__classical_dilation(c) / moment;
-  pd->s0 = sqrt(2 * c->G0 / (pd->c0 * crossing));
+  pd->full_volume = pd->full.volume;
+  pd->c0 = 4 * bw_pd_bond__classical_dilation(c) / pd->full.moment;
+  pd->s0 = sqrt(2 * c->G0 / (pd->c0 * pd->full.crossing));
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 
 static const double PI = 3.14159265358979323846;
+static const double MOST_DISORDER = 0.4; /* neighbours stay 0.2 ds apart */
 
 bw_pd_bond_config bw_pd_bond_config_default(void)
 {
@@ -85,6 +86,30 @@ static bw_status check_lattice(const bw_pd_bond_config *c)
   return BW_OK;
 }
 
+/* The cells of a cloud are no cubes: only the linear fraction knows nothing of their shape. */
+static bw_status check_fraction(const bw_pd_bond_config *c)
+{
+  BW_REQUIRE(c->disorder >= 0 && c->disorder <= MOST_DISORDER, BW_EINPUT,
+             "pd_bond: disorder = %g must be from 0 (a lattice) to %g spacings", c->disorder,
+             MOST_DISORDER);
+  BW_REQUIRE(c->disorder == 0 || 1 + 2 * c->disorder < bw_pd_bond__family_reach(c), BW_EINPUT,
+             "pd_bond: disorder = %g moves neighbours %g spacings apart, out of the family's reach "
+             "of %g; use less of it or a larger horizon_ratio",
+             c->disorder, 1 + 2 * c->disorder, bw_pd_bond__family_reach(c));
+  BW_REQUIRE(c->disorder == 0 || c->volume_fraction != BW_PD_FRACTION_EXACT, BW_EINPUT,
+             "pd_bond: volume_fraction = exact is of cells on a lattice; with disorder = %g use "
+             "linear (the default) or none",
+             c->disorder);
+  BW_REQUIRE((unsigned)c->volume_fraction <= BW_PD_FRACTION_DEFAULT &&
+                 !(c->geometry == BW_PD_3D && c->disorder == 0 &&
+                   c->volume_fraction == BW_PD_FRACTION_LINEAR),
+             BW_EINPUT,
+             "pd_bond: volume_fraction = %d; on a lattice the linear one is of 2D only, use exact "
+             "or none in 3D",
+             (int)c->volume_fraction);
+  return BW_OK;
+}
+
 bw_status bw_pd_bond__check_config(const bw_pd_bond_config *c)
 {
   BW_TRY(check_positive(c));
@@ -96,11 +121,7 @@ bw_status bw_pd_bond__check_config(const bw_pd_bond_config *c)
       "pd_bond: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
       "set it to that",
       c->nu, c->geometry == BW_PD_PLANE_STRESS ? "1/3" : "1/4");
-  BW_REQUIRE((unsigned)c->volume_fraction <= BW_PD_FRACTION_DEFAULT &&
-                 !(c->geometry == BW_PD_3D && c->volume_fraction == BW_PD_FRACTION_LINEAR),
-             BW_EINPUT,
-             "pd_bond: volume_fraction = %d; the linear one is of 2D only, use exact or none in 3D",
-             (int)c->volume_fraction);
+  BW_TRY(check_fraction(c));
   BW_REQUIRE((unsigned)c->surface_correction <= BW_PD_SURFACE_ENERGY, BW_EINPUT,
              "pd_bond: surface_correction = %d is unknown", (int)c->surface_correction);
   BW_REQUIRE((unsigned)c->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
@@ -128,7 +149,7 @@ void bw_pd_bond__material(bw_pd_bond *pd)
   pd->dv = c->ds * c->ds * (planar ? t : c->ds);
   c->nu = natural_poisson(c->geometry);
   if (c->volume_fraction == BW_PD_FRACTION_DEFAULT)
-    c->volume_fraction = planar ? BW_PD_FRACTION_LINEAR : BW_PD_FRACTION_EXACT;
+    c->volume_fraction = planar || c->disorder > 0 ? BW_PD_FRACTION_LINEAR : BW_PD_FRACTION_EXACT;
 }
 
 /* The kernels' constants, once s0 is known. */
@@ -136,16 +157,18 @@ void bw_pd_bond__constants(bw_pd_bond *pd)
 {
   static const double factor[] = {1, 2, 0.5}; /* none; volume: 2/(w+w); energy: (g+g)/2 */
   const bw_pd_stencil *s = &pd->stencil;
+  const bool cloud = pd->config.disorder > 0;
   for (int q = 0; q < s->n; q++) {
     bw_real *row = s->row + q * BW_PD_ROW;
-    const double r0 = s->r0[q], limit = r0 * (1 + pd->s0);
+    const double r0 = cloud ? 1 : s->r0[q], gamma = cloud ? 1 : s->fraction[q];
+    const double limit = r0 * (1 + pd->s0);
     for (int k = 0; k < 3; k++)
       row[BW_PD_XI + k] = (bw_real)s->xi[3 * q + k];
     row[BW_PD_R0] = (bw_real)r0;
     row[BW_PD_MINUS_R0] = (bw_real)-r0;
-    row[BW_PD_STIFFNESS] = (bw_real)(factor[pd->config.surface_correction] * pd->c0 *
-                                     s->fraction[q] * pd->dv / (pd->config.rho * r0));
+    row[BW_PD_STIFFNESS] = (bw_real)(factor[pd->config.surface_correction] * pd->c0 * gamma *
+                                     pd->dv / (pd->config.rho * r0));
     row[BW_PD_LIMIT2] = (bw_real)(limit * limit);
-    row[BW_PD_WEIGHT] = (bw_real)(s->fraction[q] * pd->dv);
+    row[BW_PD_WEIGHT] = (bw_real)(gamma * pd->dv);
   }
 }

@@ -1,9 +1,11 @@
 /* Short-range repulsion (3.40 with ERRATA 3): on h, for r = |X_l - X_h| < r_c,
  *   C_h = - k_c (r_c/r - 1) e dV_l,  e from h to l,  n_c = 1, k_c = 15 c0, r_c = ds,
- * which derives from the energy k_c (r_c ln(r_c/r) - r_c + r) dV dV of a pair. */
+ * which derives from the energy k_c (r_c ln(r_c/r) - r_c + r) dV dV of a pair. In a cloud r_c of
+ * two whose bond broke is not above |xi|: else neighbours nearer than ds from the start would push
+ * when they part. */
 #include "pd_bond_contact.h"
 #include "bw_memory.h"
-#include "pd_bond_vector.h"
+#include "pd_bond_sweep.h"
 
 #include <math.h>
 
@@ -97,16 +99,17 @@ static double repel(const law *w, const double d[3], double r2, double sum[3])
   return 0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r);
 }
 
-/* The lanes `near` of a slot with bond vectors z. */
+/* The lanes `near` of a slot with bonds x; reach: in a cloud of each bond. */
 static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block, unsigned near,
-                          const vec z[3], vec r2, bool force)
+                          const bond *x, vec reach2, bool force)
 {
   double energy = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(near >> lane & 1)) continue;
     double sum[3] = {0};
-    const double d[3] = {(double)z[0][lane], (double)z[1][lane], (double)z[2][lane]};
-    energy += repel(w, d, (double)r2[lane], sum);
+    const double d[3] = {(double)x->z[0][lane], (double)x->z[1][lane], (double)x->z[2][lane]};
+    const law one = {sqrt((double)reach2[lane]), w->k};
+    energy += repel(&one, d, (double)x->r2[lane], sum);
     const int32_t h = bw_pd_bond__owner(block, lane);
     for (int k = 0; force && k < 3; k++)
       pd->extra[k][h] += (bw_real)sum[k];
@@ -117,23 +120,20 @@ static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block
 /* Broken bonds of a block that are short. */
 static double block_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *block, bool force)
 {
-  const vec reach2 = vec_all((bw_real)(w->reach * w->reach));
-  vec uh[3], z[3];
+  const sweep all = sweep_of(pd);
+  const bool cloud = pd->config.disorder > 0;
+  const owners h = owners_of(&all, block, 3, cloud);
   double energy = 0;
-  for (int k = 0; k < 3; k++)
-    uh[k] = vec_load(pd->u[k] + block->first);
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     const bw_pd_slot *slot = &pd->slot[q];
     if (slot->family == slot->mask) continue;
     const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
-    vec r2 = vec_all(0);
-    for (int k = 0; k < 3; k++) {
-      z[k] = (vec_load(pd->u[k] + slot->base) - uh[k]) + vec_all(row[BW_PD_XI + k]);
-      r2 = vec_fma(z[k], z[k], r2);
-    }
+    const bond x = bond_of(&all, slot, row, &h, 3, cloud);
+    vec reach2 = vec_all((bw_real)(w->reach * w->reach));
+    if (cloud) reach2 = vec_least(reach2, x.rest2);
     const unsigned near =
-        (unsigned)(slot->family & ~slot->mask) & lanes_bits(vec_above(reach2, r2));
-    if (near != 0) energy += short_bonds(pd, w, block, near, z, r2, force);
+        (unsigned)(slot->family & ~slot->mask) & lanes_bits(vec_above(reach2, x.r2));
+    if (near != 0) energy += short_bonds(pd, w, block, near, &x, reach2, force);
   }
   return energy;
 }

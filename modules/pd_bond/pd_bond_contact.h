@@ -18,6 +18,7 @@ struct bw_pd_contact {
   bw_exchange *plan;
   double *send, *y;   /* (n_sent,3); (n_mine + n_theirs,3) present positions */
   int32_t *site;      /* (n_mine + n_theirs,3) */
+  double *shift;      /* (n_mine + n_theirs,3) from the site, in a cloud; else NULL */
   size_t *pair_start; /* (n_mine + 1) */
   int32_t *pair;      /* index into y */
 };

@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* A storage array with room for overrunning loads on both sides; zero there. */
-static bw_status storage_array(size_t n, bw_real **out)
+bw_status bw_pd_bond__storage_array(size_t n, bw_real **out)
 {
   bw_real *base = NULL;
   BW_TRY(BW_ALLOCATE(&base, n + 2 * BW_PD_PAD));
@@ -24,12 +24,12 @@ static void release_storage_array(bw_real **array)
 static bw_status state_arrays(bw_pd_bond *pd)
 {
   const size_t n = pd->n;
-  BW_TRY(storage_array(pd->n_storage, &pd->w));
+  BW_TRY(bw_pd_bond__storage_array(pd->n_storage, &pd->w));
   BW_TRY(BW_ALLOCATE(&pd->mobile, n));
   BW_TRY(BW_ALLOCATE(&pd->extended_X, 3 * pd->n_extended));
   for (int k = 0; k < 3; k++) {
-    BW_TRY(storage_array(pd->n_storage, &pd->u[k]));
-    BW_TRY(storage_array(pd->n_storage, &pd->vs[k]));
+    BW_TRY(bw_pd_bond__storage_array(pd->n_storage, &pd->u[k]));
+    BW_TRY(bw_pd_bond__storage_array(pd->n_storage, &pd->vs[k]));
     BW_TRY(BW_ALLOCATE(&pd->v[k], n));
     BW_TRY(BW_ALLOCATE(&pd->a[k], n));
     BW_TRY(BW_ALLOCATE(&pd->f[k], n));
@@ -74,6 +74,7 @@ static bw_status build(bw_pd_bond *pd, int64_t n, const int32_t site[], const ui
   bw_pd_bond__material(pd);
   pd->total = n;
   bw_status st = bw_comm_agree(pd->comm, bw_pd_bond__stencil(pd));
+  if (st == BW_OK) st = bw_comm_agree(pd->comm, bw_pd_bond__full_family(pd));
   if (st == BW_OK) bw_pd_bond__calibrate(pd);
   if (st == BW_OK) st = bw_pd_bond__distribute(pd, (size_t)n, site, kind, &near);
   if (st == BW_OK) {
@@ -120,6 +121,7 @@ static void release_stencil(bw_pd_stencil *s)
   bw_release(&s->xi);
   bw_release(&s->r0);
   bw_release(&s->fraction);
+  bw_release(&s->sure);
   bw_release(&s->row);
   bw_release(&s->number);
 }
@@ -141,6 +143,7 @@ void bw_pd_bond_destroy(bw_pd_bond **pd_)
   for (int k = 0; k < 3; k++) {
     release_storage_array(&pd->u[k]);
     release_storage_array(&pd->vs[k]);
+    release_storage_array(&pd->shift[k]);
     void *vector[] = {&pd->v[k],    &pd->a[k],        &pd->f[k],       &pd->extra[k],
                       &pd->damp[k], &pd->v_before[k], &pd->a_before[k]};
     for (size_t q = 0; q < sizeof vector / sizeof *vector; q++)

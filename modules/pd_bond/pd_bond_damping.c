@@ -2,7 +2,7 @@
  *   pair      + k/rho sum_l [(V_l - V_h).e] e Gamma dV     over bonds that hold, e present
  * direction mean      - k/rho (V_h - mean of V_l over the family)  family members by bonds that
  * hold absolute  - k/rho V_h */
-#include "pd_bond_vector.h"
+#include "pd_bond_sweep.h"
 
 bool bw_pd_bond__damped(const bw_pd_bond *pd)
 {
@@ -13,44 +13,43 @@ typedef struct {
   vec pair[3], difference[3], count;
 } damping_sums;
 
-static inline void add_slot(const bw_pd_bond *pd, const bw_pd_slot *slot, const vec uh[3],
-                            const vec vh[3], damping_sums *s)
+INLINE void add_slot(const sweep *all, const bw_pd_slot *slot, const owners *h, const vec vh[3],
+                     bool cloud, damping_sums *s)
 {
-  const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
-  vec z[3], dv[3], along = vec_all(0), r2 = vec_all(0);
+  const bw_real *row = all->row + slot->direction * BW_PD_ROW;
+  const bond x = bond_of(all, slot, row, h, 3, cloud);
+  vec dv[3], along = vec_all(0);
   for (int k = 0; k < 3; k++) {
-    z[k] = (vec_load(pd->u[k] + slot->base) - uh[k]) + vec_all(row[BW_PD_XI + k]);
-    dv[k] = vec_load(pd->vs[k] + slot->base) - vh[k];
-    r2 = vec_fma(z[k], z[k], r2);
-    along = vec_fma(dv[k], z[k], along);
+    dv[k] = vec_load(all->v[k] + slot->base) - vh[k];
+    along = vec_fma(dv[k], x.z[k], along);
   }
-  const vec q = vec_rsqrt(r2);
+  const vec q = vec_rsqrt(x.r2);
   const lanes holds = lanes_of(slot->mask);
-  const vec c = vec_keep(holds, vec_all(row[BW_PD_WEIGHT]) * along * q * q);
+  const vec c = vec_keep(holds, weight_of(all, row, &x, cloud) * along * q * q);
   s->count += vec_keep(holds, vec_all(1));
   for (int k = 0; k < 3; k++) {
-    s->pair[k] = vec_fma(c, z[k], s->pair[k]);
+    s->pair[k] = vec_fma(c, x.z[k], s->pair[k]);
     s->difference[k] += vec_keep(holds, dv[k]);
   }
 }
 
 static void block_damping(const bw_pd_bond *pd, const bw_pd_block *block)
 {
-  const bw_real pair = (bw_real)(pd->damping_pair / pd->config.rho);
+  const sweep all = sweep_of(pd);
+  const bool cloud = pd->config.disorder > 0;
+  const owners h = owners_of(&all, block, 3, cloud);
   const bw_real mean = (bw_real)(pd->damping_mean / pd->config.rho);
-  vec uh[3], vh[3];
+  vec vh[3];
   damping_sums s = {0};
-  for (int k = 0; k < 3; k++) {
-    uh[k] = vec_load(pd->u[k] + block->first);
+  for (int k = 0; k < 3; k++)
     vh[k] = vec_load(pd->vs[k] + block->first);
-  }
   for (uint32_t q = block->slot; q < block[1].slot; q++)
-    if (pd->slot[q].mask != 0) add_slot(pd, &pd->slot[q], uh, vh, &s);
+    if (pd->slot[q].mask != 0) add_slot(&all, &pd->slot[q], &h, vh, cloud, &s);
   vec some; /* a particle without bonds has no mean */
   for (int k = 0; k < BW_PD_LANES; k++)
     some[k] = s.count[k] > 1 ? s.count[k] : 1;
   for (int k = 0; k < 3; k++)
-    vec_put_owners(block, vec_all(pair) * s.pair[k] + vec_all(mean) * (s.difference[k] / some),
+    vec_put_owners(block, vec_all(all.pair) * s.pair[k] + vec_all(mean) * (s.difference[k] / some),
                    pd->damp[k]);
 }
 

@@ -2,48 +2,40 @@
  *
  * With q = 1/(r S), S = w_h + w_l, T = r^2 S^2 the volume-corrected coefficient is
  *   2 c0 Gamma dV/(rho r0) (r - r0)/(r S) = k q (q r^2 S - r0):
- * one reciprocal root holds the length and the correction. */
-#include "pd_bond_vector.h"
+ * one reciprocal root holds the length and the correction. In a cloud it is
+ *   2 c0 Gamma dV/rho (r/r0 - 1)/(r S) = K Gamma q (q r^2 S/r0 - 1), with 1/r0 another root. */
+#include "pd_bond_sweep.h"
 
 #include <math.h>
 
-/* The sweeps are compiled once per geometry, correction and check: nothing of that is decided
- * inside their loops. */
-#define INLINE static inline __attribute__((always_inline))
-
-typedef struct {
-  const bw_pd_block *block;
-  const bw_pd_slot *slot;
-  const bw_real *row, *u[3], *w, *v[3]; /* storage */
-  bw_real *a[3], *damp[3];              /* own */
-  bw_real pair;                         /* k_d/rho */
-} sweep;
-
-typedef struct {
-  vec z[3], r2;
-} bond;
-
-/* Present bond vectors of a slot, with the block's displacement uh. */
-INLINE bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real *row, const vec uh[3],
-                    int dimension)
-{
-  bond x;
-  for (int k = 0; k < dimension; k++)
-    x.z[k] = (vec_load(s->u[k] + slot->base) - uh[k]) + vec_all(row[BW_PD_XI + k]);
-  x.r2 = x.z[0] * x.z[0];
-  for (int k = 1; k < dimension; k++)
-    x.r2 = vec_fma(x.z[k], x.z[k], x.r2);
-  return x;
-}
+/* The sweeps are compiled once per geometry, correction, check, damping, and for lattices and
+ * clouds: nothing of that is decided inside their loops. */
 
 /* Acceleration = force times bond vector; inverse2 = 1/r^2. */
 typedef struct {
   vec force, inverse2;
 } coefficients;
 
-INLINE coefficients coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row, vec r2,
-                                vec wh, bw_pd_surface_correction surface)
+INLINE coefficients cloud_coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row,
+                                      const bond *x, vec wh, bw_pd_surface_correction surface)
 {
+  const vec q0 = vec_rsqrt(x->rest2);
+  const vec k = vec_all(row[BW_PD_STIFFNESS]) * gamma_of(s, x->rest2 * q0);
+  if (surface == BW_PD_SURFACE_VOLUME) {
+    const vec sum = wh + vec_load(s->w + slot->base), t = x->r2 * sum;
+    const vec q = vec_rsqrt(t * sum), qs = q * sum;
+    return (coefficients){k * q * vec_fma(t * q, q0, vec_all(-1)), qs * qs};
+  }
+  const vec q = vec_rsqrt(x->r2), c = k * q * vec_fma(x->r2 * q, q0, vec_all(-1));
+  return (coefficients){surface == BW_PD_SURFACE_NONE ? c : c * (wh + vec_load(s->w + slot->base)),
+                        q * q};
+}
+
+INLINE coefficients coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row,
+                                const bond *x, vec wh, bw_pd_surface_correction surface, bool cloud)
+{
+  if (cloud) return cloud_coefficient(s, slot, row, x, wh, surface);
+  const vec r2 = x->r2;
   const vec k = vec_all(row[BW_PD_STIFFNESS]), minus_r0 = vec_all(row[BW_PD_MINUS_R0]);
   if (surface == BW_PD_SURFACE_VOLUME) {
     const vec sum = wh + vec_load(s->w + slot->base), t = r2 * sum;
@@ -57,25 +49,25 @@ INLINE coefficients coefficient(const sweep *s, const bw_pd_slot *slot, const bw
 
 /* Adds the pair damping of a slot (3.41, ERRATA 4): along the bond, like the force. */
 INLINE void add_damping(const sweep *s, const bw_pd_slot *slot, const bw_real *row, const bond *x,
-                        vec inverse2, const vec vh[3], int dimension, vec sum[3])
+                        vec inverse2, const vec vh[3], int dimension, bool cloud, vec sum[3])
 {
   vec along = vec_all(0);
   for (int k = 0; k < dimension; k++)
     along = vec_fma(vec_load(s->v[k] + slot->base) - vh[k], x->z[k], along);
-  const vec c =
-      vec_keep(lanes_of(slot->mask), vec_all(row[BW_PD_WEIGHT] * s->pair) * along * inverse2);
+  const vec c = vec_keep(lanes_of(slot->mask),
+                         weight_of(s, row, x, cloud) * vec_all(s->pair) * along * inverse2);
   for (int k = 0; k < dimension; k++)
     sum[k] = vec_fma(c, x->z[k], sum[k]);
 }
 
 /* Acceleration of one block's owners; returns whether a bond that holds is beyond s0. */
-INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
+INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension, bool cloud,
                         bw_pd_surface_correction surface, bool check, bool damping)
 {
-  vec uh[3], vh[3], sum[3], damp[3], wh = vec_load(s->w + block->first);
+  const owners h = owners_of(s, block, dimension, cloud);
+  vec vh[3], sum[3], damp[3], wh = vec_load(s->w + block->first);
   lanes beyond = lanes_of(0);
   for (int k = 0; k < dimension; k++) {
-    uh[k] = vec_load(s->u[k] + block->first);
     vh[k] = vec_load(s->v[k] + block->first);
     sum[k] = damp[k] = vec_all(0);
   }
@@ -84,13 +76,13 @@ INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
     if (slot->mask == 0) continue;
     const lanes holds = lanes_of(slot->mask);
     const bw_real *row = s->row + slot->direction * BW_PD_ROW;
-    const bond x = bond_of(s, slot, row, uh, dimension);
-    const coefficients c = coefficient(s, slot, row, x.r2, wh, surface);
+    const bond x = bond_of(s, slot, row, &h, dimension, cloud);
+    const coefficients c = coefficient(s, slot, row, &x, wh, surface, cloud);
     const vec force = vec_keep(holds, c.force);
     for (int k = 0; k < dimension; k++)
       sum[k] = vec_fma(force, x.z[k], sum[k]);
-    if (check) beyond |= vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])) & holds;
-    if (damping) add_damping(s, slot, row, &x, c.inverse2, vh, dimension, damp);
+    if (check) beyond |= vec_above(x.r2, limit_of(row, &x, cloud)) & holds;
+    if (damping) add_damping(s, slot, row, &x, c.inverse2, vh, dimension, cloud, damp);
   }
   for (int k = 0; k < dimension; k++) {
     vec_put_owners(block, sum[k], s->a[k]);
@@ -100,36 +92,37 @@ INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
 }
 
 /* Returns how many blocks were noted in hit. */
-INLINE size_t sweep_blocks(const sweep *s, size_t n, int dimension,
+INLINE size_t sweep_blocks(const sweep *s, size_t n, int dimension, bool cloud,
                            bw_pd_surface_correction surface, bool check, bool damping,
                            uint32_t hit[])
 {
   size_t n_hit = 0;
   for (size_t b = 0; b < n; b++) {
-    const bool beyond = block_force(s, &s->block[b], dimension, surface, check, damping);
+    const bool beyond = block_force(s, &s->block[b], dimension, cloud, surface, check, damping);
     if (check && beyond) hit[n_hit++] = (uint32_t)b;
   }
   return n_hit;
 }
 
-/* One compiled sweep per geometry, correction, check and damping. */
 typedef size_t (*sweep_function)(const sweep *, size_t, uint32_t[]);
-#define ONE(name, dimension, surface, check, damping)                                              \
+#define ONE(name, dimension, cloud, surface, check, damping)                                       \
   static size_t name(const sweep *s, size_t n, uint32_t hit[])                                     \
   {                                                                                                \
-    return sweep_blocks(s, n, dimension, surface, check, damping, hit);                            \
+    return sweep_blocks(s, n, dimension, cloud, surface, check, damping, hit);                     \
   }
-#define FOUR(name, dimension, surface)                                                             \
-  ONE(name, dimension, surface, false, false)                                                      \
-  ONE(name##_damped, dimension, surface, false, true)                                              \
-  ONE(name##_check, dimension, surface, true, false)                                               \
-  ONE(name##_check_damped, dimension, surface, true, true)
-FOUR(plain_2, 2, BW_PD_SURFACE_NONE)
-FOUR(plain_3, 3, BW_PD_SURFACE_NONE)
-FOUR(volume_2, 2, BW_PD_SURFACE_VOLUME)
-FOUR(volume_3, 3, BW_PD_SURFACE_VOLUME)
-FOUR(energy_2, 2, BW_PD_SURFACE_ENERGY)
-FOUR(energy_3, 3, BW_PD_SURFACE_ENERGY)
+#define FOUR(name, dimension, cloud, surface)                                                      \
+  ONE(name, dimension, cloud, surface, false, false)                                               \
+  ONE(name##_damped, dimension, cloud, surface, false, true)                                       \
+  ONE(name##_check, dimension, cloud, surface, true, false)                                        \
+  ONE(name##_check_damped, dimension, cloud, surface, true, true)
+#define ALL(name, surface)                                                                         \
+  FOUR(name##_2, 2, false, surface)                                                                \
+  FOUR(name##_3, 3, false, surface)                                                                \
+  FOUR(name##_cloud_2, 2, true, surface)                                                           \
+  FOUR(name##_cloud_3, 3, true, surface)
+ALL(plain, BW_PD_SURFACE_NONE)
+ALL(volume, BW_PD_SURFACE_VOLUME)
+ALL(energy, BW_PD_SURFACE_ENERGY)
 
 #define ROW(name)                                                                                  \
   {                                                                                                \
@@ -138,28 +131,23 @@ FOUR(energy_3, 3, BW_PD_SURFACE_ENERGY)
       name##_check, name##_check_damped                                                            \
     }                                                                                              \
   }
-static const sweep_function function[3][2][2][2] = {
-    {ROW(plain_2), ROW(plain_3)}, {ROW(volume_2), ROW(volume_3)}, {ROW(energy_2), ROW(energy_3)}};
-
-static sweep sweep_of(const bw_pd_bond *pd)
-{
-  return (sweep){.block = pd->block,
-                 .slot = pd->slot,
-                 .row = pd->stencil.row,
-                 .u = {pd->u[0], pd->u[1], pd->u[2]},
-                 .w = pd->w,
-                 .v = {pd->vs[0], pd->vs[1], pd->vs[2]},
-                 .a = {pd->a[0], pd->a[1], pd->a[2]},
-                 .damp = {pd->damp[0], pd->damp[1], pd->damp[2]},
-                 .pair = (bw_real)(pd->damping_pair / pd->config.rho)};
-}
+#define ROWS(name)                                                                                 \
+  {                                                                                                \
+    {ROW(name##_2), ROW(name##_3)},                                                                \
+    {                                                                                              \
+      ROW(name##_cloud_2), ROW(name##_cloud_3)                                                     \
+    }                                                                                              \
+  }
+static const sweep_function function[3][2][2][2][2] = {ROWS(plain), ROWS(volume), ROWS(energy)};
 
 void bw_pd_bond__force(bw_pd_bond *pd, bool check, bool damping)
 {
   const sweep s = sweep_of(pd);
   const bool really = check && pd->breakage && isfinite(pd->s0);
-  const size_t hits = function[pd->config.surface_correction][pd->dimension - 2][really][damping](
-      &s, pd->n_block, pd->hit);
+  const bool cloud = pd->config.disorder > 0;
+  const sweep_function sweep_all =
+      function[pd->config.surface_correction][cloud][pd->dimension - 2][really][damping];
+  const size_t hits = sweep_all(&s, pd->n_block, pd->hit);
   if (check) pd->n_hit = hits;
 }
 
@@ -182,20 +170,20 @@ static uint8_t unbreakable(const bw_pd_bond *pd, const bw_pd_block *block, const
 static bool break_block(bw_pd_bond *pd, const sweep *s, bw_pd_block *block)
 {
   const bw_pd_surface_correction surface = pd->config.surface_correction;
-  vec uh[3], lost[3], wh = vec_load(s->w + block->first);
+  const bool cloud = pd->config.disorder > 0;
+  const owners h = owners_of(s, block, 3, cloud);
+  vec lost[3], wh = vec_load(s->w + block->first);
   bool any = false;
-  for (int k = 0; k < 3; k++) {
-    uh[k] = vec_load(s->u[k] + block->first);
+  for (int k = 0; k < 3; k++)
     lost[k] = vec_all(0);
-  }
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     bw_pd_slot *slot = &pd->slot[q];
     const bw_real *row = s->row + slot->direction * BW_PD_ROW;
-    const bond x = bond_of(s, slot, row, uh, 3);
-    uint8_t over = slot->mask & lanes_bits(vec_above(x.r2, vec_all(row[BW_PD_LIMIT2])));
+    const bond x = bond_of(s, slot, row, &h, 3, cloud);
+    uint8_t over = slot->mask & lanes_bits(vec_above(x.r2, limit_of(row, &x, cloud)));
     if (over == 0) continue;
     over &= (uint8_t)~unbreakable(pd, block, slot, over);
-    const vec c = vec_keep(lanes_of(over), coefficient(s, slot, row, x.r2, wh, surface).force);
+    const vec c = vec_keep(lanes_of(over), coefficient(s, slot, row, &x, wh, surface, cloud).force);
     for (int k = 0; k < 3; k++)
       lost[k] = vec_fma(c, x.z[k], lost[k]);
     for (int k = 0; k < BW_PD_LANES; k++)
@@ -222,22 +210,27 @@ bool bw_pd_bond__break_hits(bw_pd_bond *pd)
 double bw_pd_bond__elastic(const bw_pd_bond *pd)
 {
   const sweep s = sweep_of(pd);
+  const bool cloud = pd->config.disorder > 0;
   double energy = 0;
   for (size_t b = 0; b < pd->n_block; b++) {
     const bw_pd_block *block = &pd->block[b];
-    vec uh[3], sum = vec_all(0), wh = vec_load(s.w + block->first);
-    for (int k = 0; k < 3; k++)
-      uh[k] = vec_load(s.u[k] + block->first);
+    const owners h = owners_of(&s, block, 3, cloud);
+    vec sum = vec_all(0), wh = vec_load(s.w + block->first);
     for (uint32_t q = block->slot; q < block[1].slot; q++) {
       const bw_real *row = s.row + s.slot[q].direction * BW_PD_ROW;
-      const vec r2 = bond_of(&s, &s.slot[q], row, uh, 3).r2;
+      const bond x = bond_of(&s, &s.slot[q], row, &h, 3, cloud);
+      vec r0 = vec_all(row[BW_PD_R0]), k = vec_all(row[BW_PD_STIFFNESS]);
+      if (cloud) {
+        const vec q0 = vec_rsqrt(x.rest2);
+        r0 = x.rest2 * q0;
+        k *= gamma_of(&s, r0) * q0;
+      }
       const vec both = wh + vec_load(s.w + s.slot[q].base);
       const vec alpha = pd->config.surface_correction == BW_PD_SURFACE_VOLUME   ? 1 / both
                         : pd->config.surface_correction == BW_PD_SURFACE_ENERGY ? both
                                                                                 : vec_all(1);
-      const vec stretch = r2 * vec_rsqrt(r2) - vec_all(row[BW_PD_R0]);
-      sum += vec_keep(lanes_of(s.slot[q].mask),
-                      vec_all(row[BW_PD_STIFFNESS]) * alpha * stretch * stretch);
+      const vec stretch = x.r2 * vec_rsqrt(x.r2) - r0;
+      sum += vec_keep(lanes_of(s.slot[q].mask), k * alpha * stretch * stretch);
     }
     energy += vec_sum(sum);
   }

@@ -40,17 +40,25 @@ enum {
   BW_PD_R0 = 3,        /* |xi| */
   BW_PD_STIFFNESS = 4, /* c0 Gamma dV / (rho |xi|), times 2 (volume) or 1/2 (energy correction) */
   BW_PD_LIMIT2 = 5,    /* (|xi| (1 + s0))^2 */
-  BW_PD_WEIGHT = 6,    /* Gamma dV */
+  BW_PD_WEIGHT = 6,    /* Gamma dV; in a cloud the last three are without Gamma and |xi| */
   BW_PD_MINUS_R0 = 7   /* -|xi| */
 };
 
+/* A bond before any load. */
+typedef struct {
+  double xi[3], r0, fraction; /* [L], |xi|, Gamma */
+} bw_pd_rest;
+
+/* In a cloud: the directions from site to site in which there can be a bond. */
 typedef struct {
   int n;            /* directions */
   int reach;        /* largest component of an offset */
+  int n_sure;       /* directions in which there always is a bond; on a lattice all */
   int32_t *offset;  /* (n,3) lattice steps */
-  double *xi;       /* (n,3) [L] */
+  double *xi;       /* (n,3) from site to site [L] */
   double *r0;       /* (n) |xi| [L] */
   double *fraction; /* (n) Gamma */
+  bool *sure;       /* (n) */
   bw_real *row;     /* (n, BW_PD_ROW) */
   int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
 } bw_pd_stencil;
@@ -91,8 +99,12 @@ struct bw_pd_bond {
   int dimension;              /* 2 or 3 */
   double horizon, c0, s0, dv; /* dv: volume of one particle */
   double full_volume;         /* V_0 of the volume method (3.44) */
-  double sum_stiffness;       /* max over particles of sum_l c0 alpha Gamma V/|xi| (ERRATA 6) */
-  double sum_weight;          /* max of sum_l Gamma V */
+  struct {
+    double volume, moment, crossing; /* sums over a full family of Gamma dV times 1, |xi| and, for
+                                        xi.n > 0, |xi| xi.n */
+  } full;
+  double sum_stiffness; /* max over particles of sum_l c0 alpha Gamma V/|xi| (ERRATA 6) */
+  double sum_weight;    /* max of sum_l Gamma V */
   double damping_pair, damping_mean, damping_absolute;
   bool breakage;
   bw_pd_stencil stencil;
@@ -120,6 +132,7 @@ struct bw_pd_bond {
   size_t n_hit;
 
   bw_real *u[3], *vs[3], *w;          /* storage: displacement, velocity, surface factor */
+  bw_real *shift[3];                  /* storage: reference place from its site; NULL: a lattice */
   bw_real *v[3], *a[3];               /* own: velocity, bond force / rho */
   bw_real *extra[3], *damp[3];        /* own: (contact + damping)/rho, damping/rho */
   bw_real *f[3];                      /* own: external force / rho */
@@ -137,6 +150,9 @@ struct bw_pd_bond {
   int64_t events, bonds_directed, precracked;        /* precracked: directed, of this rank */
 };
 
+/* pd_bond_create.c: zeros, with BW_PD_PAD more before and after */
+bw_status bw_pd_bond__storage_array(size_t n, bw_real **out);
+
 /* pd_bond_config.c */
 bw_status bw_pd_bond__check_config(const bw_pd_bond_config *config);
 void bw_pd_bond__material(bw_pd_bond *pd);
@@ -144,13 +160,25 @@ void bw_pd_bond__constants(bw_pd_bond *pd);
 
 /* pd_bond_calibrate.c */
 double bw_pd_bond__classical_dilation(const bw_pd_bond_config *config); /* energy density/e^2 */
+bw_status bw_pd_bond__full_family(bw_pd_bond *pd); /* its sums, once the stencil is there */
 void bw_pd_bond__calibrate(bw_pd_bond *pd);
 
 /* pd_bond_fraction.c: part of the cell at `offset` (in ds) within the distance m of the origin */
 double bw_pd_bond__fraction_area(double m, const int32_t offset[3]);
 bw_status bw_pd_bond__fraction_volume(double m, const int32_t offset[3], double *fraction);
 
+/* pd_bond_cloud.c: reference places off their sites */
+bw_status bw_pd_bond__scatter(bw_pd_bond *pd); /* shift of all places, once they are numbered */
+/* The bond in a direction of the stencil whose ends are off their sites by h and l [L]. */
+bw_pd_rest bw_pd_bond__apart(const bw_pd_bond *pd, int direction, const double h[3],
+                             const double l[3]);
+bw_pd_rest bw_pd_bond__rest_of_cloud(const bw_pd_bond *pd, int direction, int32_t h, int32_t l);
+/* Means over the full families of a sample of sites: of the sums of Gamma, Gamma |xi| and
+ * Gamma |xi|^2, lengths in ds. */
+bw_status bw_pd_bond__cloud_means(const bw_pd_bond *pd, double mean[3]);
+
 /* pd_bond_stencil.c */
+double bw_pd_bond__family_reach(const bw_pd_bond_config *config); /* in ds */
 bw_status bw_pd_bond__stencil(bw_pd_bond *pd);
 int bw_pd_bond__direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
 
@@ -213,13 +241,24 @@ static inline int32_t bw_pd_bond__owner(const bw_pd_block *block, int lane)
   return block->own + __builtin_popcount(block->mask & ((1u << lane) - 1u));
 }
 
-static inline void bw_pd_bond__reference(const bw_pd_bond_config *c, const int32_t site[3],
-                                         double X0[3])
+/* Reference place of an own particle or a copy. */
+static inline void bw_pd_bond__reference(const bw_pd_bond *pd, size_t e, double X0[3])
 {
-  const bool planar = c->geometry != BW_PD_3D;
+  const bw_pd_bond_config *c = &pd->config;
+  const int32_t *site = pd->site + 3 * e;
   for (int k = 0; k < 3; k++) {
     X0[k] = c->origin[k];
-    for (int d = 0; d < (planar ? 2 : 3); d++)
+    for (int d = 0; d < pd->dimension; d++)
       X0[k] += c->axes[d][k] * (site[d] + 0.5) * c->ds;
+    if (pd->shift[k] != NULL) X0[k] += (double)pd->shift[k][pd->place[e]];
   }
+}
+
+/* The bond of the storage places h and l, l in a direction of the stencil from h. */
+static inline bw_pd_rest bw_pd_bond__rest(const bw_pd_bond *pd, int direction, int32_t h, int32_t l)
+{
+  if (pd->config.disorder > 0) return bw_pd_bond__rest_of_cloud(pd, direction, h, l);
+  const double *xi = pd->stencil.xi + 3 * direction;
+  return (bw_pd_rest){
+      {xi[0], xi[1], xi[2]}, pd->stencil.r0[direction], pd->stencil.fraction[direction]};
 }

@@ -8,7 +8,7 @@
 void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3])
 {
   double X[3];
-  bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X);
+  bw_pd_bond__reference(pd, i, X);
   for (int k = 0; k < 3; k++)
     X[k] += (double)pd->u[k][pd->place[i]];
   for (int a = 0; a < 3; a++)
@@ -24,6 +24,7 @@ void bw_pd_contact__forget(bw_pd_contact *c)
   bw_release(&c->send);
   bw_release(&c->y);
   bw_release(&c->site);
+  bw_release(&c->shift);
   bw_release(&c->pair_start);
   bw_release(&c->pair);
   c->n_mine = c->n_theirs = c->n_sent = 0;
@@ -35,12 +36,18 @@ static bw_status candidates(const bw_pd_bond *pd, bw_pd_contact *c)
   int32_t *held = NULL;
   BW_TRY(BW_ALLOCATE(&held, pd->n));
   for (size_t b = 0; b < pd->n_block; b++)
-    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++)
-      for (int lane = 0; lane < BW_PD_LANES; lane++)
-        if (pd->slot[q].mask >> lane & 1) held[bw_pd_bond__owner(&pd->block[b], lane)]++;
+    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
+      const bw_pd_slot *slot = &pd->slot[q];
+      const bool sure = pd->stencil.sure[slot->direction];
+      for (int lane = 0; lane < BW_PD_LANES; lane++) {
+        const int32_t h = bw_pd_bond__owner(&pd->block[b], lane);
+        if (sure && (slot->mask >> lane & 1)) held[h]++;
+        if ((slot->family & ~slot->mask) >> lane & 1) held[h] -= pd->stencil.n;
+      }
+    }
   bw_status st = BW_ALLOCATE(&c->mine, pd->n);
   for (size_t i = 0; i < pd->n && st == BW_OK; i++)
-    if (held[i] < pd->stencil.n) c->mine[c->n_mine++] = (int32_t)i;
+    if (held[i] < pd->stencil.n_sure) c->mine[c->n_mine++] = (int32_t)i;
   bw_release(&held);
   return st;
 }
@@ -147,16 +154,19 @@ static bw_status make_cells(const bw_pd_bond *pd, const bw_pd_contact *c, cells 
   return BW_OK;
 }
 
-/* Whether two sites are in each other's family: those pairs need no search. */
-static bool same_family(const bw_pd_bond *pd, const int32_t a[3], const int32_t b[3])
+/* Whether y[a] and y[b] are in each other's family: those pairs need no search. */
+static bool same_family(const bw_pd_bond *pd, const bw_pd_contact *c, size_t a, size_t b)
 {
   int32_t o[3];
-  for (int k = 0; k < 3; k++) {
+  for (size_t k = 0; k < 3; k++) {
     const int32_t p = (int32_t)lround(pd->config.period[k] / pd->config.ds);
-    o[k] = b[k] - a[k];
+    o[k] = c->site[3 * b + k] - c->site[3 * a + k];
     if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
   }
-  return bw_pd_bond__direction(&pd->stencil, o) >= 0;
+  const int direction = bw_pd_bond__direction(&pd->stencil, o);
+  if (direction < 0 || pd->stencil.sure[direction]) return direction >= 0;
+  return bw_pd_bond__apart(pd, direction, c->shift + 3 * a, c->shift + 3 * b).r0 <
+         pd->config.ds * bw_pd_bond__family_reach(&pd->config);
 }
 
 static bw_status append_pair(bw_pd_contact *c, size_t *n, size_t *capacity, int32_t partner)
@@ -183,7 +193,7 @@ static bw_status pairs_in_cell(const bw_pd_bond *pd, bw_pd_contact *c, const cel
     if ((size_t)p == q || memcmp(g->cell + 3 * p, cell, 3 * sizeof *cell) != 0) continue;
     bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
-    if (same_family(pd, c->site + 3 * q, c->site + 3 * p)) continue;
+    if (same_family(pd, c, q, (size_t)p)) continue;
     BW_TRY(append_pair(c, n, capacity, p));
   }
   return BW_OK;
@@ -228,6 +238,30 @@ static bw_status list_pairs(const bw_pd_bond *pd, bw_pd_contact *c)
   return st;
 }
 
+/* What others sent goes behind the own rows of `all`. */
+static void share_rows(const bw_pd_contact *c, size_t bytes, const void *sent, void *all)
+{
+  bw_exchange_forward(c->plan, bytes, sent, (unsigned char *)all + c->n_mine * bytes);
+}
+
+/* From the sites, in a cloud. */
+static bw_status share_shifts(const bw_pd_bond *pd, bw_pd_contact *c)
+{
+  double *sent = NULL;
+  bw_status st = BW_ALLOCATE(&c->shift, 3 * (c->n_mine + c->n_theirs));
+  BW_THEN(st, BW_ALLOCATE(&sent, 3 * c->n_sent));
+  BW_TRY(bw_comm_agree(pd->comm, st));
+  for (size_t k = 0; k < 3; k++) {
+    for (size_t q = 0; q < c->n_mine; q++)
+      c->shift[3 * q + k] = (double)pd->shift[k][pd->place[c->mine[q]]];
+    for (size_t q = 0; q < c->n_sent; q++)
+      sent[3 * q + k] = (double)pd->shift[k][pd->place[c->sent[q]]];
+  }
+  share_rows(c, 3 * sizeof *sent, sent, c->shift);
+  bw_release(&sent);
+  return BW_OK;
+}
+
 static bw_status share(const bw_pd_bond *pd, bw_pd_contact *c)
 {
   int32_t *send = NULL;
@@ -245,10 +279,10 @@ static bw_status share(const bw_pd_bond *pd, bw_pd_contact *c)
     bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
     memcpy(send + 3 * q, pd->site + 3 * (size_t)c->sent[q], 3 * sizeof *send);
   }
-  bw_exchange_forward(c->plan, 3 * sizeof(double), c->send, c->y + 3 * n);
-  bw_exchange_forward(c->plan, 3 * sizeof *send, send, c->site + 3 * n);
+  share_rows(c, 3 * sizeof(double), c->send, c->y);
+  share_rows(c, 3 * sizeof *send, send, c->site);
   bw_release(&send);
-  return BW_OK;
+  return pd->config.disorder > 0 ? share_shifts(pd, c) : BW_OK;
 }
 
 bw_status bw_pd_contact__search(bw_pd_bond *pd)

@@ -91,6 +91,13 @@ static bw_status blocks(bw_pd_bond *pd)
   return BW_ALLOCATE(&pd->hit, pd->n_block);
 }
 
+/* In a cloud a direction of the stencil is a bond only where the particles are near enough. */
+static bool beyond_family(const bw_pd_bond *pd, int direction, int32_t h, int32_t l)
+{
+  return !pd->stencil.sure[direction] && !(bw_pd_bond__rest(pd, direction, h, l).r0 <
+                                           pd->config.ds * bw_pd_bond__family_reach(&pd->config));
+}
+
 /* Slots of one direction of a block, to out[] when not NULL; returns how many. */
 static int direction_slots(const bw_pd_bond *pd, const bw_pd_map *near, const bw_pd_block *block,
                            int direction, bw_pd_slot out[BW_PD_LANES])
@@ -104,6 +111,7 @@ static int direction_slots(const bw_pd_bond *pd, const bw_pd_map *near, const bw
         bw_pd_map_get(near, (const int32_t[3]){s[0] + o[0], s[1] + o[1], s[2] + o[2]});
     if (e < 0) continue;
     const int32_t base = pd->place[e] - lane;
+    if (beyond_family(pd, direction, block->first + lane, pd->place[e])) continue;
     int q = 0;
     while (q < n && out[q].base != base)
       q++;
@@ -118,6 +126,7 @@ static int direction_slots(const bw_pd_bond *pd, const bw_pd_map *near, const bw
 bw_status bw_pd_bond__slots(bw_pd_bond *pd, const bw_pd_map *near)
 {
   BW_TRY(number(pd));
+  if (pd->config.disorder > 0) BW_TRY(bw_pd_bond__scatter(pd));
   BW_TRY(runs(pd));
   BW_TRY(blocks(pd));
   bw_pd_slot some[BW_PD_LANES];
@@ -170,9 +179,10 @@ bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd)
       for (int lane = 0; lane < BW_PD_LANES; lane++) {
         if (!(pd->slot[q].family >> lane & 1)) continue;
         const int32_t h = bw_pd_bond__owner(&pd->block[b], lane);
-        const int d = pd->slot[q].direction;
-        volume[h] += pd->stencil.fraction[d] * pd->dv;
-        moment[h] += pd->stencil.fraction[d] * pd->dv * pd->stencil.r0[d];
+        const bw_pd_rest rest = bw_pd_bond__rest(
+            pd, pd->slot[q].direction, pd->block[b].first + lane, pd->slot[q].base + lane);
+        volume[h] += rest.fraction * pd->dv;
+        moment[h] += rest.fraction * pd->dv * rest.r0;
       }
   for (size_t p = 0; p < pd->n_storage && st == BW_OK; p++)
     pd->w[p] = 1;
@@ -208,9 +218,10 @@ void bw_pd_bond__bounds(bw_pd_bond *pd)
       for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
         const bw_pd_slot *slot = &pd->slot[q];
         if (!(slot->family >> lane & 1)) continue;
-        const double w = pd->stencil.fraction[slot->direction] * pd->dv;
-        const double alpha = bw_pd_bond__alpha(pd, pd->block[b].first + lane, slot->base + lane);
-        stiffness += pd->c0 * alpha * w / pd->stencil.r0[slot->direction];
+        const int32_t h = pd->block[b].first + lane, l = slot->base + lane;
+        const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
+        const double w = rest.fraction * pd->dv;
+        stiffness += pd->c0 * bw_pd_bond__alpha(pd, h, l) * w / rest.r0;
         weight += w;
       }
       most[0] = fmax(most[0], stiffness);

@@ -5,10 +5,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* (|xi|/ds)^2 is a whole number: the margin only absorbs the rounding of m. */
-static bool in_family(const bw_pd_bond_config *c, const int32_t o[3])
+double bw_pd_bond__family_reach(const bw_pd_bond_config *c)
 {
-  const double m = c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0 : 0.5);
+  return c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0 : 0.5);
+}
+
+/* Whether sites at an offset are nearer than the family's reach, both moved by up to `more`/2 ds.
+ * (|xi|/ds)^2 is a whole number: the margin only absorbs the rounding of m. */
+static bool in_reach(const bw_pd_bond_config *c, const int32_t o[3], double more)
+{
+  const double m = bw_pd_bond__family_reach(c) + more;
   const int64_t r2 = (int64_t)o[0] * o[0] + (int64_t)o[1] * o[1] + (int64_t)o[2] * o[2];
   return r2 > 0 && (double)r2 < m * m * (1 - 1e-12);
 }
@@ -22,7 +28,7 @@ static int list_offsets(const bw_pd_bond *pd, bw_pd_stencil *s)
     for (int32_t y = -r; y <= r; y++)
       for (int32_t x = -r; x <= r; x++) {
         const int32_t o[3] = {x, y, z};
-        if (!in_family(&pd->config, o)) continue;
+        if (!in_reach(&pd->config, o, 2 * pd->config.disorder)) continue;
         if (s->offset != NULL)
           for (int k = 0; k < 3; k++)
             s->offset[3 * n + k] = o[k];
@@ -34,7 +40,7 @@ static int list_offsets(const bw_pd_bond *pd, bw_pd_stencil *s)
 /* 3.33 with ERRATA 2: linear from 1 at m - 1/2 to 0 at m + 1/2. */
 static double fraction_linear(double m, const int32_t o[3])
 {
-  const double r = sqrt((double)o[0] * o[0] + (double)o[1] * o[1]);
+  const double r = sqrt((double)o[0] * o[0] + (double)o[1] * o[1] + (double)o[2] * o[2]);
   return fmax(0, fmin(1, m - r + 0.5));
 }
 
@@ -94,7 +100,7 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
 {
   bw_pd_stencil *s = &pd->stencil;
   const bw_pd_bond_config *c = &pd->config;
-  s->reach = (int)ceil(c->horizon_ratio + 0.5);
+  s->reach = (int)ceil(c->horizon_ratio + 0.5 + 2 * c->disorder);
   const int side = 2 * s->reach + 1;
   s->n = list_offsets(pd, s);
   const size_t n = (size_t)s->n, cells = (size_t)(side * side * side);
@@ -102,6 +108,7 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
   BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
   BW_TRY(BW_ALLOCATE(&s->r0, n));
   BW_TRY(BW_ALLOCATE(&s->fraction, n));
+  BW_TRY(BW_ALLOCATE(&s->sure, n));
   BW_TRY(BW_ALLOCATE(&s->row, n * BW_PD_ROW));
   BW_TRY(BW_ALLOCATE(&s->number, cells));
   list_offsets(pd, s);
@@ -116,6 +123,8 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
         s->xi[3 * q + k] += c->ds * o[d] * c->axes[d][k];
     }
     s->r0[q] = c->ds * sqrt(r2);
+    s->sure[q] = in_reach(c, o, -2 * c->disorder);
+    s->n_sure += s->sure[q];
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
         (int16_t)q;
   }

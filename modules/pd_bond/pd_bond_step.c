@@ -164,7 +164,7 @@ static bw_status diverged(const bw_pd_bond *pd, double dt)
     for (int k = 0; k < 3; k++)
       v2 += (double)pd->v[k][i] * (double)pd->v[k][i];
     if (sqrt(v2) * dt <= 0.5 * pd->horizon) continue;
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X0);
+    bw_pd_bond__reference(pd, i, X0);
     return BW_FAIL(BW_EDIVERGED,
                    "pd_bond_step: particle %lld (at first at %g, %g, %g) moves at %g, more than a "
                    "horizon %g in dt = %g; the force on it or dt is too large",

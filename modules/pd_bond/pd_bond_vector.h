@@ -195,6 +195,43 @@ static inline lanes vec_above(vec a, vec b)
 
 #endif
 
+/* The smaller of a and b; x moved into 0 .. 1. */
+#if defined(__AVX512VL__) && !defined(BW_SINGLE)
+static inline vec vec_least(vec a, vec b)
+{
+  return (vec)_mm512_min_pd((__m512d)a, (__m512d)b);
+}
+
+static inline vec vec_clamp(vec x)
+{
+  return (vec)_mm512_min_pd(_mm512_max_pd((__m512d)x, _mm512_setzero_pd()), _mm512_set1_pd(1));
+}
+#elif defined(__AVX512VL__)
+static inline vec vec_least(vec a, vec b)
+{
+  return (vec)_mm256_min_ps((__m256)a, (__m256)b);
+}
+
+static inline vec vec_clamp(vec x)
+{
+  return (vec)_mm256_min_ps(_mm256_max_ps((__m256)x, _mm256_setzero_ps()), _mm256_set1_ps(1));
+}
+#else
+static inline vec vec_least(vec a, vec b)
+{
+  for (int k = 0; k < BW_PD_LANES; k++)
+    a[k] = a[k] < b[k] ? a[k] : b[k];
+  return a;
+}
+
+static inline vec vec_clamp(vec x)
+{
+  for (int k = 0; k < BW_PD_LANES; k++)
+    x[k] = x[k] < 0 ? 0 : x[k] < 1 ? x[k] : 1;
+  return x;
+}
+#endif
+
 /* The lanes of a block's owners to successive own places: all at once when the block is full. */
 static inline void vec_put_owners(const bw_pd_block *block, vec x, bw_real *own)
 {

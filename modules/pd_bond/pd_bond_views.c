@@ -96,7 +96,7 @@ double bw_pd_bond_volume(const bw_pd_bond *pd)
 void bw_pd_bond_get_reference(const bw_pd_bond *pd, double X0[])
 {
   for (size_t i = 0; i < pd->n; i++)
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X0 + 3 * i);
+    bw_pd_bond__reference(pd, i, X0 + 3 * i);
 }
 
 void bw_pd_bond_get_position(const bw_pd_bond *pd, double X[])
@@ -133,7 +133,7 @@ void bw_pd_bond_set_state(bw_pd_bond *pd, const double X[], const double V[])
 {
   double X0[3];
   for (size_t i = 0; i < pd->n; i++) {
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X0);
+    bw_pd_bond__reference(pd, i, X0);
     for (int k = 0; k < pd->dimension; k++) {
       pd->u[k][pd->place[i]] = (bw_real)(X[3 * i + (size_t)k] - X0[k]);
       pd->v[k][i] = (bw_real)V[3 * i + (size_t)k];

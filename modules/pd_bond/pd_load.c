@@ -35,7 +35,7 @@ static bool in_box(const bw_pd_bond *pd, size_t i, const double lower[3], const 
 {
   double X0[3];
   bool in = (pd->kind[i] & BW_PD_PRESCRIBED) == 0;
-  bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X0);
+  bw_pd_bond__reference(pd, i, X0);
   for (int k = 0; k < pd->dimension; k++)
     in = in && X0[k] >= lower[k] && X0[k] < upper[k];
   return in;
@@ -75,7 +75,7 @@ bw_status bw_pd_load_velocity(bw_pd_bond *pd, bw_pd_load_field field, const void
   if (st == BW_OK) {
     bw_pd_bond_get_position(pd, X);
     for (size_t i = 0; i < pd->n; i++) {
-      bw_pd_bond__reference(&pd->config, pd->site + 3 * i, X0);
+      bw_pd_bond__reference(pd, i, X0);
       field(X0, V + 3 * i, data);
     }
     bw_pd_bond_set_state(pd, X, V);

@@ -17,18 +17,17 @@ static void block_product(const bw_pd_bond *pd, const solver *s, const bw_pd_blo
   double sum[BW_PD_LANES][3] = {{0}};
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     const bw_pd_slot *slot = &pd->slot[q];
-    const int d = slot->direction;
-    const double *xi = pd->stencil.xi + 3 * d, r0 = pd->stencil.r0[d];
-    const double constant = pd->c0 * pd->stencil.fraction[d] * pd->dv / (r0 * r0 * r0);
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
       if (!(slot->mask >> lane & 1)) continue;
       const int32_t h = block->first + lane, l = slot->base + lane;
+      const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
       double along = 0;
       for (int k = 0; k < 3; k++)
-        along += xi[k] * ((double)s->copy[k][h] - (double)s->copy[k][l]);
-      along *= constant * bw_pd_bond__alpha(pd, h, l);
+        along += rest.xi[k] * ((double)s->copy[k][h] - (double)s->copy[k][l]);
+      along *= pd->c0 * rest.fraction * pd->dv / (rest.r0 * rest.r0 * rest.r0) *
+               bw_pd_bond__alpha(pd, h, l);
       for (int k = 0; k < 3; k++)
-        sum[lane][k] += along * xi[k];
+        sum[lane][k] += along * rest.xi[k];
     }
   }
   for (int lane = 0; lane < BW_PD_LANES; lane++)

@@ -32,8 +32,9 @@ void bw_pd_static__masses(const bw_pd_bond *pd, double mass[])
       for (uint32_t q = block->slot; q < block[1].slot; q++) {
         const bw_pd_slot *slot = &pd->slot[q];
         if (!(slot->mask >> lane & 1)) continue;
-        sum += bw_pd_bond__alpha(pd, block->first + lane, slot->base + lane) *
-               pd->stencil.fraction[slot->direction] / pd->stencil.r0[slot->direction];
+        const int32_t h = block->first + lane, l = slot->base + lane;
+        const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
+        sum += bw_pd_bond__alpha(pd, h, l) * rest.fraction / rest.r0;
       }
       sum *= 0.5 * pd->c0 * pd->dv;
       mass[bw_pd_bond__owner(block, lane)] = sum > 0 ? sum : 0.5 * pd->sum_stiffness + 1e-300;

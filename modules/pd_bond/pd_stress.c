@@ -14,9 +14,10 @@ typedef struct {
 } family_sums;
 
 /* Adds one bond: w = Gamma dV, k = c0 alpha. */
-static void add_bond(family_sums *sum, const double xi[3], const double y[3], double r0, double w,
+static void add_bond(family_sums *sum, const bw_pd_rest *rest, const double y[3], double w,
                      double k)
 {
+  const double *xi = rest->xi, r0 = rest->r0;
   const double r = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
   const double f = r > 0 ? 0.5 * k * w * (r - r0) / (r0 * r) : 0; /* 1/2 c0 alpha s w/|y| */
   for (int a = 0; a < 3; a++)
@@ -35,12 +36,11 @@ static void block_sums(const bw_pd_bond *pd, const bw_pd_block *block, int lane,
     const bw_pd_slot *slot = &pd->slot[q];
     if (!(slot->mask >> lane & 1)) continue;
     const int32_t l = slot->base + lane;
-    const double *xi = pd->stencil.xi + 3 * slot->direction;
+    const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
     double y[3];
     for (int k = 0; k < 3; k++)
-      y[k] = xi[k] + ((double)pd->u[k][l] - (double)pd->u[k][h]);
-    add_bond(sum, xi, y, pd->stencil.r0[slot->direction],
-             pd->stencil.fraction[slot->direction] * pd->dv, pd->c0 * bw_pd_bond__alpha(pd, h, l));
+      y[k] = rest.xi[k] + ((double)pd->u[k][l] - (double)pd->u[k][h]);
+    add_bond(sum, &rest, y, rest.fraction * pd->dv, pd->c0 * bw_pd_bond__alpha(pd, h, l));
   }
 }
 

@@ -12,7 +12,7 @@ bw_pd_interface_config bw_pd_interface_config_default(void)
   return c;
 }
 
-static bw_status check_config(const bw_pd_interface_config *c, int sectors)
+static bw_status check_config(const bw_pd_interface_config *c, int sectors, double disorder)
 {
   BW_REQUIRE(isfinite(c->threshold) && c->threshold > 0.0, BW_EINPUT,
              "interface: threshold = %g has to be positive (1 is the horizon)", c->threshold);
@@ -21,6 +21,11 @@ static bw_status check_config(const bw_pd_interface_config *c, int sectors)
   BW_REQUIRE(c->n_empty >= 0 && c->n_empty <= sectors, BW_EINPUT,
              "interface: n_empty = %d has to be 1 to %d, or 0 for the default", c->n_empty,
              sectors);
+  for (int d = 0; d < 3; d++)
+    BW_REQUIRE(disorder == 0 || (!c->walled[d][0] && !c->walled[d][1]), BW_EINPUT,
+               "interface: walled[%d] needs a solid on a lattice, which a wall can mirror; it has "
+               "disorder = %g",
+               d, disorder);
   for (int d = 0; d < 3; d++)
     for (int side = 0; side < 2; side++)
       BW_REQUIRE(!c->walled[d][side] || isfinite(side ? c->upper[d] : c->lower[d]), BW_EINPUT,
@@ -119,7 +124,7 @@ static void measure_reference(bw_pd_interface *pi)
 static bw_status build(bw_pd_interface *pi)
 {
   BW_TRY(bw_pd_interface__stencil_create(pi->pd, &pi->stencil));
-  BW_TRY(check_config(&pi->config, pi->stencil.sectors));
+  BW_TRY(check_config(&pi->config, pi->stencil.sectors, bw_pd_bond_settings(pi->pd)->disorder));
   if (pi->config.n_empty == 0) pi->config.n_empty = pi->stencil.dims == 2 ? 2 : 1;
   pi->opening = pi->config.threshold * bw_pd_bond_horizon(pi->pd);
   return allocate_arrays(pi);

@@ -17,11 +17,12 @@
  *   equal: as with POROUS 3.96, the body's area over their number.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
  * Sides of the domain against which the solid leans (a wall of the channel) are not surface:
- * give them as planes in the config. There partners are taken as mirrored in the plane, until the
- * particle has moved from the wall by more than the threshold or its bonds across it broke.
- * Particles beyond such a plane (ghost layers) are never surface.
- * MPI: results are of the rank's own particles. Updates cost only the copying of positions and
- * the normals when no bond broke. */
+ * (refused for a disordered cloud, which no plane mirrors) give them as planes in the config. There
+ * partners are taken as mirrored in the plane, until the particle has moved from the wall by more
+ * than the threshold or its bonds across it broke. Particles beyond such a plane (ghost layers) are
+ * never surface. A disordered cloud has the sectors, weights, first surface and areas of its sites,
+ * and normals from the true present places. MPI: results are of the rank's own particles. Updates
+ * cost only the copying of positions and the normals when no bond broke. */
 #pragma once
 #include "bw_pd_bond.h"
 

@@ -108,7 +108,7 @@ bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface_
   s->family = c->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
   s->slots = bw_pd_bond_max_family(pd);
-  s->reach = (int)floor(c->horizon_ratio + 0.5);
+  s->reach = (int)floor(c->horizon_ratio + 0.5 + 2.0 * c->disorder);
   const size_t n = (size_t)s->slots, w = (size_t)(2 * s->reach + 1);
   BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
   BW_TRY(BW_ALLOCATE(&s->fraction, n));

@@ -47,13 +47,17 @@ static void compare(const bw_pd_bond *a, const bw_pd_bond *b, pd_getter get, dou
   bw_release(&y);
 }
 
-static bw_pd_bond_config breaking(bool damped)
+/* Four ways to run: RK3 or damped Verlet, on a lattice or in a cloud. */
+enum { WAYS = 4 };
+static bw_pd_bond_config breaking(int way)
 {
+  const bool damped = way % 2 == 1;
   bw_pd_bond_config c = pd_soft(BW_PD_3D);
   c.G0 = 0.003;
   c.damping_pair = damped ? 0.02 : 0;
   c.damping_mean = damped ? 0.01 : 0;
   c.integrator = damped ? BW_PD_VERLET : BW_PD_RK3;
+  c.disorder = way < 2 ? 0 : 0.3;
   return c;
 }
 
@@ -61,8 +65,8 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
 {
   bw_comm *self = alone();
   pd_body body = holed();
-  for (int damped = 0; damped < 2; damped++) {
-    const bw_pd_bond_config c = breaking(damped);
+  for (int way = 0; way < WAYS; way++) {
+    const bw_pd_bond_config c = breaking(way);
     bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
     ck_assert_double_eq(bw_pd_bond_dt_max(many), bw_pd_bond_dt_max(one));
     pd_set(many, NULL, shake);
@@ -135,8 +139,8 @@ START_TEST(restart_on_another_number_of_ranks)
 {
   bw_comm *self = alone();
   pd_body body = holed();
-  for (int damped = 0; damped < 2; damped++) {
-    const bw_pd_bond_config c = breaking(damped);
+  for (int way = 0; way < WAYS; way++) {
+    const bw_pd_bond_config c = breaking(way);
     bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
     const double dt = 0.4 * bw_pd_bond_dt_max(one);
     bw_check_ok(bw_pd_bond_precrack(many, (double[]){1, 1, 0.5}, (double[]){2, 1, 0.5},

@@ -30,7 +30,7 @@ static const bw_shape ring[] = {
     {.kind = BW_SHAPE_CYLINDER, .remove = true, .centre = {2, 1, 0}, .radius = 7.5, .axis = 2},
 };
 
-/* The surface is exactly the particles with an open side. */
+/* The surface is exactly the particles with an open side, in a cloud those whose site has one. */
 START_TEST(surface_is_the_particles_with_an_open_side)
 {
   const struct {
@@ -40,10 +40,11 @@ START_TEST(surface_is_the_particles_with_an_open_side)
   } row[] = {{1, cube, false},       {1, ball, false}, {2, tube, false}, {2, porous, false},
              {2, porous_bcc, false}, {1, disc, true},  {2, ring, true}};
   for (size_t q = 0; q < sizeof row / sizeof *row; q++)
-    for (int m = 2; m <= 4; m++) {
+    for (int m = 2; m <= 5; m++) {
       bw_pd_bond_config c = body_config(row[q].planar);
       const bw_pd_interface_config ic = bw_pd_interface_config_default();
-      c.horizon_ratio = m;
+      c.horizon_ratio = m < 5 ? m : 3;
+      c.disorder = m < 5 ? 0 : 0.3;
       body b = body_create(row[q].count, row[q].shape, &c, &ic);
       ck_assert_msg(body_wrong(&b, &ic) == 0, "body %zu, m = %d: %d wrong", q, m,
                     body_wrong(&b, &ic));
@@ -90,6 +91,30 @@ static double total_area(const body *b)
     area += s.A[q];
   return body_sum(area);
 }
+
+/* The same shapes as clouds: nothing hides, and the first areas are those of the sites. The
+ * particle itself is up to 0.3 ds to the side of where its neighbours see it, at ds from their
+ * centroid: up to atan(0.3) = 17 degrees and the lattice's 12, in the mean 0.45 of it (of the
+ * projection of a ball's points) and the lattice's 4.5. Walls are refused. */
+START_TEST(clouds_have_normals_and_areas)
+{
+  bw_pd_interface_config ic = bw_pd_interface_config_default();
+  bw_pd_bond_config c = body_config(false);
+  double angle[2];
+  body sites = body_create(1, ball, &c, &ic);
+  c.disorder = 0.3;
+  body b = body_create(1, ball, &c, &ic);
+  angles(&b, ball[0].centre, 3, -INFINITY, INFINITY, angle);
+  ck_assert_msg(angle[0] < 29.0 && angle[1] < 12.2, "cloud: %g, %g", angle[0], angle[1]);
+  bw_check_near(bw_pd_interface_reference_area(b.pi) / bw_pd_interface_reference_area(sites.pi),
+                1.0, 0.01);
+  body_destroy(&sites);
+  bw_pd_interface *other = NULL;
+  ic.walled[0][0] = true, ic.lower[0] = -20.0;
+  bw_check_status(bw_pd_interface_create(b.pd, &ic, &other), BW_EINPUT);
+  body_destroy(&b);
+}
+END_TEST
 
 /* Largest and mean angle allowed: 3.45 at m = 3 sees the steps of the lattice. A step of one ds
  * that fills half of the half family moves its centroid sideways by about ds/10 of its distance
@@ -294,6 +319,7 @@ static const bw_check_test tests[] = {
     BW_TEST(surface_is_the_particles_with_an_open_side),
     BW_TEST(round_bodies_have_their_normals_and_areas),
     BW_TEST(areas_close_the_body),
+    BW_TEST(clouds_have_normals_and_areas),
     BW_TEST(flat_faces_are_exact),
     BW_TEST(thin_things_have_normals),
     BW_TEST(walls_feet_and_seams_are_no_surface),

@@ -1,0 +1,179 @@
+/* Disordered clouds: where the particles are and which are bonds, by enumeration of pairs.
+ * TEST ranks=1,2,3,4 */
+#include "bw_pd_stress.h"
+#include "pd_cloud.h"
+
+#include <string.h>
+
+/* Off their sites by up to 0.3 ds and by half of that in the mean (of the radius of a ball 3/4, of
+ * a disc 2/3); the same for a part of the body; other with another seed. */
+START_TEST(places_are_of_the_sites_alone)
+{
+  for (int g = 0; g < 2; g++) {
+    bw_pd_bond_config c = cloudy((bw_pd_geometry)g);
+    pd_body body = pd_box(12, 10, g == 0 ? 8 : 1), part = body;
+    part.n = body.n / 3;
+    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body), *few, *others;
+    few = pd_make(bw_check_world(), &c, &part);
+    c.disorder_seed = 5;
+    others = pd_make(bw_check_world(), &c, &part);
+    double *X = rows_of(pd, bw_pd_bond_get_reference), *Y = rows_of(few, bw_pd_bond_get_reference);
+    double *Z = rows_of(others, bw_pd_bond_get_reference), mean = 0, middle[3] = {0}, moved = 0;
+    for (int64_t q = 0; q < body.n; q++) {
+      double at[3] = {0}, d[3];
+      for (int k = 0; k < (g == 0 ? 3 : 2); k++)
+        at[k] = 0.5 * (body.site[3 * q + k] + 0.5);
+      const double r = apart(&c, at, X + 3 * q, d) / 0.5;
+      ck_assert_double_le(r, DISORDER * (1 + 10 * BW_REAL_EPSILON));
+      mean += r / (double)body.n;
+      for (int k = 0; k < 3; k++)
+        middle[k] += d[k] / 0.5 / (double)body.n;
+    }
+    const double sd = DISORDER / sqrt((double)body.n); /* of a mean, at most */
+    bw_check_near(mean, DISORDER * (g == 0 ? 0.75 : 2.0 / 3), 4 * sd);
+    for (int k = 0; k < 3; k++)
+      bw_check_near(middle[k], 0, 4 * sd);
+    for (int64_t q = 0; q < 3 * part.n; q++) {
+      ck_assert_double_eq(X[q], Y[q]);
+      moved += fabs(X[q] - Z[q]);
+    }
+    ck_assert_double_gt(moved, 0.1 * (double)part.n * 0.5 * DISORDER);
+    bw_pd_bond_destroy(&pd);
+    bw_pd_bond_destroy(&few);
+    bw_pd_bond_destroy(&others);
+    bw_release(&X);
+    bw_release(&Y);
+    bw_release(&Z);
+    pd_body_release(&body);
+  }
+}
+END_TEST
+
+/* All pairs nearer than m + 1/2 are bonds, no others; through periods too. */
+static void check_bonds(bw_pd_bond_config c, int nx, int ny, int nz)
+{
+  pd_body body = pd_box(nx, ny, nz);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  double *X = rows_of(pd, bw_pd_bond_get_reference), d[3];
+  int64_t expected = 0;
+  for (int64_t a = 0; a < body.n; a++)
+    for (int64_t b = 0; b < a; b++)
+      expected += apart(&c, X + 3 * a, X + 3 * b, d) < c.ds * (c.horizon_ratio + 0.5);
+  ck_assert_int_eq(bw_pd_bond_account(pd).bonds, expected);
+  bw_release(&X);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+
+START_TEST(bonds_are_the_pairs_in_reach)
+{
+  check_bonds(cloudy(BW_PD_3D), 9, 7, 6);
+  check_bonds(cloudy(BW_PD_PLANE_STRESS), 14, 9, 1);
+  bw_pd_bond_config c = cloudy(BW_PD_3D);
+  c.disorder = 0.4, c.horizon_ratio = 2;
+  c.period[0] = 4.5, c.period[2] = 4;
+  check_bonds(c, 9, 7, 8);
+}
+END_TEST
+
+static double crack_at;
+
+static int64_t cut(bw_pd_bond *pd)
+{
+  const int64_t before = bw_pd_bond_account(pd).bonds;
+  bw_check_ok(
+      bw_pd_bond_precrack(pd, (double[]){-1, crack_at, 0}, (double[]){9, crack_at, 0}, NULL));
+  return before - bw_pd_bond_account(pd).bonds;
+}
+
+/* A line through all of the body cuts the bonds between true places above and below it. */
+START_TEST(precracks_see_the_true_places)
+{
+  bw_pd_bond_config c = cloudy(BW_PD_PLANE_STRESS);
+  pd_body body = pd_box(13, 9, 1);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  double *X = rows_of(pd, bw_pd_bond_get_reference), d[3];
+  int64_t expected = 0, of_sites = 0;
+  crack_at = 2.2;
+  for (int64_t a = 0; a < body.n; a++)
+    for (int64_t b = 0; b < a; b++) {
+      if (!(apart(&c, X + 3 * a, X + 3 * b, d) < 1.75)) continue;
+      expected += (X[3 * a + 1] > crack_at) != (X[3 * b + 1] > crack_at);
+      of_sites += (body.site[3 * a + 1] > 3) != (body.site[3 * b + 1] > 3);
+    }
+  ck_assert_int_ne(expected, of_sites);
+  ck_assert_int_eq(cut(pd), expected);
+  bw_release(&X);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+/* Calibrated, a periodic cloud has the bulk modulus and V_0 asked for in the mean of its families,
+ * to the scatter of a few hundred of them. */
+static void dilate(const double X0[3], double u[3])
+{
+  for (int k = 0; k < 3; k++)
+    u[k] = 1e-4 * X0[k];
+}
+
+START_TEST(calibration_takes_the_mean_family)
+{
+  bw_pd_bond_config c = cloudy(BW_PD_PLANE_STRESS);
+  c.calibration = BW_PD_CALIBRATION_LATTICE;
+  c.surface_correction = BW_PD_SURFACE_NONE;
+  c.period[0] = c.period[1] = 15;
+  pd_body body = pd_box(30, 30, 1);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_pd_bond_count(pd);
+  double *X = NULL, *stress = NULL, sum[2] = {0};
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&stress, 6 * n));
+  pd_set(pd, dilate, NULL);
+  bw_pd_stress_compute(pd, NULL, stress);
+  bw_pd_bond_get_reference(pd, X);
+  for (size_t i = 0; i < n; i++) {
+    bool middle = true; /* images of a dilated body do not follow it */
+    for (size_t k = 0; k < 2; k++)
+      middle = middle && X[3 * i + k] > 2.2 && X[3 * i + k] < 12.8;
+    if (middle) sum[0] += 0.5 * (stress[6 * i] + stress[6 * i + 1]), sum[1]++;
+  }
+  bw_comm_sum(bw_check_world(), 2, sum);
+  /* E/(1 - nu) e; a family of 36 random bonds scatters by some 3 %, the mean of 440 by 0.2 % */
+  bw_check_near(sum[0] / sum[1] / (1.5 * 3 * 1e-4), 1, 0.006);
+  bw_release(&X);
+  bw_release(&stress);
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+START_TEST(impossible_clouds_are_refused)
+{
+  pd_body body = pd_box(3, 3, 3);
+  const struct {
+    double disorder, m;
+    bw_pd_volume_fraction fraction;
+    const char *word;
+  } bad[] = {{-0.1, 3, BW_PD_FRACTION_DEFAULT, "disorder = -0.1"},
+             {0.5, 3, BW_PD_FRACTION_DEFAULT, "disorder = 0.5"},
+             {NAN, 3, BW_PD_FRACTION_DEFAULT, "disorder"},
+             {0.3, 1, BW_PD_FRACTION_DEFAULT, "horizon_ratio"},
+             {0.3, 3, BW_PD_FRACTION_EXACT, "volume_fraction"}};
+  for (size_t q = 0; q < sizeof bad / sizeof *bad; q++) {
+    bw_pd_bond_config c = pd_soft(BW_PD_3D);
+    bw_pd_bond *pd = NULL;
+    c.disorder = bad[q].disorder, c.horizon_ratio = bad[q].m, c.volume_fraction = bad[q].fraction;
+    bw_check_status(bw_pd_bond_create(bw_check_world(), &c, body.n, body.site, NULL, &pd),
+                    BW_EINPUT);
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), bad[q].word));
+  }
+  pd_body_release(&body);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(places_are_of_the_sites_alone), BW_TEST(bonds_are_the_pairs_in_reach),
+    BW_TEST(precracks_see_the_true_places), BW_TEST(calibration_takes_the_mean_family),
+    BW_TEST(impossible_clouds_are_refused)};
+BW_CHECK_MAIN("pd_bond.cloud", tests)

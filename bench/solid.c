@@ -1,7 +1,8 @@
 /* Cost of a peridynamic force evaluation per directed bond, on one rank and on all.
  *
- * Block 48 x 32 x 32, family |xi| < 3.015 ds. Rival: LAMMPS, style peri/pmb, measured on a machine
- * of this kind: 154 ms per step on one core, 72 on two. Floor: positions read once and forces
+ * Block 48 x 32 x 32, family |xi| < 3.015 ds. Rival: LAMMPS, style peri/pmb, on the same block
+ * (bench/lammps_block.in), run just before by `./run bench solid` when the executable lmp is there
+ * (Debian package lammps). Floor: positions read once and forces
  * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
  * BUILD modules=pd_bond
  * TEST ranks=2 */
@@ -12,6 +13,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { STEPS = 5 };
 typedef struct {
@@ -25,6 +27,22 @@ static void advance(void *context)
   solid_work *w = context;
   for (int q = 0; q < STEPS; q++)
     BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
+}
+
+/* Its last "Loop time of T on N procs for M steps", ms per step; NaN where it was not run. */
+static double lammps(int ranks)
+{
+  const char *build = getenv("BW_BUILD_DIR");
+  char path[640], line[256];
+  double seconds, ms = NAN;
+  int procs, steps;
+  snprintf(path, sizeof path, "%s/bench/lammps_np%d.log", build != NULL ? build : "build", ranks);
+  FILE *log = fopen(path, "r");
+  while (log != NULL && fgets(line, sizeof line, log) != NULL)
+    if (sscanf(line, "Loop time of %lf on %d procs for %d", &seconds, &procs, &steps) == 3)
+      ms = 1e3 * seconds / steps;
+  if (log != NULL) fclose(log);
+  return ms;
 }
 
 static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, double disorder,
@@ -49,7 +67,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
     bw_comm_sum(comm, 1, &bytes);
     const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
     bw_bench_put(b, &(bw_bench_row){name, "ms_per_force_evaluation", "ms", 1e3 * seconds,
-                                    "LAMMPS peri/pmb", rival,
+                                    isnan(rival) ? NULL : "LAMMPS peri/pmb", rival,
                                     1e3 * moved / (triad * bw_comm_size(comm))});
     bw_bench_put(b, &(bw_bench_row){name, "ns_per_directed_bond", "ns",
                                     1e9 * seconds * bw_comm_size(comm) / bonds, NULL, NAN, NAN});
@@ -69,10 +87,12 @@ static bw_status run(bw_bench *b)
   const double triad = bw_bench_triad(comm);
   bw_comm *self = NULL;
   bw_status st = bw_comm_self(&self);
-  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "block_48x32x32_np1", 0, 154, triad));
+  if (bw_comm_rank(comm) == 0)
+    BW_THEN(st, measure(b, self, "block_48x32x32_np1", 0, lammps(1), triad));
   if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "cloud_48x32x32_np1", 0.3, NAN, triad));
   st = bw_comm_agree(comm, st); /* the others wait here */
-  if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 0, 72, triad));
+  if (bw_comm_size(comm) == 2)
+    BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 0, lammps(2), triad));
   bw_comm_destroy(&self);
   return st;
 }

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double SPEED_WINDOW = 2e-6;      /* [s] ADAPT section 6.1 */
 static const double LOOK_FOR_FORKS = 0.25e-6; /* [s] */
 
 static bw_pd_bond_config material(const plate *p)
@@ -64,7 +63,7 @@ bw_status plate_create(const bw_comm *comm, const plate_config *config, plate *p
   p->comm = comm;
   p->config = *config;
   p->ds = config->shape.length / config->shape.particles;
-  p->crack = (plate_crack){NAN, NAN, NAN, NAN, NAN, 0.0};
+  p->crack = (plate_crack){NAN, NAN, NAN, NAN, NAN};
   BW_REQUIRE(config->shape.notch < config->shape.length, BW_EINPUT,
              "shape.notch = %g has to be shorter than the plate, %g", config->shape.notch,
              config->shape.length);
@@ -72,10 +71,8 @@ bw_status plate_create(const bw_comm *comm, const plate_config *config, plate *p
              "load.rows = %d: the rows pulled up and down meet", config->load.rows);
   BW_TRY(make_solid(p));
   p->n = bw_pd_bond_count(p->solid);
-  p->window = (int)fmax(1.0, round(SPEED_WINDOW / config->time.step));
   bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
-  BW_THEN(st, BW_ALLOCATE(&p->past, (size_t)p->window));
   if (st == BW_OK) {
     bw_pd_bond_get_reference(p->solid, p->X0);
     st = load_edges(p);
@@ -85,7 +82,7 @@ bw_status plate_create(const bw_comm *comm, const plate_config *config, plate *p
   bw_pd_bond_get_damage(p->solid, p->damage);
   p->notch_tip = p->crack.tip = bw_pd_crack_tip(comm, &look, p->n, p->X0, p->damage);
   p->events = bw_pd_bond_events(p->solid);
-  return BW_OK;
+  return bw_comm_agree(comm, bw_pd_crack_track_note(&p->track, 0.0, p->notch_tip));
 }
 
 static void note_time(double *what, bool happened, double time)
@@ -102,21 +99,22 @@ static bool broke(plate *p)
   return news != 0;
 }
 
-static void follow_tip(plate *p)
+static bw_status follow_tip(plate *p)
 {
   plate_crack *c = &p->crack;
-  if (broke(p)) {
-    const bw_pd_crack_config look = bw_pd_crack_config_default();
-    bw_pd_bond_get_damage(p->solid, p->damage);
-    c->tip = bw_pd_crack_tip(p->comm, &look, p->n, p->X0, p->damage);
-    note_time(&c->t_first, true, p->time);
-    note_time(&c->t_start, c->tip > p->notch_tip + 0.5 * p->ds, p->time);
-    note_time(&c->t_edge, c->tip > p->config.shape.length - p->ds, p->time);
-  }
-  double *oldest = &p->past[p->steps % p->window];
-  if (p->steps > p->window && isnan(c->t_edge))
-    c->speed_max = fmax(c->speed_max, (c->tip - *oldest) / (p->window * p->config.time.step));
-  *oldest = c->tip;
+  const bw_pd_crack_config look = bw_pd_crack_config_default();
+  if (!broke(p)) return BW_OK;
+  bw_pd_bond_get_damage(p->solid, p->damage);
+  c->tip = bw_pd_crack_tip(p->comm, &look, p->n, p->X0, p->damage);
+  note_time(&c->t_first, true, p->time);
+  note_time(&c->t_start, c->tip > p->notch_tip + 0.5 * p->ds, p->time);
+  note_time(&c->t_edge, c->tip > p->config.shape.length - p->ds, p->time);
+  return bw_comm_agree(p->comm, bw_pd_crack_track_note(&p->track, p->time, c->tip));
+}
+
+double plate_speed(const plate *p, double window)
+{
+  return bw_pd_crack_speed(&p->track, window, p->crack.t_edge);
 }
 
 bw_status plate_branches(plate *p, double x, int *branches, double *fork)
@@ -137,7 +135,7 @@ bw_status plate_step(plate *p)
   BW_TRY(bw_pd_bond_step(p->solid, p->config.time.step));
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
-  follow_tip(p);
+  BW_TRY(follow_tip(p));
   const int64_t every = llround(fmax(1.0, LOOK_FOR_FORKS / p->config.time.step));
   if (p->steps % every == 0 && isnan(p->crack.t_branch) && !isnan(p->crack.t_start)) {
     int branches = 0;
@@ -153,5 +151,5 @@ void plate_destroy(plate *p)
   bw_pd_bond_destroy(&p->solid);
   bw_release(&p->X0);
   bw_release(&p->damage);
-  bw_release(&p->past);
+  bw_pd_crack_track_release(&p->track);
 }

@@ -33,12 +33,11 @@ typedef struct {
 
 /* What is known of the crack so far; NAN: not yet. */
 typedef struct {
-  double tip;       /* farthest particle with damage > 0.35 [m] */
-  double t_first;   /* first bond beyond the notch broke [s] */
-  double t_start;   /* the tip left the notch's end [s] */
-  double t_branch;  /* it was first seen forked, looked for once per microsecond / 4 [s] */
-  double t_edge;    /* the tip is within one spacing of the far edge [s] */
-  double speed_max; /* of the tip, over 2e-6 s as in ADAPT 6.1 [m/s] */
+  double tip;      /* farthest particle with damage > 0.35 [m] */
+  double t_first;  /* first bond beyond the notch broke [s] */
+  double t_start;  /* the tip left the notch's end [s] */
+  double t_branch; /* it was first seen forked, looked for once per microsecond / 4 [s] */
+  double t_edge;   /* the tip is within one spacing of the far edge [s] */
 } plate_crack;
 
 typedef struct {
@@ -51,14 +50,16 @@ typedef struct {
   double *X0, *damage; /* (n,3), (n) */
   double notch_tip;    /* tip before the first step [m] */
   plate_crack crack;
-  int window;   /* steps in 2e-6 s */
-  double *past; /* (window) the tip, one per step */
+  bw_pd_crack_track track; /* of the tip */
 } plate;
 
 /* `p` is filled; free it with plate_destroy, also after a failure. Collective. */
 bw_status plate_create(const bw_comm *comm, const plate_config *config, plate *p) BW_MUST_CHECK;
 bw_status plate_step(plate *p) BW_MUST_CHECK; /* Collective. */
 void plate_destroy(plate *p);
+
+/* Highest speed of the tip until it reaches the far edge, over times `window` [m/s]. Local. */
+double plate_speed(const plate *p, double window);
 
 /* Branches cut by the section at x, and where the crack forks [m] (NAN: nowhere). Collective. */
 bw_status plate_branches(plate *p, double x, int *branches, double *fork) BW_MUST_CHECK;

@@ -253,12 +253,11 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   p->ds = config->shape.length / config->shape.particles;
   p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, 0.0};
   BW_TRY(make_solid(p));
-  p->room = (int64_t)(config->time.end / (config->follow.every * config->time.step)) + 2;
   bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
   BW_THEN(st, BW_ALLOCATE(&p->notched, p->n));
   BW_THEN(st, BW_ALLOCATE(&p->F, 3 * p->n));
-  BW_THEN(st, BW_ALLOCATE(&p->past, (size_t)p->room));
+  BW_THEN(st, bw_pd_crack_track_note(&p->track, 0.0, 0.0));
   BW_TRY(bw_comm_agree(comm, st));
   bw_pd_bond_get_reference(p->solid, p->X0);
   share_tractions(p);
@@ -270,7 +269,6 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   p->events = bw_pd_bond_events(p->solid);
   for (int d = 0; d < 2; d++)
     p->crack.tip[d] = config->follow.from[d];
-  memcpy(p->past[0], p->crack.tip, sizeof p->past[0]);
   return BW_OK;
 }
 
@@ -327,7 +325,7 @@ static bw_status find_tip(specimen *p)
   bw_pd_crack_release(&crack);
   note_time(&c->t_start, c->reach > 1.5 * p->ds, p->time);
   note_time(&c->t_end, !isnan(c->t_start) && at_an_end(p, c->tip), p->time);
-  return BW_OK;
+  return bw_comm_agree(p->comm, bw_pd_crack_track_note(&p->track, p->time, c->reach));
 }
 
 /* Has a bond broken on any rank since the last look? Collective. */
@@ -339,36 +337,18 @@ static bool broke(specimen *p)
   return news != 0;
 }
 
-/* Speed of the tip at look k, over the last `back` looks. */
-static double speed_at(const specimen *p, int64_t k, int64_t back)
-{
-  const double *now = p->past[k], *then = p->past[k > back ? k - back : 0];
-  const double taken = (double)back * p->config.follow.every * p->config.time.step;
-  return hypot(now[0] - then[0], now[1] - then[1]) / taken;
-}
-
 double specimen_speed(const specimen *p, double window)
 {
-  const double look = p->config.follow.every * p->config.time.step;
-  const int64_t back = window > look ? llround(window / look) : 1;
-  const double until = isnan(p->crack.t_end) ? p->time : p->crack.t_end;
-  double most = 0.0;
-  for (int64_t k = 1; k <= p->looks && (double)k * look <= until * (1.0 + 1e-9); k++)
-    most = fmax(most, speed_at(p, k, back));
-  return most;
+  return bw_pd_crack_speed(&p->track, window, p->crack.t_end);
 }
 
 static bw_status follow(specimen *p)
 {
-  specimen_crack *c = &p->crack;
   if (broke(p)) {
-    note_time(&c->t_first, true, p->time);
+    note_time(&p->crack.t_first, true, p->time);
     BW_TRY(find_tip(p));
   }
-  const int64_t back =
-      llround(p->config.follow.speed_window / (p->config.follow.every * p->config.time.step));
-  memcpy(p->past[++p->looks], c->tip, sizeof c->tip);
-  c->speed = speed_at(p, p->looks, back > 1 ? back : 1);
+  p->crack.speed = bw_pd_crack_speed_at(&p->track, p->config.follow.speed_window, p->time);
   return BW_OK;
 }
 
@@ -384,7 +364,7 @@ bw_status specimen_step(specimen *p)
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
   if (p->rising) apply_traction(p);
-  if (p->steps % p->config.follow.every == 0 && p->looks + 1 < p->room) BW_TRY(follow(p));
+  if (p->steps % p->config.follow.every == 0) BW_TRY(follow(p));
   return BW_OK;
 }
 
@@ -396,5 +376,5 @@ void specimen_destroy(specimen *p)
   bw_release(&p->damage);
   bw_release(&p->notched);
   bw_release(&p->F);
-  bw_release(&p->past);
+  bw_pd_crack_track_release(&p->track);
 }

@@ -83,7 +83,7 @@ typedef struct {
   double t_first; /* first bond broke, anywhere [s] */
   double t_start; /* the crack has left the notch by more than ds [s] */
   double t_end;   /* its tip came within 1.5 ds of an edge or hole [s] */
-  double speed;   /* of the tip over the last speed_window, ADAPT 6.1 [m/s] */
+  double speed;   /* of reach over the last speed_window, ADAPT 6.1 [m/s] */
 } specimen_crack;
 
 typedef struct {
@@ -99,8 +99,7 @@ typedef struct {
   double share[SPECIMEN_LOADS]; /* body force per stress of each load [1/m] */
   bool rising;                  /* some traction still rises */
   specimen_crack crack;
-  int64_t looks, room;
-  double (*past)[2]; /* (room) the tip at the start and at each look [m] */
+  bw_pd_crack_track track; /* of reach, at the looks */
 } specimen;
 
 /* `p` is filled; free it with specimen_destroy, also after a failure. Collective. */
@@ -113,8 +112,8 @@ void specimen_destroy(specimen *p);
 /* The followed crack as it is now (bw_pd_crack_release). Collective. */
 bw_status specimen_find(specimen *p, bw_pd_crack *crack) BW_MUST_CHECK;
 
-/* Highest speed of the tip until t_end, over times `window` [m/s]. The tip goes from particle to
- * particle: a reading is off by ds/window. Local. */
+/* Highest speed at which reach grows until t_end, over times `window` [m/s]. (Of reach, not of the
+ * tip: with two branches the farthest particle is now on one, now on the other.) Local. */
 double specimen_speed(const specimen *p, double window);
 
 /* Its line over fit_from .. fit_to, angle to x [rad]. Collective. */

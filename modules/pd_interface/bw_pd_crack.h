@@ -69,3 +69,23 @@ typedef struct {
  * from (s, t). A crack n rows thick of spacing ds has a width of ds sqrt((n n - 1)/12) if it is
  * straight. angle and width are NAN with fewer than four particles. Local. */
 bw_pd_crack_line bw_pd_crack_fit(const bw_pd_crack *crack, double s, double t, double a, double b);
+
+/* The way of a tip in time: the moments it arrived somewhere farther than before. Starts as {0}. */
+typedef struct {
+  size_t n, room;
+  double *time, *place; /* (n) rising both; a tip goes from particle to particle */
+} bw_pd_crack_track;
+void bw_pd_crack_track_release(bw_pd_crack_track *track); /* Local. */
+
+/* The tip is at `place` [L] at `time` [T]; forgotten when it is not farther. BW_EMEM. Local. */
+bw_status bw_pd_crack_track_note(bw_pd_crack_track *track, double time, double place) BW_MUST_CHECK;
+
+/* Highest speed between two arrivals that are `window` [T] or just more apart, up to the time
+ * `until` (NAN: all); 0 when there are none. Between any two moments a tip that jumps by ds gains
+ * one jump too many when the first is just before one and the last just after one, and a maximum
+ * finds these: it is ds/window too fast. Between arrivals the error is that of one arrival, by a
+ * part of ds at either end and of either sign. Local. */
+double bw_pd_crack_speed(const bw_pd_crack_track *track, double window, double until);
+
+/* Mean speed over the last `window` before `time`: for a history. Local. */
+double bw_pd_crack_speed_at(const bw_pd_crack_track *track, double window, double time);

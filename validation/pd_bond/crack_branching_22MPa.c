@@ -13,8 +13,19 @@
  *   to 35 % in the angles. Angles have half a row over their 5 mm on top: 5.7 and 2.9 degrees.
  *
  * t_start: first broken bond. Angles: of one branch to the crack's way, over the first and the
- * last 5 mm. speed_max stands beside Bowden's 1580 m/s (ADAPT figure 6.4), without a claim: in
- * 2e-6 s the tip moves 4 to 10 particles, so that it is a multiple of 250 or 500 m/s.
+ * last 5 mm.
+ * speed_max: over 4e-6 s between two arrivals of the tip at a particle, against Bowden's 1580 m/s
+ * (ADAPT figure 6.4): either end is known to one spacing, 2 ds of 6.3 mm (32 and 16 %). ADAPT takes
+ * 2e-6 s between any two moments (_2us, reported): a whole number of 250 or 500 m/s, and as a
+ * maximum up to one too many. Under 22 MPa 2000 m/s and more are no matter of the measurement:
+ * they last for 8e-6 s and stand for every level of damage from 0.2 to 0.5.
+ *
+ * --full: other readings of ADAPT's set-up, reported: how many of its six figures come out within
+ * 10 %. Under 22 MPa one at most, whatever is changed; without a surface correction, as ADAPT runs,
+ * 22 MPa pull the loaded row off at 0.4e-6 s. Best are 14 MPa on families that count every partner
+ * as a whole one, 4 and 5 of 6; nothing in ADAPT says so. Only stress over the root of G0 counts
+ * (as long as strains are small), so that another G0 or s0 is another load; how many rows take the
+ * load, the integrator and the step do not matter (crack_branching_12MPa).
  *
  * BUILD modules=pd_interface
  * TEST ranks=2 timeout=200 */
@@ -38,37 +49,63 @@ static double load_for_start(const printed *a, double t)
   return 22e6 * sqrt((start_by_mechanics(&c) - t0) / (t - t0));
 }
 
+enum { PRINTED = 6, MEASURED = 8 };
+
+static bw_status measure(const bw_comm *comm, const plate_config *c, outcome *o, double out[])
+{
+  const double degree = acos(-1.0) / 180.0;
+  BW_TRY(tear(comm, c, o));
+  const double all[MEASURED] = {o->crack.t_first,
+                                o->crack.t_branch,
+                                o->fork - c->shape.notch,
+                                o->angle_first / degree,
+                                o->angle_last / degree,
+                                o->speed_mean,
+                                o->speed_max,
+                                o->speed_max_2us};
+  memcpy(out, all, sizeof all);
+  return BW_OK;
+}
+
+static void printed_figures(const printed *a, double out[])
+{
+  const double all[MEASURED] = {a->t_start,    a->t_branch,   a->l_branch, a->angle_first,
+                                a->angle_last, a->speed_mean, 1580.0,      1580.0};
+  memcpy(out, all, sizeof all);
+}
+
+/* Of figure q at the inferred load. */
+static double tolerance(const printed *a, int q, double reference)
+{
+  const double ds = 0.1 / a->particles, half_row = atan(0.5 * ds / 5e-3) * 180.0 / acos(-1.0);
+  if (q == 3 || q == 4) return 0.25 + half_row / reference;
+  if (q == 6) return 2.0 * ds / (4e-6 * reference);
+  return q == 7 ? INFINITY : 0.25;
+}
+
 static bw_status compare(bw_validation *v, const printed *a, double stress, bool claimed)
 {
   static const char adapt[] = "ADAPT section 6.1, tables 6.2 and 6.3";
-  static const char *const names[2][7] = {{"t_start", "t_branch", "l_branch", "angle_initial",
-                                           "angle_final", "speed_mean", "speed_max"},
-                                          {"t_start_inferred_load", "t_branch_inferred_load",
-                                           "l_branch_inferred_load", "angle_initial_inferred_load",
-                                           "angle_final_inferred_load", "speed_mean_inferred_load",
-                                           "speed_max_inferred_load"}};
+  static const char *const names[MEASURED] = {"t_start",       "t_branch",     "l_branch",
+                                              "angle_initial", "angle_final",  "speed_mean",
+                                              "speed_max",     "speed_max_2us"};
   const plate_config c = glass(a->particles, stress, 60e-6);
-  const double degree = acos(-1.0) / 180.0;
   outcome o;
-  BW_TRY(tear(bw_validation_comm(v), &c, &o));
-  char extra[96];
+  double measured[MEASURED], reference[MEASURED];
+  char extra[96], name[64];
+  BW_TRY(measure(bw_validation_comm(v), &c, &o, measured));
+  printed_figures(a, reference);
   snprintf(extra, sizeof extra, "\"nodes\": %d, \"stress\": %.4g", a->nodes, stress);
-  const double measured[7] = {o.crack.t_first,        o.crack.t_branch,      o.fork - c.shape.notch,
-                              o.angle_first / degree, o.angle_last / degree, o.speed_mean,
-                              o.crack.speed_max};
-  const double reference[7] = {a->t_start,    a->t_branch,   a->l_branch, a->angle_first,
-                               a->angle_last, a->speed_mean, 1580.0};
-  for (int q = 0; q < 7; q++) {
-    const double rows = 0.5 * c.shape.length / a->particles / 5e-3;
-    const double angle = q == 3 || q == 4 ? atan(rows) / degree : 0.0;
+  for (int q = 0; q < MEASURED; q++) {
+    snprintf(name, sizeof name, "%s%s", names[q], claimed ? "_inferred_load" : "");
     const bw_claim row = {claimed ? "branching as ADAPT's at the load its start belongs to"
                                   : "branching beside ADAPT's at the printed load",
-                          names[claimed][q],
+                          name,
                           measured[q],
                           reference[q],
-                          claimed && q < 6 ? 0.25 + angle / reference[q] : INFINITY,
+                          claimed ? tolerance(a, q, reference[q]) : INFINITY,
                           BW_PUBLISHED,
-                          q < 6 ? adapt : "Bowden et al. 1967, quoted in ADAPT figure 6.4",
+                          q < PRINTED ? adapt : "Bowden et al. 1967, quoted in ADAPT figure 6.4",
                           extra};
     (void)bw_validation_row(v, &row);
   }
@@ -84,11 +121,66 @@ static bw_status compare(bw_validation *v, const printed *a, double stress, bool
   return BW_OK;
 }
 
+typedef struct {
+  const char *how;
+  double stress, horizon_ratio;
+  int reach, fraction, correction;
+} reading;
+
+static const reading readings[] = {
+    {"as the claims", 22e6, 3.0, BW_PD_REACH_HALF_CELL, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_VOLUME},
+    {"half of the load", 11e6, 3.0, BW_PD_REACH_HALF_CELL, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_VOLUME},
+    {"m = 4", 22e6, 4.0, BW_PD_REACH_HALF_CELL, BW_PD_FRACTION_LINEAR, BW_PD_SURFACE_VOLUME},
+    {"no surface correction", 22e6, 3.0, BW_PD_REACH_HALF_CELL, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_NONE},
+    {"partners within the horizon", 22e6, 3.01, BW_PD_REACH_HORIZON, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_VOLUME},
+    {"ADAPT's families, no correction", 22e6, 3.01, BW_PD_REACH_HORIZON, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_NONE},
+    {"ADAPT's families, no correction", 12e6, 3.01, BW_PD_REACH_HORIZON, BW_PD_FRACTION_LINEAR,
+     BW_PD_SURFACE_NONE},
+    {"whole partners within the horizon, no correction", 14e6, 3.01, BW_PD_REACH_HORIZON,
+     BW_PD_FRACTION_NONE, BW_PD_SURFACE_NONE},
+    {"whole partners", 14e6, 3.0, BW_PD_REACH_HALF_CELL, BW_PD_FRACTION_NONE, BW_PD_SURFACE_VOLUME},
+};
+
+static bw_status read_otherwise(bw_validation *v, const printed *a, const reading *r)
+{
+  plate_config c = glass(a->particles, r->stress, 60e-6);
+  outcome o;
+  double measured[MEASURED], reference[MEASURED], within = 0.0;
+  char extra[128];
+  c.solid.horizon_ratio = r->horizon_ratio;
+  c.solid.family_reach = r->reach;
+  c.solid.volume_fraction = r->fraction;
+  c.solid.surface_correction = r->correction;
+  BW_TRY(measure(bw_validation_comm(v), &c, &o, measured));
+  printed_figures(a, reference);
+  for (int q = 0; q < PRINTED; q++)
+    within += fabs(measured[q] / reference[q] - 1.0) <= 0.1;
+  snprintf(extra, sizeof extra, "\"nodes\": %d, \"stress\": %.4g, \"run\": \"%s\"", a->nodes,
+           r->stress, r->how);
+  const bw_claim row = {"figures of ADAPT's tables within 10 % under another reading",
+                        "within_10_percent",
+                        within,
+                        PRINTED,
+                        INFINITY,
+                        BW_PUBLISHED,
+                        "ADAPT section 6.1, tables 6.2 and 6.3",
+                        extra};
+  (void)bw_validation_row(v, &row);
+  return BW_OK;
+}
+
 static bw_status run(bw_validation *v)
 {
   for (size_t q = 0; q < sizeof tables / sizeof *tables; q++) {
     BW_TRY(compare(v, &tables[q], 22e6, false));
     BW_TRY(compare(v, &tables[q], load_for_start(&tables[q], tables[q].t_start), true));
+    for (size_t k = 0; bw_validation_full(v) && k < sizeof readings / sizeof *readings; k++)
+      BW_TRY(read_otherwise(v, &tables[q], &readings[k]));
   }
   return BW_OK;
 }

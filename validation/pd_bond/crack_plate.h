@@ -51,6 +51,8 @@ typedef struct {
   double fork;                    /* x where it forks [m] */
   double energy_error;            /* work not found again, over the work */
   double speed_mean;              /* of the tip from the start to the edge or the end [m/s] */
+  double speed_max;               /* over 4e-6 s, between arrivals [m/s] */
+  double speed_max_2us;           /* over 2e-6 s, between any two moments, as in ADAPT 6.1 [m/s] */
   double angle_first, angle_last; /* of a branch to the crack's way, over 5 mm behind the fork
                                      and before the tip or edge [rad] */
 } outcome;
@@ -71,6 +73,17 @@ static bw_status look_at_branches(plate *p, outcome *o)
   return BW_OK;
 }
 
+/* The tip's way in 2e-6 s, the most at any step until the edge. */
+static double speed_of_moments(const plate *p)
+{
+  const double window = 2e-6, step = p->config.time.step;
+  const double until = isnan(p->crack.t_edge) ? p->time : p->crack.t_edge;
+  double most = 0.0;
+  for (int64_t k = llround(window / step); (double)k * step <= until; k++)
+    most = fmax(most, bw_pd_crack_speed_at(&p->track, window, (double)k * step));
+  return most;
+}
+
 static bw_status tear(const bw_comm *comm, const plate_config *c, outcome *o)
 {
   plate p;
@@ -84,6 +97,8 @@ static bw_status tear(const bw_comm *comm, const plate_config *c, outcome *o)
     o->energy_error = (e.external - e.kinetic - e.elastic - e.fracture) / e.external;
     const double stop = isnan(p.crack.t_edge) ? p.time : p.crack.t_edge;
     o->speed_mean = (p.crack.tip - p.notch_tip) / (stop - p.crack.t_start);
+    o->speed_max = plate_speed(&p, 4e-6);
+    o->speed_max_2us = speed_of_moments(&p);
     st = look_at_branches(&p, o);
   }
   plate_destroy(&p);

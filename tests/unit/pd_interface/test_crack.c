@@ -125,7 +125,61 @@ START_TEST(a_drawn_path_is_followed)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(a_drawn_fork_is_measured),
-                                      BW_TEST(no_crack_is_no_crack),
-                                      BW_TEST(a_drawn_path_is_followed)};
+/* A tip of steady speed v seen from particle to particle, looked for every dt. */
+static void track_steady(bw_pd_crack_track *track, double v, double ds, double dt, double from,
+                         double to)
+{
+  for (int k = (int)lround(from / dt); k * dt < to; k++)
+    bw_check_ok(bw_pd_crack_track_note(track, k * dt, ds * floor(v * k * dt / ds)));
+}
+
+/* What a window that starts and ends anywhere would give. */
+static double highest_between_moments(const bw_pd_crack_track *track, double window, double dt,
+                                      double to)
+{
+  double most = 0.0;
+  for (double t = window; t < to; t += dt)
+    most = fmax(most, bw_pd_crack_speed_at(track, window, t));
+  return most;
+}
+
+START_TEST(a_steady_tip_has_its_speed)
+{
+  const double ds = 0.5, dt = 0.01;
+  for (double v = 1.05; v < 2.5; v += 0.19) {
+    bw_pd_crack_track track = {0};
+    track_steady(&track, v, ds, dt, 0.0, 40.0);
+    /* arrivals are known to dt: v dt of the way v window */
+    bw_check_near(bw_pd_crack_speed(&track, 2.0, NAN), v, v * dt / 2.0);
+    /* any two moments: a whole number of ds in the window, the next above v */
+    bw_check_near(highest_between_moments(&track, 2.0, dt, 40.0), ds / 2.0 * ceil(v * 2.0 / ds),
+                  1e-9);
+    bw_pd_crack_track_release(&track);
+  }
+}
+END_TEST
+
+START_TEST(the_fastest_stretch_is_found)
+{
+  bw_pd_crack_track track = {0};
+  ck_assert_double_eq(bw_pd_crack_speed(&track, 1.0, NAN), 0.0);
+  ck_assert_double_eq(bw_pd_crack_speed_at(&track, 1.0, 5.0), 0.0);
+  const double time[] = {0, 1, 2, 2.5, 3, 3.5, 4, 6}, place[] = {0, 1, 2, 3, 4, 5, 5, 7};
+  for (int k = 0; k < 8; k++)
+    bw_check_ok(bw_pd_crack_track_note(&track, time[k], place[k]));
+  ck_assert_uint_eq(track.n, 7); /* it did not move at 4 */
+  bw_check_near(bw_pd_crack_speed(&track, 1.0, NAN), 2.0, 1e-12);
+  bw_check_near(bw_pd_crack_speed(&track, 1.0, 2.5), 4.0 / 3.0,
+                1e-12); /* 1 to 2.5: one more than 1 */
+  bw_check_near(bw_pd_crack_speed(&track, 3.5, NAN), 5.0 / 3.5, 1e-12);
+  ck_assert_double_eq(bw_pd_crack_speed(&track, 10.0, NAN), 0.0);
+  bw_check_near(bw_pd_crack_speed_at(&track, 2.0, 4.2), 1.5, 1e-12); /* 5 less 2 */
+  bw_pd_crack_track_release(&track);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(a_drawn_fork_is_measured), BW_TEST(no_crack_is_no_crack),
+    BW_TEST(a_drawn_path_is_followed), BW_TEST(a_steady_tip_has_its_speed),
+    BW_TEST(the_fastest_stretch_is_found)};
 BW_CHECK_MAIN("pd_interface.crack", tests)

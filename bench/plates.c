@@ -1,0 +1,178 @@
+/* Cost of plates that break.
+ *
+ * branching_16000: the plate of cases/crack_branching, 1000 steps with the search for its tip.
+ *
+ * plate_3d_1000000: 500 x 200 x 10 particles, m = 3, on one rank and on two; speedup is the ratio
+ * of their times. Memory: growth of the resident memory on creation. Floor of a step as in
+ * bench/solid.c, with positions and velocities read and written.
+ *
+ * broken_48x32x32: the block of bench/solid.c, cut by planes; rival: the same block whole. A step
+ * must not cost more when bonds are gone.
+ *
+ * halo_48x32x32: copies of other ranks' particles; floor: the three layers at the cut.
+ *
+ * BUILD modules=pd_bond,pd_interface,vtk
+ * TEST ranks=2 */
+#include "../cases/crack_branching/plate.c" /* the case's own plate, not a second one */
+#include "bw_bench.h"
+
+#include <stdio.h>
+
+typedef struct {
+  bw_pd_bond *pd;
+  double dt;
+  bw_status st;
+} solid_work;
+
+static void advance(void *context)
+{
+  solid_work *w = context;
+  BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
+}
+
+static bw_status box(const bw_comm *comm, const int size[3], bw_pd_family_reach reach, double m,
+                     bw_pd_bond **pd)
+{
+  bw_pd_bond_config c = bw_pd_bond_config_default();
+  c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = m, c.family_reach = reach;
+  const bw_shape block = {.kind = BW_SHAPE_BOX,
+                          .upper = {size[0] * c.ds, size[1] * c.ds, size[2] * c.ds}};
+  int64_t n = 0;
+  int32_t *site = NULL;
+  uint8_t *kind = NULL;
+  bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, pd));
+  bw_release(&site);
+  bw_release(&kind);
+  return st;
+}
+
+static double ms_per_step(const bw_comm *comm, bw_pd_bond *pd, bw_status *st)
+{
+  solid_work w = {pd, 0.5 * bw_pd_bond_dt_max(pd), BW_OK};
+  const double seconds = bw_bench_median(comm, advance, &w);
+  *st = w.st;
+  return 1e3 * seconds;
+}
+
+static void put(bw_bench *b, const char *name, const char *quantity, const char *unit, double value,
+                const char *rival, double rival_value, double floor)
+{
+  bw_bench_put(b, &(bw_bench_row){name, quantity, unit, value, rival, rival_value, floor});
+}
+
+typedef struct {
+  const bw_comm *comm;
+  bw_status st;
+} plate_work;
+
+static void tear(void *context)
+{
+  plate_work *w = context;
+  const plate_config c = {.shape = {.length = 0.1, .height = 0.04, .notch = 0.05, .particles = 200},
+                          .solid = {.young_modulus = 72e9,
+                                    .density = 2440,
+                                    .fracture_energy = 135,
+                                    .horizon_ratio = 3,
+                                    .surface_correction = BW_PD_SURFACE_VOLUME},
+                          .load = {.stress = 12e6, .rows = 1},
+                          .time = {.step = 50e-9}};
+  plate p;
+  BW_THEN(w->st, plate_create(w->comm, &c, &p));
+  for (int step = 0; w->st == BW_OK && step < 1000; step++)
+    w->st = plate_step(&p);
+  plate_destroy(&p);
+}
+
+static bw_status branching(bw_bench *b, const bw_comm *self)
+{
+  plate_work w = {self, BW_OK};
+  put(b, "branching_16000_np1", "seconds_per_1000_steps", "s", bw_bench_median(self, tear, &w),
+      NULL, NAN, NAN);
+  return w.st;
+}
+
+static bw_status broken(bw_bench *b, const bw_comm *self)
+{
+  const int size[3] = {48, 32, 32};
+  bw_pd_bond *pd = NULL;
+  BW_TRY(box(self, size, BW_PD_REACH_HORIZON, 3.015, &pd));
+  bw_status st = BW_OK;
+  const int64_t bonds = bw_pd_bond_account(pd).bonds;
+  const double whole = ms_per_step(self, pd, &st);
+  for (int cut = 4; cut < size[0] && st == BW_OK; cut += 4) {
+    const double x = 1e-3 * cut, far = 1;
+    st = bw_pd_bond_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
+                             (double[3]){x, -far, far});
+  }
+  if (st == BW_OK) {
+    const double part = 1 - (double)bw_pd_bond_account(pd).bonds / (double)bonds;
+    const double ms = ms_per_step(self, pd, &st);
+    put(b, "broken_48x32x32_np1", "broken_fraction", "-", part, NULL, NAN, NAN);
+    put(b, "broken_48x32x32_np1", "ms_per_step", "ms", ms, "the same block whole", whole, NAN);
+  }
+  bw_pd_bond_destroy(&pd);
+  return st;
+}
+
+static bw_status halo(bw_bench *b, const bw_comm *comm)
+{
+  const int size[3] = {48, 32, 32};
+  bw_pd_bond *pd = NULL;
+  BW_TRY(box(comm, size, BW_PD_REACH_HORIZON, 3.015, &pd));
+  double copies = (double)(bw_pd_bond_get_extended(pd).n - bw_pd_bond_count(pd));
+  bw_comm_max(comm, 1, &copies);
+  put(b, "halo_48x32x32_np2", "copies_per_rank", "-", copies, NULL, NAN, 3.0 * 32 * 32);
+  bw_pd_bond_destroy(&pd);
+  return BW_OK;
+}
+
+static bw_status million(bw_bench *b, const bw_comm *comm, const char *name, double triad,
+                         double *ms)
+{
+  const int size[3] = {500, 200, 10};
+  bw_pd_bond *pd = NULL;
+  double before = -(double)bw_memory_resident(), lists;
+  bw_status st = box(comm, size, BW_PD_REACH_HALF_CELL, 3.0, &pd);
+  if (st != BW_OK) return st;
+  before += (double)bw_memory_resident(), lists = (double)bw_pd_bond_list_bytes(pd);
+  bw_comm_sum(comm, 1, &before);
+  bw_comm_sum(comm, 1, &lists);
+  const double n = (double)bw_pd_bond_total(pd);
+  const double moved = lists + n * 12.0 * sizeof(bw_real); /* X, V in and out */
+  *ms = ms_per_step(comm, pd, &st);
+  put(b, name, "ms_per_step", "ms", *ms, NULL, NAN, 1e3 * moved / (triad * bw_comm_size(comm)));
+  put(b, name, "bytes_per_particle", "B", before / n, NULL, NAN, NAN);
+  put(b, name, "bonds", "-", (double)bw_pd_bond_account(pd).bonds, NULL, NAN, NAN);
+  bw_pd_bond_destroy(&pd);
+  return st;
+}
+
+static bw_status alone(bw_bench *b, const bw_comm *self, double triad, double *ms)
+{
+  BW_TRY(branching(b, self));
+  BW_TRY(broken(b, self));
+  return million(b, self, "plate_3d_1000000_np1", triad, ms);
+}
+
+static bw_status run(bw_bench *b)
+{
+  const bw_comm *comm = bw_bench_comm(b);
+  const double triad = bw_bench_triad(comm);
+  double one = NAN, two = NAN;
+  bw_comm *self = NULL;
+  bw_status st = bw_comm_self(&self);
+  if (bw_comm_rank(comm) == 0) BW_THEN(st, alone(b, self, triad, &one));
+  st = bw_comm_agree(comm, st); /* the others wait here */
+  bw_comm_destroy(&self);
+  if (st != BW_OK || bw_comm_size(comm) != 2) return st;
+  BW_TRY(halo(b, comm));
+  BW_TRY(million(b, comm, "plate_3d_1000000_np2", triad, &two));
+  put(b, "plate_3d_1000000_np2", "speedup", "-", one / two, NULL, NAN, 2);
+  return BW_OK;
+}
+
+int main(int argc, char **argv)
+{
+  return bw_bench_main(argc, argv, "plates", run);
+}

@@ -54,7 +54,7 @@ static const bw_config_field coupling_fields[] = {
                    "of the velocity along a probe"),
     BW_CONFIG_WORD(bending_coupling, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(bending_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
-      "of the markers, inwards from the nominal surface"),
+      "of the markers, inwards from the nominal surface; left out: by kernel and iterations"),
     V(bending_coupling, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
       "along the surface; 0: every surface particle is a marker"),
     V(bending_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),

@@ -14,7 +14,8 @@ static const bw_config_field cylinder_fields[] = {
     V(cylinder_config, upstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "inflow to centre"),
     V(cylinder_config, downstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "centre to outflow"),
     V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "", "resolution"),
-    V(cylinder_config, retraction, BW_OPTIONAL, BW_FROM_TO(0, 2), "h", "of the markers"),
+    V(cylinder_config, retraction, BW_OPTIONAL, BW_FROM_TO(0, 2), "h",
+      "of the markers; left out: by kernel and n_iter"),
     V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "", "forcing iterations"),
     BW_CONFIG_WORD(cylinder_config, kernel, BW_OPTIONAL, kernel_words, "of the markers"),
     V(cylinder_config, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "h", "of the normal probes"),
@@ -38,15 +39,15 @@ cylinder_case cylinder_case_default(void)
 
 void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log)
 {
-  const bw_grid_view *g = bw_grid_look(f->grid);
+  const bw_grid_view *g = bw_grid_look(f->flow.grid);
   const double cells = (double)g->n[0] * g->n[1];
-  /* 60 ns per cell and sub-step: measured, one core, this case */
+  /* 20 ns per cell and sub-step: measured, one core, this case */
   bw_log_info(log,
-              "Re_d = %g, blockage %g, %d x %d cells, dt = %.3g d/U_b\n"
+              "Re_d = %g, blockage %g, %d x %d cells, retraction %.2f h, dt = %.3g d/U_b\n"
               "fields %.1f MB; at most %.0f steps, about %.0f s",
-              c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1], f->dt,
-              8.0 * (double)g->size * sizeof(bw_real) / 1.0e6, c->until.latest / f->dt,
-              c->until.latest / f->dt * cells * 3.0 * 60.0e-9);
+              c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1], f->config.retraction,
+              f->flow.dt, 8.0 * (double)g->size * sizeof(bw_real) / 1.0e6,
+              c->until.latest / f->flow.dt, c->until.latest / f->flow.dt * cells * 3.0 * 20.0e-9);
 }
 
 bw_status cylinder_open_history(const bw_comm *comm, const bw_case *run, bw_history **out)
@@ -73,8 +74,8 @@ static bw_status write_wall(cylinder_flow *f, const char *path)
   FILE *out = fopen(path, "w");
   BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s", path);
   fprintf(out, "theta[deg],p[rho U_b^2],tau[rho U_b^2]\n");
-  for (size_t q = 0; q < f->n; q++) {
-    const double *n = f->normal + 3 * q, *t = f->traction + 3 * q;
+  for (size_t q = 0; q < f->wall.n; q++) {
+    const double *n = f->wall.N + 3 * q, *t = f->traction + 3 * q;
     fprintf(out, "%.4f,%.8g,%.8g\n", atan2(n[1], -n[0]) * 180.0 / acos(-1.0),
             -(t[0] * n[0] + t[1] * n[1]), t[0] * n[1] - t[1] * n[0]);
   }
@@ -84,8 +85,8 @@ static bw_status write_wall(cylinder_flow *f, const char *path)
 
 bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
 {
-  const bw_comm *comm = bw_grid_comm(f->grid);
-  bw_real *const *u = bw_ns_channel_velocity(f->fluid), *p = f->pressure;
+  const bw_comm *comm = bw_grid_comm(f->flow.grid);
+  bw_real *const *u = bw_ns_channel_velocity(f->flow.fluid), *p = f->flow.pressure;
   const bw_vtk_field fields[] = {{.name = "velocity", .data = {u[0], u[1]}, .staggered = true},
                                  {.name = "pressure", .data = {p}}};
   char *wall = NULL, *fluid = NULL, *body = NULL;
@@ -98,8 +99,8 @@ bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
     st = bw_comm_agree(comm, st);
   }
   const bw_vtk_array traction = {"traction", BW_VTK_FLOAT64, 3, f->traction};
-  BW_THEN(st, bw_vtk_write_grid(f->grid, fluid, 2, fields));
-  BW_THEN(st, bw_vtk_write_points(comm, body, f->n, f->point, 1, &traction));
+  BW_THEN(st, bw_vtk_write_grid(f->flow.grid, fluid, 2, fields));
+  BW_THEN(st, bw_vtk_write_points(comm, body, f->wall.n, f->wall.X, 1, &traction));
   bw_release(&wall);
   bw_release(&fluid);
   bw_release(&body);

@@ -9,7 +9,7 @@
 static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case *run,
                          bw_history *history)
 {
-  const bw_comm *comm = bw_grid_comm(f->grid);
+  const bw_comm *comm = bw_grid_comm(f->flow.grid);
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_end = c->until.latest, about.time_unit = "d/U_b";
@@ -19,11 +19,11 @@ static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case
     st = cylinder_advance(f, c->until.interval);
     if (st != BW_OK || bw_stop_requested(comm)) break;
     const cylinder_drag d = cylinder_measure(f);
-    t = bw_ns_channel_time(f->fluid);
+    t = bw_ns_channel_time(f->flow.fluid);
     cylinder_sample(history, t, &d);
     steady = fabs(d.reaction - last) < c->until.steady * c->until.interval * fabs(d.reaction);
     last = d.reaction;
-    bw_progress_update(line, (int64_t)lround(t / f->dt), t, "Cd %.4f", d.reaction);
+    bw_progress_update(line, (int64_t)lround(t / f->flow.dt), t, "Cd %.4f", d.reaction);
   }
   bw_progress_finish(&line);
   return st;
@@ -36,8 +36,8 @@ static void report(cylinder_flow *f, bw_log *log)
               "drag coefficient at t = %.2f d/U_b\n  force of the markers      %.4f\n"
               "  momentum of the box       %.4f\n  probes, linear profile    %.4f\n"
               "  probes, parabola to wall  %.4f\nslip at the markers %.1e U_b",
-              bw_ns_channel_time(f->fluid), d.reaction, d.control_volume, d.probe[0], d.probe[1],
-              d.slip);
+              bw_ns_channel_time(f->flow.fluid), d.reaction, d.control_volume, d.probe[0],
+              d.probe[1], d.slip);
 }
 
 static bw_status simulate(const bw_comm *comm, const cylinder_case *c, const bw_case *run)

@@ -11,7 +11,7 @@ bw_coupler_config bw_coupler_config_default(void)
                              .nu = NAN,
                              .kernel = BW_KERNEL_ROMA3,
                              .n_iter = 2,
-                             .retraction = 0.3,
+                             .retraction = NAN,
                              .probe_length = 2.0,
                              .profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
@@ -32,7 +32,7 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
              "coupler: coupling_iterations = %d: at least 1 (explicit)", q->coupling_iterations);
   BW_REQUIRE(q->coupling_residual > 0.0, BW_EINPUT,
              "coupler: coupling_residual = %g: must be > 0, 1e-4 or so", q->coupling_residual);
-  BW_REQUIRE(fabs(q->retraction) <= 2.0, BW_EINPUT,
+  BW_REQUIRE(isnan(q->retraction) || fabs(q->retraction) <= 2.0, BW_EINPUT,
              "coupler: retraction = %g grid spacings: must lie in [-2, 2]", q->retraction);
   BW_REQUIRE(q->marker_spacing >= 0.0 && q->marker_spacing <= 4.0, BW_EINPUT,
              "coupler: marker_spacing = %g grid spacings: must lie in [0, 4] (wider leaks)",
@@ -51,6 +51,7 @@ static bw_status create_parts(bw_coupler *c)
   bw_pd_interface_config surface = bw_pd_interface_config_default();
   ibm.kernel = c->config.kernel;
   ibm.n_iter = c->config.n_iter;
+  if (isnan(c->config.retraction)) c->config.retraction = bw_ibm_mdf_retraction(&ibm);
   probe.length = c->config.probe_length;
   probe.profile = c->config.profile;
   probe.rho = c->config.rho;

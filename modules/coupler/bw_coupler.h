@@ -26,8 +26,7 @@
  *
  * Where the surface is: a particle is a cube of edge ds, so the nominal surface lies ds/2 outside
  * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
- * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres. The
- * default is the best one measured on a cylinder for Roma's kernel and two iterations.
+ * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
  *
  * How many markers: one per surface particle, or, where particles are finer than the grid (FSI's
  * plate: ds = h/5, every fifth particle a marker), one per block of k^(dim-1) particles of a face,
@@ -61,7 +60,8 @@ typedef struct {
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
   int n_iter;                /* forcing iterations [-]                      default 2 */
-  double retraction;         /* of the markers, in grid spacings [-]        default 0.3 */
+  double retraction;         /* of the markers, in grid spacings [-]; NaN: the best one known
+                                for kernel and n_iter (bw_ibm_mdf_retraction)  default NaN */
   double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);
                                 0: every surface particle is a marker   default 0 */
   double probe_length;       /* in grid spacings [-]                        default 2 */

@@ -9,6 +9,20 @@ bw_ibm_mdf_config bw_ibm_mdf_config_default(void)
   return (bw_ibm_mdf_config){.kernel = BW_KERNEL_ROMA3, .n_iter = 2};
 }
 
+double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
+{
+  enum { COLUMNS = 4 }; /* 1, 2, 4, 8 iterations and more */
+  static const double table[BW_KERNEL_COUNT][COLUMNS] = {
+      [BW_KERNEL_ROMA3] = {0.33, 0.30, 0.28, 0.28},
+      [BW_KERNEL_PESKIN4] = {0.48, 0.44, 0.42, 0.41},
+      [BW_KERNEL_HAT2] = {0.26, 0.24, 0.23, 0.23},
+  };
+  int column = 0;
+  while (column < COLUMNS - 1 && config->n_iter >= 2 << column)
+    column++;
+  return table[config->kernel][column];
+}
+
 bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_ibm_mdf **out)
 {
   const bw_grid_view *g = bw_grid_look(grid);

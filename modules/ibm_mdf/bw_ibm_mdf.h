@@ -21,6 +21,13 @@ typedef struct {
 
 bw_ibm_mdf_config bw_ibm_mdf_config_default(void);
 
+/* How far inside the nominal surface the markers of a solid belong, in grid spacings (ERRATA 21).
+ * A regularised sheet of force stops the fluid some way outside itself: over a flat sheet on the
+ * grid by (1/2) sum_ij phi_i phi_j |i - j| spacings (0.25 to 0.28 for Roma's kernel, 0.375 to 0.39
+ * for Peskin's, 0 to 0.25 for the hat), more where slip is left. The values are those at which the
+ * drag of a cylinder has no error (validation/ibm_mdf/cylinder_drag). Pure. */
+double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config);
+
 /* `grid` is borrowed. Collective. */
 bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config,
                             bw_ibm_mdf **out) BW_MUST_CHECK;

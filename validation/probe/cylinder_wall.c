@@ -58,7 +58,7 @@ typedef struct {
 /* Pressure and shear stress at a surface point, and its angle; false on the lower half. */
 static bool stress(const cylinder_flow *f, size_t q, double *theta, double *p, double *tau)
 {
-  const double *n = f->normal + 3 * q, *t = f->traction + 3 * q;
+  const double *n = f->wall.N + 3 * q, *t = f->traction + 3 * q;
   *theta = atan2(n[1], -n[0]) * 180.0 / acos(-1.0);
   *p = -(t[0] * n[0] + t[1] * n[1]);
   *tau = t[0] * n[1] - t[1] * n[0];
@@ -69,14 +69,14 @@ static wall_error compare(const cylinder_flow *f, const wall_table *w)
 {
   wall_error e = {0};
   double theta, p, tau, shift = 0.0, count = 0.0;
-  for (size_t q = 0; q < f->n; q++) {
-    const double *n = f->normal + 3 * q;
+  for (size_t q = 0; q < f->wall.n; q++) {
+    const double *n = f->wall.N + 3 * q;
     const bool upper = stress(f, q, &theta, &p, &tau);
     e.pressure -= 2.0 * p * n[0] * f->area / f->h; /* per 0.5 rho U_b^2 d */
     e.friction += 2.0 * tau * n[1] * f->area / f->h;
     if (upper) shift += p - at(w, w->dp, theta), count += 1.0;
   }
-  for (size_t q = 0; q < f->n; q++) {
+  for (size_t q = 0; q < f->wall.n; q++) {
     if (!stress(f, q, &theta, &p, &tau)) continue;
     e.dp = fmax(e.dp, fabs(p - shift / count - at(w, w->dp, theta)));
     e.tau = fmax(e.tau, fabs(tau - at(w, w->tau, theta)));
@@ -140,8 +140,8 @@ static bw_status one_grid(bw_validation *v, const wall_table *w, int cells)
   bw_status st = cylinder_create(bw_validation_comm(v), &c, &f);
   BW_THEN(st, cylinder_advance(&f, 20.0)); /* the drag has settled to 1e-5 after 13 */
   for (int p = BW_PROBE_PROFILES - 1; st == BW_OK && p >= 0; p--) {
-    bw_probe_traction(f.probe[p], bw_ns_channel_velocity(f.fluid), f.pressure, NULL, f.traction,
-                      NULL);
+    bw_probe_traction(f.probe[p], bw_ns_channel_velocity(f.flow.fluid), f.flow.pressure, NULL,
+                      f.traction, NULL);
     rows(v, &f, w, p == BW_PROBE_QUADRATIC);
   }
   cylinder_destroy(&f);

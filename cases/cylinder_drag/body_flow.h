@@ -1,7 +1,8 @@
 /* body_flow.h -- a box of fluid with surfaces of markers in it: the step, the pressure that acted,
  * markers on circles. Shared by cylinder_flow.h and the validations of ibm_mdf and probe.
  *
- * The caller makes grid, fluid and body; body_flow_ready makes the rest. */
+ * body_flow_box makes a box of cubic cells that is periodic or walled; who needs another one makes
+ * grid, fluid and body and calls body_flow_ready. */
 #pragma once
 #include "bw_ibm_mdf.h"
 #include "bw_memory.h"
@@ -29,6 +30,40 @@ static inline bw_status body_flow_ready(body_flow *f, double dt)
 {
   f->dt = dt;
   return bw_field_create(f->grid, &f->pressure);
+}
+
+typedef struct {
+  int n[3];         /* cells; n[2] = 1: flat */
+  double h, nu;     /* edge of a cell [L], viscosity [L^2/T] */
+  bool periodic[3]; /* else walls at rest; z of a flat box is periodic */
+  bw_ns_forcing forcing;
+  double forcing_value;
+  bw_kernel_delta_id kernel; /* of the forcing at the markers, and its iterations */
+  int n_iter;
+} body_box;
+
+/* Fluid at rest, no markers yet; f->dt is the caller's to choose. Destroy also after a failure. */
+static inline bw_status body_flow_box(const bw_comm *comm, const body_box *b, body_flow *f)
+{
+  bw_grid_config grid = bw_grid_config_default();
+  bw_ns_channel_config fluid = bw_ns_channel_config_default();
+  const bw_ibm_mdf_config body = {b->kernel, b->n_iter};
+  *f = (body_flow){0};
+  grid.halo = 2;
+  for (int d = 0; d < 3; d++) {
+    grid.n[d] = b->n[d];
+    grid.length[d] = b->n[d] * b->h;
+    grid.periodic[d] = b->periodic[d] || b->n[d] == 1;
+    fluid.side[d][0].kind = fluid.side[d][1].kind =
+        grid.periodic[d] ? BW_SIDE_PERIODIC : BW_SIDE_WALL;
+  }
+  fluid.nu = b->nu;
+  fluid.forcing = b->forcing;
+  fluid.forcing_value = b->forcing_value;
+  BW_TRY(bw_grid_create(comm, &grid, &f->grid));
+  BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
+  BW_TRY(bw_ibm_mdf_create(f->grid, &body, &f->body));
+  return body_flow_ready(f, NAN);
 }
 
 /* One step of f->dt with the markers where they are. Collective.

@@ -53,21 +53,17 @@ static void exact(const double x[3], double t, void *context, double u[3])
 
 static bw_status make_fluid(const bw_comm *comm, int cells, motion *m, couette *c)
 {
-  bw_grid_config grid = bw_grid_config_default();
-  bw_ns_channel_config fluid = bw_ns_channel_config_default();
-  for (int d = 0; d < 3; d++) {
-    grid.n[d] = d == 2 ? 1 : (int)lround(SIDE * cells);
-    grid.length[d] = grid.n[d] / (double)cells;
-    grid.periodic[d] = true;
-    fluid.side[d][0].kind = fluid.side[d][1].kind = BW_SIDE_PERIODIC;
-  }
-  grid.halo = 2;
-  fluid.nu = NU;
-  c->h = 1.0 / cells;
-  BW_TRY(bw_grid_create(comm, &grid, &c->flow.grid));
-  BW_TRY(bw_ns_channel_create(c->flow.grid, &fluid, &c->flow.fluid));
-  BW_TRY(bw_ns_channel_set_velocity(c->flow.fluid, exact, m, 0.0));
-  return body_flow_ready(&c->flow, 0.5 * bw_ns_channel_dt_max(c->flow.fluid));
+  const int n = (int)lround(SIDE * cells);
+  const body_box box = {.n = {n, n, 1},
+                        .h = 1.0 / cells,
+                        .nu = NU,
+                        .periodic = {true, true, true},
+                        .kernel = BW_KERNEL_ROMA3,
+                        .n_iter = 2};
+  c->h = box.h;
+  BW_TRY(body_flow_box(comm, &box, &c->flow));
+  c->flow.dt = 0.5 * bw_ns_channel_dt_max(c->flow.fluid);
+  return bw_ns_channel_set_velocity(c->flow.fluid, exact, m, 0.0);
 }
 
 static void turn(body_surface *s, size_t from, size_t to, double W)
@@ -85,7 +81,6 @@ static bw_status make_walls(const bw_comm *comm, const motion *m, couette *c)
       c->h * (isnan(m->retraction) ? bw_ibm_mdf_retraction(&config) : m->retraction);
   const size_t inner = body_circle_size(R1 - back, c->h), outer = body_circle_size(R2 + back, c->h);
   c->inner = inner;
-  BW_TRY(bw_ibm_mdf_create(c->flow.grid, &config, &c->flow.body));
   BW_TRY(body_surface_alloc(comm, inner + outer, &c->markers));
   body_circle(&c->markers, 0, inner, CENTRE, R1 - back, c->h);
   body_circle(&c->markers, inner, outer, CENTRE, R2 + back, c->h);

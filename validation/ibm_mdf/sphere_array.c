@@ -44,25 +44,20 @@ static bw_status sphere(const bw_comm *comm, double a, double h, body_surface *s
 static bw_status make(const bw_comm *comm, int cells, double a, double gradient, double retraction,
                       body_flow *f)
 {
-  bw_grid_config grid = bw_grid_config_default();
-  bw_ns_channel_config fluid = bw_ns_channel_config_default();
   const bw_ibm_mdf_config body = bw_ibm_mdf_config_default();
-  const double h = 1.0 / cells,
-               back = isnan(retraction) ? bw_ibm_mdf_retraction(&body) : retraction;
-  for (int d = 0; d < 3; d++) {
-    grid.n[d] = cells, grid.length[d] = 1.0, grid.periodic[d] = true;
-    fluid.side[d][0].kind = fluid.side[d][1].kind = BW_SIDE_PERIODIC;
-  }
-  grid.halo = 2;
-  fluid.nu = 1.0;
-  fluid.forcing = BW_FORCING_GRADIENT;
-  fluid.forcing_value = gradient;
-  BW_TRY(bw_grid_create(comm, &grid, &f->grid));
-  BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
-  BW_TRY(bw_ibm_mdf_create(f->grid, &body, &f->body));
-  BW_TRY(body_flow_ready(f, 0.9 * bw_ns_channel_dt_max(f->fluid)));
+  const double back = isnan(retraction) ? bw_ibm_mdf_retraction(&body) : retraction;
+  const body_box box = {.n = {cells, cells, cells},
+                        .h = 1.0 / cells,
+                        .nu = 1.0,
+                        .periodic = {true, true, true},
+                        .forcing = BW_FORCING_GRADIENT,
+                        .forcing_value = gradient,
+                        .kernel = body.kernel,
+                        .n_iter = body.n_iter};
+  BW_TRY(body_flow_box(comm, &box, f));
+  f->dt = 0.9 * bw_ns_channel_dt_max(f->fluid);
   body_surface s = {0};
-  bw_status st = sphere(comm, a - back * h, h, &s);
+  bw_status st = sphere(comm, a - back * box.h, box.h, &s);
   BW_THEN(st, body_set_markers(f, &s));
   body_surface_free(&s);
   return st;

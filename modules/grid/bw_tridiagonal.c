@@ -20,11 +20,13 @@ enum { N = BW_TRIDIAGONAL_LINES };
 
 struct bw_tridiagonal {
   bw_grid *grid;
+  int d; /* direction of the lines */
   size_t lines;
-  int ranks, me, rows; /* in y; rows of this rank */
+  int n, lo;           /* rows of all ranks, before this rank's */
+  int ranks, me, rows; /* in direction d; rows of this rank */
   int inner;           /* rows between the separators: rows - 1, or rows */
   bool cyclic;
-  bw_real *lower, *diagonal, *upper; /* (n1) */
+  bw_real *lower, *diagonal, *upper; /* (n) */
   bw_real *pivot;                    /* (rows, N) reciprocals */
   bw_real *zero;                     /* (N) zeros */
   /* The lines are dealt out in consecutive portions. A portion of c lines is [PLANES][c] on the
@@ -54,13 +56,14 @@ static void count(const bw_tridiagonal *t, size_t planes, size_t *all_start, siz
 static bw_status build(bw_tridiagonal *t)
 {
   const bw_grid_view *v = bw_grid_look(t->grid);
-  const size_t r = (size_t)v->ranks[1], n1 = (size_t)v->n[1];
+  const size_t r = (size_t)v->ranks[t->d], n = (size_t)v->n[t->d];
   size_t **const table[] = {&t->portion,     &t->tell_start,   &t->tell_count,
                             &t->hear_start,  &t->hear_count,   &t->reply_start,
                             &t->reply_count, &t->answer_start, &t->answer_count};
-  t->ranks = v->ranks[1];
-  t->me = v->coord[1];
-  t->rows = v->m[1];
+  t->n = v->n[t->d], t->lo = v->lo[t->d];
+  t->ranks = v->ranks[t->d];
+  t->me = v->coord[t->d];
+  t->rows = v->m[t->d];
   for (size_t q = 0; q < sizeof table / sizeof *table; q++)
     BW_TRY(BW_ALLOCATE(table[q], r + 1));
   for (size_t p = 0; p <= r; p++)
@@ -68,25 +71,25 @@ static bw_status build(bw_tridiagonal *t)
   count(t, PLANES, t->tell_start, t->tell_count, t->hear_start, t->hear_count);
   count(t, ANSWERS, t->answer_start, t->answer_count, t->reply_start, t->reply_count);
   const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
-  BW_TRY(BW_ALLOCATE(&t->lower, n1));
-  BW_TRY(BW_ALLOCATE(&t->diagonal, n1));
-  BW_TRY(BW_ALLOCATE(&t->upper, n1));
+  BW_TRY(BW_ALLOCATE(&t->lower, n));
+  BW_TRY(BW_ALLOCATE(&t->diagonal, n));
+  BW_TRY(BW_ALLOCATE(&t->upper, n));
   BW_TRY(BW_ALLOCATE(&t->pivot, (size_t)t->rows * N));
   BW_TRY(BW_ALLOCATE(&t->zero, N));
   BW_TRY(BW_ALLOCATE(&t->work, r * 3 * N));
-  if (r == 1 && !v->periodic[1]) return BW_OK; /* never coupled */
+  if (r == 1 && !v->periodic[t->d]) return BW_OK; /* never coupled */
   BW_TRY(BW_ALLOCATE(&t->tell, PLANES * t->lines));
   BW_TRY(BW_ALLOCATE(&t->hear, PLANES * mine * r));
   BW_TRY(BW_ALLOCATE(&t->reply, ANSWERS * mine * r));
   return BW_ALLOCATE(&t->answer, ANSWERS * t->lines);
 }
 
-bw_status bw_tridiagonal_create(bw_grid *grid, size_t lines, bw_tridiagonal **out)
+bw_status bw_tridiagonal_create(bw_grid *grid, int d, size_t lines, bw_tridiagonal **out)
 {
   bw_tridiagonal *t = NULL;
   bw_status st = BW_ALLOCATE(&t, 1);
   if (st == BW_OK) {
-    t->grid = grid;
+    t->grid = grid, t->d = d;
     t->lines = lines;
     st = build(t);
   }
@@ -125,10 +128,9 @@ void bw_tridiagonal_destroy(bw_tridiagonal **tridiagonal)
 void bw_tridiagonal_set(bw_tridiagonal *t, const double lower[], const double diagonal[],
                         const double upper[], bool cyclic)
 {
-  const int n1 = bw_grid_look(t->grid)->n[1];
-  BW_ASSERT(cyclic || (lower[0] == 0 && upper[n1 - 1] == 0));
+  BW_ASSERT(cyclic || (lower[0] == 0 && upper[t->n - 1] == 0));
   BW_ASSERT(!cyclic || t->tell != NULL);
-  for (int j = 0; j < n1; j++) {
+  for (int j = 0; j < t->n; j++) {
     t->lower[j] = (bw_real)lower[j];
     t->diagonal[j] = (bw_real)diagonal[j];
     t->upper[j] = (bw_real)upper[j];
@@ -202,8 +204,8 @@ static void carry(int n, bw_real a, bw_real b, bw_real c, bw_real scale,
 static const bw_real *row_shift(const bw_tridiagonal *t, const bw_tridiagonal_batch *b, int j,
                                 bw_real pinned[N])
 {
-  const int n1 = bw_grid_look(t->grid)->n[1], at = bw_grid_look(t->grid)->lo[1] + j;
-  if (b->pinned == 0 || at != n1 - 1) return b->shift;
+  const int at = t->lo + j;
+  if (b->pinned == 0 || at != t->n - 1) return b->shift;
   memcpy(pinned, b->shift, (size_t)b->n * sizeof *pinned);
   for (int q = 0; q < b->pinned; q++)
     pinned[q] -= t->lower[at] + t->upper[at];
@@ -237,7 +239,7 @@ static void from_portions(const bw_tridiagonal *t, int which, size_t first, int 
 
 void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, const bw_real *f)
 {
-  const int n = b->n, lo = bw_grid_look(t->grid)->lo[1], n1 = bw_grid_look(t->grid)->n[1];
+  const int n = b->n, lo = t->lo;
   bw_real pinned[N];
   carried s = {.f = {0}};
   for (int q = 0; q < n; q++) {
@@ -247,7 +249,7 @@ void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, con
   for (int j = 0; j < t->inner; j++)
     carry(n, t->lower[lo + j], t->diagonal[lo + j], t->upper[lo + j], b->scale,
           row_shift(t, b, j, pinned), f + j * b->pitch, &s);
-  const bw_real u = t->upper[(lo + n1 - 1) % n1];
+  const bw_real u = t->upper[(lo + t->n - 1) % t->n];
   for (int q = 0; q < n; q++) {
     s.F[q] *= u;
     s.L[q] *= u;
@@ -272,7 +274,7 @@ void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, con
 
 void bw_tridiagonal_finish(bw_tridiagonal *t, const bw_tridiagonal_batch *b, bw_real *f)
 {
-  const int n = b->n, lo = bw_grid_look(t->grid)->lo[1];
+  const int n = b->n, lo = t->lo;
   bw_real pinned[N], before[N];
   const bw_real *f_before = t->zero, *pivot_before = t->zero;
   if (bw_tridiagonal_coupled(t)) {
@@ -387,12 +389,12 @@ static void keep_own(const bw_tridiagonal *t, const size_t from_start[], const s
 void bw_tridiagonal_join(bw_tridiagonal *t)
 {
   const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
-  bw_grid_swap(t->grid, 1, t->tell_start, t->tell_count, t->tell, t->hear_start, t->hear_count,
+  bw_grid_swap(t->grid, t->d, t->tell_start, t->tell_count, t->tell, t->hear_start, t->hear_count,
                t->hear);
   keep_own(t, t->tell_start, t->tell_count, t->tell, t->hear_start, t->hear);
   for (size_t q0 = 0; q0 < mine; q0 += N)
     solve_separators(t, q0, mine - q0 < N ? (int)(mine - q0) : N);
-  bw_grid_swap(t->grid, 1, t->reply_start, t->reply_count, t->reply, t->answer_start,
+  bw_grid_swap(t->grid, t->d, t->reply_start, t->reply_count, t->reply, t->answer_start,
                t->answer_count, t->answer);
   keep_own(t, t->reply_start, t->reply_count, t->reply, t->answer_start, t->answer);
 }

@@ -1,8 +1,8 @@
-/* bw_tridiagonal.h -- many tridiagonal systems along y, over all the ranks in y.
+/* bw_tridiagonal.h -- many tridiagonal systems along y or z, over all the ranks there.
  *
- *   lower_j x_{j-1} + (diagonal_j + shift_l) x_j + upper_j x_{j+1} = scale f_j,   j = 1 .. n[1]
+ *   lower_j x_{j-1} + (diagonal_j + shift_l) x_j + upper_j x_{j+1} = scale f_j,   j = 1 .. n[d]
  * for lines l that share their coefficients but for the shift; cyclic or not.
- * Method: Thomas' algorithm; with several ranks in y (or cyclic systems) the last row of each rank
+ * Method: Thomas' algorithm; with several ranks in d (or cyclic systems) the last row of each rank
  * is a separator: `reduce` eliminates the rows between separators, `join` solves the small systems
  * of separators (lines dealt out over the ranks: three numbers per line, rank and direction ahead,
  * two back), `finish` is Thomas with the separators known. The matrix is one that needs no pivoting
@@ -11,7 +11,7 @@
  *   set; if (coupled) { reduce every line; join; }  finish every line.
  * Lines are handed over in batches of at most BW_TRIDIAGONAL_LINES, row j of a batch at
  * f + (j-1) pitch, contiguous; first: its position among this rank's lines, below the `lines` of
- * create, which is the same on all ranks of a line of blocks in y. */
+ * create, which is the same on all ranks of a line of blocks in d. */
 #pragma once
 #include "bw_grid.h"
 
@@ -19,16 +19,17 @@ typedef struct bw_tridiagonal bw_tridiagonal;
 
 enum { BW_TRIDIAGONAL_LINES = 128 }; /* the batch's work space stays in the second-level cache */
 
-/* `grid` is borrowed. Collective. */
-bw_status bw_tridiagonal_create(bw_grid *grid, size_t lines, bw_tridiagonal **out) BW_MUST_CHECK;
+/* Lines along d = 1 (y) or 2 (z). `grid` is borrowed. Collective. */
+bw_status bw_tridiagonal_create(bw_grid *grid, int d, size_t lines,
+                                bw_tridiagonal **out) BW_MUST_CHECK;
 void bw_tridiagonal_destroy(bw_tridiagonal **t); /* NULL is fine. Local. */
 
-/* Coefficients of all rows, [0..n1-1] for j = 1..n1 (copied). Not cyclic: lower[0] and
- * upper[n1-1] must be 0. Local. */
+/* Coefficients of all rows, [0..n-1] for j = 1..n[d] (copied). Not cyclic: lower[0] and
+ * upper[n-1] must be 0. Local. */
 void bw_tridiagonal_set(bw_tridiagonal *t, const double lower[], const double diagonal[],
                         const double upper[], bool cyclic);
 
-/* Do reduce and join have work to do (several ranks in y, or cyclic)? Local. */
+/* Do reduce and join have work to do (several ranks in d, or cyclic)? Local. */
 bool bw_tridiagonal_coupled(const bw_tridiagonal *t);
 
 /* A batch of lines. */
@@ -38,7 +39,7 @@ typedef struct {
   ptrdiff_t pitch;      /* reals from row to row of f */
   const bw_real *shift; /* (n) */
   bw_real scale;
-  int pinned; /* the first lines are singular: x = 0 in row n1 is added (see .c) */
+  int pinned; /* the first lines are singular: x = 0 in the last row is added (see .c) */
 } bw_tridiagonal_batch;
 
 void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *batch,

@@ -48,6 +48,7 @@ static double viscous_rate(const bw_ns_channel *ns)
     y = fmax(y, 2.0 * (1.0 / f[j] + 1.0 / f[j + 1]) / c[j]);
   }
   bw_comm_max(ns->comm, 1, &y);
+  if (ns->config.viscous == BW_VISCOUS_IMPLICIT) return 0.0;
   if (ns->config.viscous == BW_VISCOUS_EXPLICIT) rate += y;
   if (ns->components == 3) rate += 4.0 / (g->spacing[2] * g->spacing[2]);
   return ns->config.nu * rate;
@@ -62,6 +63,14 @@ static bw_status poisson_create(bw_ns_channel *ns)
   return bw_poisson_create(ns->grid, side, &ns->poisson);
 }
 
+static bw_status increment_create(bw_ns_channel *ns)
+{
+  ns->increment[0] = ns->phi;
+  for (int c = 1; c < ns->components; c++)
+    BW_TRY(bw_field_create(ns->grid, &ns->increment[c]));
+  return BW_ALLOCATE(&ns->lanes, (size_t)ns->g->n[0] * BW_NS_LANES);
+}
+
 static bw_status fields_create(bw_ns_channel *ns)
 {
   for (int c = 0; c < ns->components; c++) {
@@ -70,19 +79,32 @@ static bw_status fields_create(bw_ns_channel *ns)
   }
   BW_TRY(bw_field_create(ns->grid, &ns->p));
   BW_TRY(bw_field_create(ns->grid, &ns->phi));
+  const bool all = ns->config.viscous == BW_VISCOUS_IMPLICIT;
+  if (all) BW_TRY(increment_create(ns));
   ns->sweep = (bw_ns_sweep){.g = ns->g,
                             .metrics = &ns->metrics,
                             .u = ns->u,
                             .R = ns->R,
                             .p = ns->p,
                             .tile = bw_ns__momentum_tile(ns->g),
-                            .nu = (bw_real)ns->config.nu,
-                            .split_y = ns->config.viscous == BW_VISCOUS_IMPLICIT_Y};
+                            .nu = (bw_real)(all ? 0.0 : ns->config.nu),
+                            .viscous = ns->config.viscous,
+                            .change = all ? ns->increment : ns->u};
   ns->scratch_size = bw_ns__momentum_scratch(&ns->sweep);
   BW_TRY(BW_ALLOCATE(&ns->scratch, ns->scratch_size));
   bw_ns__momentum_place(&ns->sweep, ns->scratch);
   ns->cost.bytes =
-      sizeof(bw_real) * (ns->g->size * (2 * (size_t)ns->components + 2) + ns->scratch_size);
+      sizeof(bw_real) *
+      (ns->g->size * (size_t)((all ? 3 : 2) * ns->components + (all ? 1 : 2)) + ns->scratch_size);
+  return BW_OK;
+}
+
+static bw_status lines_create(bw_ns_channel *ns)
+{
+  const bw_ns_viscous viscous = ns->config.viscous;
+  for (int d = 0; d < ns->components; d++)
+    if (viscous == BW_VISCOUS_IMPLICIT || (viscous == BW_VISCOUS_IMPLICIT_Y && d == 1))
+      BW_TRY(bw_ns__lines_create(ns, d, &ns->lines[d]));
   return BW_OK;
 }
 
@@ -112,7 +134,7 @@ bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config
     ns->viscous_rate = viscous_rate(ns);
     st = poisson_create(ns);
   }
-  BW_THEN(st, bw_ns__implicit_create(ns));
+  BW_THEN(st, lines_create(ns));
   st = bw_comm_agree(comm, st);
   BW_THEN(st, bw_ns_channel_set_velocity(ns, NULL, NULL, 0.0));
   if (st != BW_OK) bw_ns_channel_destroy(&ns);
@@ -129,11 +151,13 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
   for (int c = 0; c < 3; c++) {
     bw_release(&ns->u[c]);
     bw_release(&ns->R[c]);
+    bw_ns__lines_destroy(&ns->lines[c]);
+    if (c > 0) bw_release(&ns->increment[c]);
   }
+  bw_release(&ns->lanes);
   bw_release(&ns->p);
   bw_release(&ns->phi);
   bw_release(&ns->scratch);
-  bw_ns__implicit_destroy(ns);
   bw_release(&ns->metrics.heights);
   bw_release(&ns->metrics.reals);
   bw_release(pointer);

@@ -43,7 +43,9 @@ typedef struct {
 } bw_ns_side;
 
 typedef enum { BW_FORCING_NONE, BW_FORCING_FLOW_RATE, BW_FORCING_GRADIENT } bw_ns_forcing;
-typedef enum { BW_VISCOUS_EXPLICIT, BW_VISCOUS_IMPLICIT_Y } bw_ns_viscous;
+/* Of the viscous term: none, that in y, or all is implicit (Crank-Nicolson in each sub-step, second
+ * order in time). */
+typedef enum { BW_VISCOUS_EXPLICIT, BW_VISCOUS_IMPLICIT_Y, BW_VISCOUS_IMPLICIT } bw_ns_viscous;
 
 typedef struct {
   bw_ns_side side[3][2]; /* lower, upper */
@@ -67,10 +69,11 @@ bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn functi
                                      double t) BW_MUST_CHECK;
 
 /* Largest stable dt of the present field [T]: with c = max sum_i |u_i|/dx_i and
- * a = 4 nu sum_i 1/dx_i^2 (without y when that is implicit; without z in 2D),
+ * a = 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term (without z in 2D),
  *   dt = 1 / sqrt((c/sqrt(3))^2 + (a/2.5127)^2),
- * an ellipse inside the stability region of this RK3 (README). ERRATA 22 has the viscous part
- * with 1.65 instead of 2.5127. Collective. */
+ * an ellipse inside the stability region of this RK3 (README); 2.41 with implicit y. INFINITY when
+ * nothing limits it: fluid at rest, all implicit. ERRATA 22 has the viscous part with 1.65 instead
+ * of 2.5127. Collective. */
 double bw_ns_channel_dt_max(bw_ns_channel *ns);
 
 /* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,

@@ -132,7 +132,9 @@ void bw_ns__box_fluxes(bw_ns_channel *ns, int r, double dt, double gradient)
     if (r == 0) box->impulse[c] = box->flux[c] = 0.0;
     double now = 0.0;
     for (int d = 0; d < ns->components; d++) {
-      const int parts = d == 1 && ns->sweep.split_y ? CONVECTION : CONVECTION | DIFFUSION;
+      const int parts = d == 1 && ns->config.viscous == BW_VISCOUS_IMPLICIT_Y
+                            ? CONVECTION
+                            : CONVECTION | DIFFUSION;
       now += through(ns, c, d, flux_value, &parts);
     }
     box->impulse[c] += dt * (bw_ns__alpha[r] * now + bw_ns__beta[r] * box->flux[c]);
@@ -170,6 +172,9 @@ void bw_ns__box_finish(bw_ns_channel *ns, double dt)
 
 bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3], const int hi[3])
 {
+  BW_REQUIRE(ns->config.viscous != BW_VISCOUS_IMPLICIT, BW_EINPUT,
+             "ns_channel: the fluxes of a watched box are not known where the viscous term is "
+             "implicit in all directions; use explicit or implicit_y");
   for (int d = 0; d < 3; d++)
     BW_REQUIRE(0 <= lo[d] && lo[d] < hi[d] && hi[d] <= ns->g->n[d], BW_EINPUT,
                "ns_channel: watched cells %d < i <= %d in direction %d are not a part of 1..%d",

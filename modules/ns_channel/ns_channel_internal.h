@@ -4,6 +4,9 @@
 #include "bw_poisson.h"
 
 enum { BW_NS_STAGES = 3 };
+enum { BW_NS_LANES = 16 }; /* lines along x that are solved side by side */
+
+#define BW_NS_INLINE static inline __attribute__((always_inline))
 
 /* Geometry as kernels want it: reciprocals, indexed by local j (valid 1-2 .. m1+2). */
 typedef struct {
@@ -22,14 +25,15 @@ typedef struct {
   const bw_grid_view *g;
   const bw_ns_metrics *metrics;
   bw_real *const *u, *const *R;
+  bw_real *const *change; /* implicit: takes the change of u, which stays; else u */
   const bw_real *p;
-  bw_real *fx[4]; /* rows 0..n0: x fluxes of u, v, w; the new y flux of w */
-  bw_real *fy[3]; /* [k][i]: y flux below the row that is next, per plane */
-  bw_real *fz[3]; /* [j in tile][i]: z flux below the plane that is next */
-  bw_real *dy[3]; /* split_y: like fy, the difference quotients */
-  int tile;       /* rows in y per tile */
-  bw_real nu;
-  bool split_y; /* y diffusion: half here with weight kappa, half in the implicit solver */
+  bw_real *fx[4];        /* rows 0..n0: x fluxes of u, v, w; the new y flux of w */
+  bw_real *fy[3];        /* [k][i]: y flux below the row that is next, per plane */
+  bw_real *fz[3];        /* [j in tile][i]: z flux below the plane that is next */
+  bw_real *dy[3];        /* implicit in y: like fy, the difference quotients */
+  int tile;              /* rows in y per tile */
+  bw_real nu;            /* 0 where all of the viscous term is implicit */
+  bw_ns_viscous viscous; /* implicit in y: half of that here with weight kappa */
   bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = gamma dt nu/2 */
   bw_real source;                             /* dt gamma g */
 } bw_ns_sweep;
@@ -48,7 +52,7 @@ typedef struct {
   ptrdiff_t base, step0, step1;
 } bw_ns_walk;
 
-typedef struct bw_ns_implicit bw_ns_implicit; /* ns_implicit.c */
+typedef struct bw_ns_lines bw_ns_lines; /* ns_lines.c */
 
 /* Momentum balance of a box, see bw_ns_channel_control_volume. */
 typedef struct {
@@ -73,7 +77,9 @@ struct bw_ns_channel {
   bw_ns_sweep sweep;
   bw_ns_plane plane[3][2];
   double outflow_area; /* of all outflow sides; 0: there is none */
-  bw_ns_implicit *implicit;
+  bw_ns_lines *lines[3]; /* of the directions with an implicit viscous term */
+  bw_real *increment[3]; /* implicit: u* - u; the first is phi, free until the projection */
+  bw_real *lanes;        /* (n0, BW_NS_LANES) */
   double time;
   double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
   double applied;     /* mean gradient of the last finished step */
@@ -93,8 +99,9 @@ extern const double bw_ns__alpha[BW_NS_STAGES], bw_ns__beta[BW_NS_STAGES],
 /* ns_config.c */
 bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config *c);
 
-/* ns_momentum.c: u <- u + alpha_dt R(u) + beta_dt R_prev - gamma_dt grad p + source, R_prev <- R,
- * in all cells of the rank; boundary-normal faces get values that the caller replaces. Local. */
+/* ns_momentum.c: u (or the change) <- u + alpha_dt R(u) + beta_dt R_prev - gamma_dt grad p +
+ * source, R_prev <- R, in all cells of the rank; boundary-normal faces get values that the caller
+ * replaces. Local. */
 void bw_ns__momentum_sweep(const bw_ns_sweep *s, int stage);
 int bw_ns__momentum_tile(const bw_grid_view *g);
 size_t bw_ns__momentum_scratch(const bw_ns_sweep *s); /* reals */
@@ -146,8 +153,23 @@ void bw_ns__box_diffusion(bw_ns_channel *ns, double weight); /* in y, where it i
 void bw_ns__box_projection(bw_ns_channel *ns, double gamma_dt, double shift);
 void bw_ns__box_finish(bw_ns_channel *ns, double dt);
 
-/* ns_implicit.c */
-bw_status bw_ns__implicit_create(bw_ns_channel *ns);
-void bw_ns__implicit_destroy(bw_ns_channel *ns);
-/* u <- (1 - kappa D_yy)^-1 u. Collective. */
+/* ns_lines.c */
+bw_status bw_ns__lines_create(const bw_ns_channel *ns, int d, bw_ns_lines **out); /* Collective. */
+void bw_ns__lines_destroy(bw_ns_lines **lines);
+/* The operator 1 - kappa D_dd of component c; homogeneous at the sides. Local. */
+void bw_ns__lines_set(const bw_ns_channel *ns, int c, double kappa, bw_ns_lines *q);
+bool bw_ns__lines_are_divided(const bw_ns_lines *q);   /* over ranks */
+double bw_ns__lines_edge(const bw_ns_lines *q, int s); /* what couples the row at side s to it */
+/* Not divided: `width` lines side by side, rows `pitch` apart from f on. Local. */
+void bw_ns__lines_solve(const bw_ns_lines *q, int width, ptrdiff_t pitch, bw_real *f);
+/* Divided: all lines of a field. Collective. */
+void bw_ns__lines_solve_divided(const bw_ns_channel *ns, const bw_ns_lines *q, bw_real *u);
+/* Ghost of a component along side (d, s) = sign u + G (ns_boundary.c). */
+double bw_ns__ghost_sign(const bw_ns_channel *ns, int d, int s);
+
+/* ns_implicit.c: u <- (1 - kappa D_yy)^-1 u. Collective. */
 void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt);
+
+/* ns_factored.c: u <- u*, from the sweep's change in `increment`; sides have mean values until
+ * the faces are set. Collective. */
+void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt);

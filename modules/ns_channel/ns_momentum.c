@@ -6,13 +6,12 @@
  * with c the volume flux through that face, averaged from the two pressure cells it belongs to
  * (halves; in y the heights' shares), so that <u, N(u)> = 0 where div u = 0, also on a stretched
  * grid. A row needs only its upper neighbours and the fluxes kept from the lower ones; so u can
- * be overwritten in place, row by row: no second copy of the velocity exists. */
+ * be overwritten in place, row by row: no second copy of the velocity exists. (Where all of the
+ * viscous term is implicit, u stays and the change goes elsewhere: ns_factored.c.) */
 #include "ns_channel_internal.h"
 
-#define BW_INLINE static inline __attribute__((always_inline))
-
 /* carrier: sum of two velocities; c: 1/4 (times 1/d for scaled fluxes); e: nu/d. */
-BW_INLINE bw_real flux(bw_real carrier, bw_real q, bw_real up, bw_real c, bw_real e)
+BW_NS_INLINE bw_real flux(bw_real carrier, bw_real q, bw_real up, bw_real c, bw_real e)
 {
   return carrier * (q + up) * c - (up - q) * e;
 }
@@ -22,23 +21,23 @@ typedef struct {          /* scalars of one row; fluxes in x and z are scaled by
   bw_real ey_u, ey_v;     /* nu/d above in y for u, w and for v */
   bw_real rdyf, rdyc;     /* height of the row's cells: u, w and v */
   bw_real below2, above2; /* twice the shares */
-  bw_real dy_u, dy_v;     /* split_y: kappa/d above in y for u, w and for v */
+  bw_real dy_u, dy_v;     /* implicit in y: kappa/d above in y for u, w and for v */
   bw_real alpha, beta, gx, gy, gz, source;
 } row_scalars;
 
 typedef struct { /* row (j, k), j + 1 (n), k + 1 (t): [i] is cell i */
   bw_real *u, *v, *w, *un, *vn, *wn, *ut, *vt, *wt;
   const bw_real *p, *pn, *pt;
-  bw_real *ru, *rv, *rw;
+  bw_real *ru, *rv, *rw, *du, *dv, *dw;
 } row_pointers;
 
 /* fxu, fxv, fxw for i = 0..n and the y flux of w above. */
-BW_INLINE void x_fluxes(int n, bool planar, const row_scalars *restrict c,
-                        const bw_real *restrict u, const bw_real *restrict un,
-                        const bw_real *restrict ut, const bw_real *restrict v,
-                        const bw_real *restrict vt, const bw_real *restrict w,
-                        const bw_real *restrict wn, bw_real *restrict fxu, bw_real *restrict fxv,
-                        bw_real *restrict fxw, bw_real *restrict gyw)
+BW_NS_INLINE void x_fluxes(int n, bool planar, const row_scalars *restrict c,
+                           const bw_real *restrict u, const bw_real *restrict un,
+                           const bw_real *restrict ut, const bw_real *restrict v,
+                           const bw_real *restrict vt, const bw_real *restrict w,
+                           const bw_real *restrict wn, bw_real *restrict fxu, bw_real *restrict fxv,
+                           bw_real *restrict fxw, bw_real *restrict gyw)
 {
   const bw_real cx = c->cx, ex = c->ex, below2 = c->below2, above2 = c->above2;
   const bw_real quarter = (bw_real)0.25, ey = c->ey_u;
@@ -53,20 +52,25 @@ BW_INLINE void x_fluxes(int n, bool planar, const row_scalars *restrict c,
 }
 
 /* What a finished right-hand side does: R_prev is read after stage 0, kept before stage 2. */
-#define BW_UPDATE(q, R, dp)                                                                        \
+#define BW_UPDATE(q, out, R, dp)                                                                   \
   do {                                                                                             \
     bw_real change_ = alpha * rhs + (dp);                                                          \
-    if (split) change_ += diffused * rdy;                                                          \
+    if (viscous == BW_VISCOUS_IMPLICIT_Y) change_ += diffused * rdy;                               \
     if (stage > 0) change_ += beta * (R)[i];                                                       \
     if (stage < 2) (R)[i] = rhs;                                                                   \
-    (q)[i] += change_;                                                                             \
+    if (viscous == BW_VISCOUS_IMPLICIT)                                                            \
+      (out)[i] = change_;                                                                          \
+    else                                                                                           \
+      (q)[i] += change_;                                                                           \
   } while (0)
 
-BW_INLINE void update_u(int n, bool planar, int stage, bool split, const row_scalars *restrict c,
-                        bw_real *restrict u, const bw_real *restrict un, const bw_real *restrict ut,
-                        const bw_real *restrict v, const bw_real *restrict w,
-                        const bw_real *restrict p, const bw_real *restrict fx, bw_real *restrict fy,
-                        bw_real *restrict fz, bw_real *restrict dy, bw_real *restrict R)
+BW_NS_INLINE void update_u(int n, bool planar, int stage, bw_ns_viscous viscous,
+                           const row_scalars *restrict c, bw_real *restrict u,
+                           const bw_real *restrict un, const bw_real *restrict ut,
+                           const bw_real *restrict v, const bw_real *restrict w,
+                           const bw_real *restrict p, const bw_real *restrict fx,
+                           bw_real *restrict fy, bw_real *restrict fz, bw_real *restrict dy,
+                           bw_real *restrict R, bw_real *restrict out)
 {
   const bw_real quarter = (bw_real)0.25, ey = c->ey_u, cz = c->cz, ez = c->ez, rdy = c->rdyf;
   const bw_real alpha = c->alpha, beta = c->beta, gx = c->gx, source = c->source;
@@ -75,7 +79,7 @@ BW_INLINE void update_u(int n, bool planar, int stage, bool split, const row_sca
     bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y) * rdy;
     fy[i] = y;
     bw_real diffused = 0;
-    if (split) {
+    if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (un[i] - u[i]) * c->dy_u;
       diffused = d - dy[i];
       dy[i] = d;
@@ -85,16 +89,17 @@ BW_INLINE void update_u(int n, bool planar, int stage, bool split, const row_sca
       rhs += fz[i] - z;
       fz[i] = z;
     }
-    BW_UPDATE(u, R, gx * (p[i] - p[i + 1]) + source);
+    BW_UPDATE(u, out, R, gx * (p[i] - p[i + 1]) + source);
   }
 }
 
-BW_INLINE void update_v(int n, bool planar, int stage, bool split, const row_scalars *restrict c,
-                        bw_real *restrict v, const bw_real *restrict vn, const bw_real *restrict vt,
-                        const bw_real *restrict w, const bw_real *restrict wn,
-                        const bw_real *restrict p, const bw_real *restrict pn,
-                        const bw_real *restrict fx, bw_real *restrict fy, bw_real *restrict fz,
-                        bw_real *restrict dy, bw_real *restrict R)
+BW_NS_INLINE void update_v(int n, bool planar, int stage, bw_ns_viscous viscous,
+                           const row_scalars *restrict c, bw_real *restrict v,
+                           const bw_real *restrict vn, const bw_real *restrict vt,
+                           const bw_real *restrict w, const bw_real *restrict wn,
+                           const bw_real *restrict p, const bw_real *restrict pn,
+                           const bw_real *restrict fx, bw_real *restrict fy, bw_real *restrict fz,
+                           bw_real *restrict dy, bw_real *restrict R, bw_real *restrict out)
 {
   const bw_real quarter = (bw_real)0.25, ey = c->ey_v, cz = c->cz, ez = c->ez, rdy = c->rdyc;
   const bw_real below2 = c->below2, above2 = c->above2;
@@ -104,7 +109,7 @@ BW_INLINE void update_v(int n, bool planar, int stage, bool split, const row_sca
     bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y) * rdy;
     fy[i] = y;
     bw_real diffused = 0;
-    if (split) {
+    if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (vn[i] - v[i]) * c->dy_v;
       diffused = d - dy[i];
       dy[i] = d;
@@ -114,15 +119,16 @@ BW_INLINE void update_v(int n, bool planar, int stage, bool split, const row_sca
       rhs += fz[i] - z;
       fz[i] = z;
     }
-    BW_UPDATE(v, R, gy * (p[i] - pn[i]));
+    BW_UPDATE(v, out, R, gy * (p[i] - pn[i]));
   }
 }
 
-BW_INLINE void update_w(int n, int stage, bool split, const row_scalars *restrict c,
-                        bw_real *restrict w, const bw_real *restrict wn, const bw_real *restrict wt,
-                        const bw_real *restrict p, const bw_real *restrict pt,
-                        const bw_real *restrict fx, const bw_real *restrict y, bw_real *restrict fy,
-                        bw_real *restrict fz, bw_real *restrict dy, bw_real *restrict R)
+BW_NS_INLINE void update_w(int n, int stage, bw_ns_viscous viscous, const row_scalars *restrict c,
+                           bw_real *restrict w, const bw_real *restrict wn,
+                           const bw_real *restrict wt, const bw_real *restrict p,
+                           const bw_real *restrict pt, const bw_real *restrict fx,
+                           const bw_real *restrict y, bw_real *restrict fy, bw_real *restrict fz,
+                           bw_real *restrict dy, bw_real *restrict R, bw_real *restrict out)
 {
   const bw_real cz = c->cz, ez = c->ez, rdy = c->rdyf;
   const bw_real alpha = c->alpha, beta = c->beta, gz = c->gz;
@@ -131,13 +137,13 @@ BW_INLINE void update_w(int n, int stage, bool split, const row_scalars *restric
     const bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y[i]) * rdy + (fz[i] - z);
     fy[i] = y[i];
     bw_real diffused = 0;
-    if (split) {
+    if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (wn[i] - w[i]) * c->dy_u;
       diffused = d - dy[i];
       dy[i] = d;
     }
     fz[i] = z;
-    BW_UPDATE(w, R, gz * (p[i] - pt[i]));
+    BW_UPDATE(w, out, R, gz * (p[i] - pt[i]));
   }
 }
 
@@ -169,7 +175,8 @@ static void first_z_fluxes(int n, const row_scalars *c, const row_pointers *q, b
 static row_scalars scalars_of_row(const bw_ns_sweep *s, int j)
 {
   const bw_ns_metrics *m = s->metrics;
-  const bw_real quarter = (bw_real)0.25, nu = s->nu, nu_y = s->split_y ? 0 : nu;
+  const bw_real quarter = (bw_real)0.25, nu = s->nu,
+                nu_y = s->viscous == BW_VISCOUS_EXPLICIT ? nu : 0;
   row_scalars c = {.cx = quarter * m->rdx,
                    .ex = nu * m->rdx * m->rdx,
                    .cz = quarter * m->rdz,
@@ -195,7 +202,7 @@ static row_pointers pointers_of_row(const bw_ns_sweep *s, bool planar, int j, in
 {
   const bw_grid_view *g = s->g;
   const ptrdiff_t at = bw_at(g, 0, j, k), n = at + g->stride[1], t = at + g->stride[2];
-  bw_real *const *u = s->u, *const *R = s->R;
+  bw_real *const *u = s->u, *const *R = s->R, *const *d = s->change;
   row_pointers q = {.u = u[0] + at,
                     .v = u[1] + at,
                     .un = u[0] + n,
@@ -206,13 +213,16 @@ static row_pointers pointers_of_row(const bw_ns_sweep *s, bool planar, int j, in
                     .pn = s->p + n,
                     .pt = s->p + t,
                     .ru = R[0] + at,
-                    .rv = R[1] + at};
-  if (!planar) q.w = u[2] + at, q.wn = u[2] + n, q.wt = u[2] + t, q.rw = R[2] + at;
+                    .rv = R[1] + at,
+                    .du = d[0] + at,
+                    .dv = d[1] + at};
+  if (planar) return q;
+  q.w = u[2] + at, q.wn = u[2] + n, q.wt = u[2] + t, q.rw = R[2] + at, q.dw = d[2] + at;
   return q;
 }
 
-BW_INLINE void one_row(const bw_ns_sweep *s, bool planar, int stage, bool split, int j, int k,
-                       int j0)
+BW_NS_INLINE void one_row(const bw_ns_sweep *s, bool planar, int stage, bw_ns_viscous viscous,
+                          int j, int k, int j0)
 {
   const row_scalars c = scalars_of_row(s, j);
   const row_pointers q = pointers_of_row(s, planar, j, k);
@@ -220,18 +230,18 @@ BW_INLINE void one_row(const bw_ns_sweep *s, bool planar, int stage, bool split,
   const ptrdiff_t y = (ptrdiff_t)(k - 1) * (n + 1), z = (ptrdiff_t)(j - j0) * (n + 1);
   bw_real *const *fx = s->fx;
   x_fluxes(n, planar, &c, q.u, q.un, q.ut, q.v, q.vt, q.w, q.wn, fx[0], fx[1], fx[2], fx[3]);
-  update_u(n, planar, stage, split, &c, q.u, q.un, q.ut, q.v, q.w, q.p, fx[0], s->fy[0] + y,
-           s->fz[0] + z, s->dy[0] + y, q.ru);
-  update_v(n, planar, stage, split, &c, q.v, q.vn, q.vt, q.w, q.wn, q.p, q.pn, fx[1], s->fy[1] + y,
-           s->fz[1] + z, s->dy[1] + y, q.rv);
+  update_u(n, planar, stage, viscous, &c, q.u, q.un, q.ut, q.v, q.w, q.p, fx[0], s->fy[0] + y,
+           s->fz[0] + z, s->dy[0] + y, q.ru, q.du);
+  update_v(n, planar, stage, viscous, &c, q.v, q.vn, q.vt, q.w, q.wn, q.p, q.pn, fx[1],
+           s->fy[1] + y, s->fz[1] + z, s->dy[1] + y, q.rv, q.dv);
   if (!planar)
-    update_w(n, stage, split, &c, q.w, q.wn, q.wt, q.p, q.pt, fx[2], fx[3], s->fy[2] + y,
-             s->fz[2] + z, s->dy[2] + y, q.rw);
+    update_w(n, stage, viscous, &c, q.w, q.wn, q.wt, q.p, q.pt, fx[2], fx[3], s->fy[2] + y,
+             s->fz[2] + z, s->dy[2] + y, q.rw, q.dw);
 }
 
 /* Tiles in y, all planes of a tile in turn: the rows of two planes and the tile's fluxes stay in
  * the second-level cache. y fluxes pass from tile to tile per plane. */
-BW_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bool split)
+BW_NS_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bw_ns_viscous viscous)
 {
   const bw_grid_view *g = s->g;
   const int n = g->m[0];
@@ -240,7 +250,9 @@ BW_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bool split
     const row_pointers q = pointers_of_row(s, planar, 0, k);
     const ptrdiff_t y = (ptrdiff_t)(k - 1) * (n + 1);
     first_y_fluxes(n, planar, &c, &q, (bw_real *[]){s->fy[0] + y, s->fy[1] + y, s->fy[2] + y},
-                   split ? (bw_real *[]){s->dy[0] + y, s->dy[1] + y, s->dy[2] + y} : NULL);
+                   viscous == BW_VISCOUS_IMPLICIT_Y
+                       ? (bw_real *[]){s->dy[0] + y, s->dy[1] + y, s->dy[2] + y}
+                       : NULL);
   }
   for (int j0 = 1; j0 <= g->m[1]; j0 += s->tile) {
     const int end = j0 + s->tile <= g->m[1] ? j0 + s->tile : g->m[1] + 1;
@@ -252,34 +264,40 @@ BW_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bool split
     }
     for (int k = 1; k <= g->m[2]; k++)
       for (int j = j0; j < end; j++)
-        one_row(s, planar, stage, split, j, k, j0);
+        one_row(s, planar, stage, viscous, j, k, j0);
   }
 }
 
-#define BW_SWEEP(name, planar, split)                                                              \
+#define BW_SWEEP(name, planar, viscous)                                                            \
   static void name##_0(const bw_ns_sweep *s)                                                       \
   {                                                                                                \
-    all_rows(s, planar, 0, split);                                                                 \
+    all_rows(s, planar, 0, viscous);                                                               \
   }                                                                                                \
   static void name##_1(const bw_ns_sweep *s)                                                       \
   {                                                                                                \
-    all_rows(s, planar, 1, split);                                                                 \
+    all_rows(s, planar, 1, viscous);                                                               \
   }                                                                                                \
   static void name##_2(const bw_ns_sweep *s)                                                       \
   {                                                                                                \
-    all_rows(s, planar, 2, split);                                                                 \
+    all_rows(s, planar, 2, viscous);                                                               \
   }
-BW_SWEEP(space, false, false)
-BW_SWEEP(space_split, false, true)
-BW_SWEEP(plane, true, false)
-BW_SWEEP(plane_split, true, true)
+BW_SWEEP(space, false, BW_VISCOUS_EXPLICIT)
+BW_SWEEP(space_y, false, BW_VISCOUS_IMPLICIT_Y)
+BW_SWEEP(space_all, false, BW_VISCOUS_IMPLICIT)
+BW_SWEEP(plane, true, BW_VISCOUS_EXPLICIT)
+BW_SWEEP(plane_y, true, BW_VISCOUS_IMPLICIT_Y)
+BW_SWEEP(plane_all, true, BW_VISCOUS_IMPLICIT)
 
 void bw_ns__momentum_sweep(const bw_ns_sweep *s, int stage)
 {
-  static void (*const sweep[2][2][BW_NS_STAGES])(const bw_ns_sweep *) = {
-      {{space_0, space_1, space_2}, {space_split_0, space_split_1, space_split_2}},
-      {{plane_0, plane_1, plane_2}, {plane_split_0, plane_split_1, plane_split_2}}};
-  sweep[s->g->n[2] == 1][s->split_y][stage](s);
+  static void (*const sweep[2][3][BW_NS_STAGES])(const bw_ns_sweep *) = {
+      {[BW_VISCOUS_EXPLICIT] = {space_0, space_1, space_2},
+       [BW_VISCOUS_IMPLICIT_Y] = {space_y_0, space_y_1, space_y_2},
+       [BW_VISCOUS_IMPLICIT] = {space_all_0, space_all_1, space_all_2}},
+      {[BW_VISCOUS_EXPLICIT] = {plane_0, plane_1, plane_2},
+       [BW_VISCOUS_IMPLICIT_Y] = {plane_y_0, plane_y_1, plane_y_2},
+       [BW_VISCOUS_IMPLICIT] = {plane_all_0, plane_all_1, plane_all_2}}};
+  sweep[s->g->n[2] == 1][s->viscous][stage](s);
 }
 
 /* About 14 rows per j are alive (velocity of two planes, p, R, fluxes): a quarter of a megabyte
@@ -293,7 +311,7 @@ int bw_ns__momentum_tile(const bw_grid_view *g)
 
 size_t bw_ns__momentum_scratch(const bw_ns_sweep *s)
 {
-  const size_t per_plane = s->split_y ? 6 : 3;
+  const size_t per_plane = s->viscous == BW_VISCOUS_IMPLICIT_Y ? 6 : 3;
   return (size_t)(s->g->m[0] + 1) * (4 + per_plane * (size_t)s->g->m[2] + 3 * (size_t)s->tile);
 }
 
@@ -307,5 +325,5 @@ void bw_ns__momentum_place(bw_ns_sweep *s, bw_real *scratch)
   for (int q = 0; q < 3; q++, scratch += row * (size_t)s->tile)
     s->fz[q] = scratch;
   for (int q = 0; q < 3; q++)
-    s->dy[q] = s->split_y ? scratch + (size_t)q * planes : s->fy[q];
+    s->dy[q] = s->viscous == BW_VISCOUS_IMPLICIT_Y ? scratch + (size_t)q * planes : s->fy[q];
 }

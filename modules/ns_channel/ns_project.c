@@ -3,12 +3,10 @@
 
 #include <math.h>
 
-#define BW_INLINE static inline __attribute__((always_inline))
-
-BW_INLINE double divergence_row(int n, bool planar, bool sum, bw_real sx, bw_real sy, bw_real sz,
-                                const bw_real *restrict u, const bw_real *restrict v,
-                                const bw_real *restrict vs, const bw_real *restrict w,
-                                const bw_real *restrict wb, bw_real *restrict f)
+BW_NS_INLINE double divergence_row(int n, bool planar, bool sum, bw_real sx, bw_real sy, bw_real sz,
+                                   const bw_real *restrict u, const bw_real *restrict v,
+                                   const bw_real *restrict vs, const bw_real *restrict w,
+                                   const bw_real *restrict wb, bw_real *restrict f)
 {
   double total = 0.0;
 #pragma omp simd reduction(+ : total)
@@ -21,8 +19,9 @@ BW_INLINE double divergence_row(int n, bool planar, bool sum, bw_real sx, bw_rea
   return total;
 }
 
-BW_INLINE double divergence_all(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
-                                double scale, bool planar, bool sum, bw_real *f)
+BW_NS_INLINE double divergence_all(const bw_grid_view *g, const bw_ns_metrics *m,
+                                   bw_real *const u[3], double scale, bool planar, bool sum,
+                                   bw_real *f)
 {
   const ptrdiff_t row = g->stride[1], plane = g->stride[2];
   double total = 0.0;
@@ -54,10 +53,10 @@ typedef struct {
 } correct_scalars;
 
 /* Corrects cell i; returns its sum |u_i|/dx_i when asked. */
-BW_INLINE bw_real correct_cell(int i, bool planar, bool courant, const correct_scalars *c,
-                               bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
-                               bw_real *restrict p, const bw_real *restrict f,
-                               const bw_real *restrict fn, const bw_real *restrict ft)
+BW_NS_INLINE bw_real correct_cell(int i, bool planar, bool courant, const correct_scalars *c,
+                                  bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
+                                  bw_real *restrict p, const bw_real *restrict f,
+                                  const bw_real *restrict fn, const bw_real *restrict ft)
 {
   const bw_real here = f[i];
   const bw_real un = u[i] + ((here - f[i + 1]) * c->sx + c->shift);
@@ -81,11 +80,11 @@ typedef struct {
   bw_real most[LANES], total[LANES];
 } courant_lanes;
 
-BW_INLINE void correct_cells(int n, bool planar, bool courant, const correct_scalars *restrict c,
-                             bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
-                             bw_real *restrict p, const bw_real *restrict f,
-                             const bw_real *restrict fn, const bw_real *restrict ft,
-                             courant_lanes *restrict lanes)
+BW_NS_INLINE void correct_cells(int n, bool planar, bool courant, const correct_scalars *restrict c,
+                                bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
+                                bw_real *restrict p, const bw_real *restrict f,
+                                const bw_real *restrict fn, const bw_real *restrict ft,
+                                courant_lanes *restrict lanes)
 {
   int i = 1;
   for (; courant && i + LANES - 1 <= n; i += LANES)
@@ -105,9 +104,9 @@ BW_INLINE void correct_cells(int n, bool planar, bool courant, const correct_sca
     correct_cell(q, planar, false, c, u, v, w, p, f, fn, ft);
 }
 
-BW_INLINE double correct_all(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
-                             bw_real *p, const bw_real *phi, double scale, double shift,
-                             bool planar, bool courant)
+BW_NS_INLINE double correct_all(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
+                                bw_real *p, const bw_real *phi, double scale, double shift,
+                                bool planar, bool courant)
 {
   const ptrdiff_t row = g->stride[1], plane = g->stride[2];
   const bw_real s = (bw_real)scale;

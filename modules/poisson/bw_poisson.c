@@ -128,7 +128,7 @@ bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2], bw_
   if (st == BW_OK)
     st = bw_transpose_create(grid, bw_poisson__columns(p->kind[0], bw_grid_look(grid)->n[0]), 2,
                              &p->transpose);
-  BW_THEN(st, bw_tridiagonal_create(grid, count_lines(p), &p->tridiagonal));
+  BW_THEN(st, bw_tridiagonal_create(grid, 1, count_lines(p), &p->tridiagonal));
   if (st == BW_OK) st = bw_comm_agree(comm, plan_z(p));
   if (st != BW_OK) bw_poisson_destroy(&p);
   *out = p;

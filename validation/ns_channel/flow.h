@@ -12,6 +12,12 @@ typedef struct {
   int ranks[2];
 } flow_box;
 
+/* A member for the rows' `extra`. */
+static const char *const flow_viscous_name[] = {
+    [BW_VISCOUS_EXPLICIT] = "\"viscous\": \"explicit\"",
+    [BW_VISCOUS_IMPLICIT_Y] = "\"viscous\": \"implicit_y\"",
+    [BW_VISCOUS_IMPLICIT] = "\"viscous\": \"implicit\""};
+
 /* config: periodic sides are set here, the others as given. */
 static inline bw_status flow_create(const bw_comm *comm, const flow_box *box,
                                     bw_ns_channel_config *config, bw_grid **grid,

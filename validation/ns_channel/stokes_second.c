@@ -4,7 +4,7 @@
  * upper wall moves as this solution does there, so that no domain is cut off.
  *
  * Measured: from the exact field at t = 0 to a quarter beyond one period, k H = 4; largest error
- * over U on 16 and 32 cells; explicit and implicit viscous term; and with the wall in z instead of
+ * over U on 16 and 32 cells; each form of the viscous term; and with the wall in z instead of
  * y.
  *
  * Tolerance: order 2 within 10 % (fourth-order terms at 16 cells: (k dy)^2 = 6 %, twice over two
@@ -57,8 +57,10 @@ static bw_status run(bw_validation *v)
     int normal;
     bw_ns_viscous viscous;
   } form[] = {{"walls in y, explicit", 1, BW_VISCOUS_EXPLICIT},
-              {"walls in y, implicit", 1, BW_VISCOUS_IMPLICIT_Y},
-              {"walls in z, explicit", 2, BW_VISCOUS_EXPLICIT}};
+              {"walls in y, implicit y", 1, BW_VISCOUS_IMPLICIT_Y},
+              {"walls in y, implicit", 1, BW_VISCOUS_IMPLICIT},
+              {"walls in z, explicit", 2, BW_VISCOUS_EXPLICIT},
+              {"walls in z, implicit", 2, BW_VISCOUS_IMPLICIT}};
   const char *source = "Stokes' second problem, closed form";
   for (size_t q = 0; q < sizeof form / sizeof *form; q++) {
     double e[2];

@@ -1,5 +1,5 @@
 /* Rows along x become blocks along z and come back changed; tridiagonal systems over the ranks in
- * y. TEST ranks=1,2,3,4 */
+ * y or z. TEST ranks=1,2,3,4 */
 #include "bw_memory.h"
 #include "bw_transpose.h"
 #include "bw_tridiagonal.h"
@@ -11,9 +11,10 @@ static double code(int c, int j, int k)
   return 1 + c + 300.0 * j + 9000.0 * k;
 }
 
-static bw_grid *make(const int n[3], int way, bool periodic_y, bool *fits)
+/* periodic: bits x, y, z. */
+static bw_grid *make(const int n[3], int way, int periodic, bool *fits)
 {
-  grid_case c = {.n = {n[0], n[1], n[2]}, .periodic = periodic_y ? 2 : 0, .halo = 1};
+  grid_case c = {.n = {n[0], n[1], n[2]}, .periodic = periodic, .halo = 1};
   *fits = grid_case_divide(&c, way, bw_comm_size(bw_check_world()));
   return *fits ? grid_case_create(&c) : NULL;
 }
@@ -56,7 +57,7 @@ static double halve_blocks(bw_transpose *t, const bw_grid_view *v)
 static void check_round_trip(const int n[3], int columns, int way)
 {
   bool fits;
-  bw_grid *grid = make(n, way, false, &fits);
+  bw_grid *grid = make(n, way, 0, &fits);
   if (!fits) return;
   const bw_grid_view *v = bw_grid_look(grid);
   bw_transpose *t = NULL;
@@ -111,13 +112,13 @@ static const double scale = 0.25;
 
 /* f such that `wanted` solves  lower x_{j-1} + (diagonal + shift_l) x_j + upper x_{j+1} = scale f.
  */
-static void fill(const bw_grid_view *v, const double *lower, const double *diagonal,
+static void fill(const bw_grid_view *v, int d, const double *lower, const double *diagonal,
                  const double *upper, size_t lines, const bw_real *shift, bw_real *f)
 {
-  const int n = v->n[1];
-  for (int j = 1; j <= v->m[1]; j++)
+  const int n = v->n[d];
+  for (int j = 1; j <= v->m[d]; j++)
     for (size_t l = 0; l < lines; l++) {
-      const int g = v->lo[1] + j, before = g == 1 ? n : g - 1, after = g == n ? 1 : g + 1;
+      const int g = v->lo[d] + j, before = g == 1 ? n : g - 1, after = g == n ? 1 : g + 1;
       f[(size_t)(j - 1) * lines + l] =
           (bw_real)((lower[g - 1] * wanted(before, l) + upper[g - 1] * wanted(after, l) +
                      (diagonal[g - 1] + (double)shift[l]) * wanted(g, l)) /
@@ -144,10 +145,11 @@ static void solve(bw_tridiagonal *t, size_t lines, const bw_real *shift, bw_real
   }
 }
 
-static void check_lines(int rows, size_t lines, bool cyclic, int way)
+static void check_lines(int d, int rows, size_t lines, bool cyclic, int way)
 {
   bool fits;
-  bw_grid *grid = make((const int[]){2, rows, 1}, way, cyclic, &fits);
+  const int n[3] = {2, d == 1 ? rows : 4, d == 2 ? rows : 1};
+  bw_grid *grid = make(n, way, cyclic ? 1 << d : 0, &fits);
   if (!fits) return;
   const bw_grid_view *v = bw_grid_look(grid);
   double lower[40], diagonal[40], upper[40];
@@ -159,37 +161,48 @@ static void check_lines(int rows, size_t lines, bool cyclic, int way)
   if (!cyclic) lower[0] = upper[rows - 1] = 0;
   bw_real *f = NULL, *shift = NULL;
   bw_tridiagonal *t = NULL;
-  bw_check_ok(BW_ALLOCATE(&f, lines * (size_t)v->m[1]));
+  bw_check_ok(BW_ALLOCATE(&f, lines * (size_t)v->m[d]));
   bw_check_ok(BW_ALLOCATE(&shift, lines));
   for (size_t l = 0; l < lines; l++)
     shift[l] = (bw_real)(-0.01 * (double)l);
-  bw_check_ok(bw_tridiagonal_create(grid, lines, &t));
+  bw_check_ok(bw_tridiagonal_create(grid, d, lines, &t));
   bw_tridiagonal_set(t, lower, diagonal, upper, cyclic);
-  fill(v, lower, diagonal, upper, lines, shift, f);
+  fill(v, d, lower, diagonal, upper, lines, shift, f);
   solve(t, lines, shift, f);
-  for (int j = 1; j <= v->m[1]; j++)
+  for (int j = 1; j <= v->m[d]; j++)
     for (size_t l = 0; l < lines; l++) /* error: 5 x the round-off of f, about 10 epsilon |f| */
-      bw_check_near(f[(size_t)(j - 1) * lines + l], wanted(v->lo[1] + j, l),
+      bw_check_near(f[(size_t)(j - 1) * lines + l], wanted(v->lo[d] + j, l),
                     5 * 10 * 10 * BW_REAL_EPSILON);
   bw_tridiagonal_destroy(&t);
   bw_release(&f), bw_release(&shift);
   bw_grid_destroy(&grid);
 }
 
-START_TEST(lines_over_the_ranks_in_y)
+static void check_direction(int d)
 {
   static const size_t lines[] = {1, 3, 130, 300};
   for (int rows = 4; rows < 38; rows += 3) /* down to one row per rank */
     for (int l = 0; l < 4; l++)
       for (int way = 0; way < GRID_WAYS; way++) {
-        check_lines(rows, lines[l], false, way);
-        check_lines(rows, lines[l], true, way);
+        check_lines(d, rows, lines[l], false, way);
+        check_lines(d, rows, lines[l], true, way);
       }
-  if (bw_comm_size(bw_check_world()) <= 2) check_lines(2, 5, true, 0);
+}
+
+START_TEST(lines_over_the_ranks_in_y)
+{
+  check_direction(1);
+  if (bw_comm_size(bw_check_world()) <= 2) check_lines(1, 2, 5, true, 0);
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(rows_become_columns_and_return),
-                                      BW_TEST(bad_grain_is_refused),
-                                      BW_TEST(lines_over_the_ranks_in_y)};
+START_TEST(lines_over_the_ranks_in_z)
+{
+  check_direction(2);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(rows_become_columns_and_return), BW_TEST(bad_grain_is_refused),
+    BW_TEST(lines_over_the_ranks_in_y), BW_TEST(lines_over_the_ranks_in_z)};
 BW_CHECK_MAIN("grid.transpose", tests)

@@ -134,7 +134,20 @@ START_TEST(empty_boxes_are_refused)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(force_inside_is_found), BW_TEST(force_outside_is_not),
-                                      BW_TEST(box_may_touch_walls),
-                                      BW_TEST(empty_boxes_are_refused)};
+/* The factored viscous term has fluxes of its own, which the balance does not know. */
+START_TEST(all_implicit_is_refused)
+{
+  const bool channel[3] = {true, false, true};
+  bw_ns_channel_config c = ns_config(channel, 0.05);
+  c.viscous = BW_VISCOUS_IMPLICIT;
+  bw_ns_channel *ns = ns_solver(ns_grid(bw_check_world(), n, length, channel, 0, 1), &c);
+  bw_check_status(bw_ns_channel_watch_box(ns, (int[3]){0, 0, 0}, (int[3]){2, 2, 2}), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "use explicit or implicit_y"));
+  ns_free(&ns);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(force_inside_is_found), BW_TEST(force_outside_is_not), BW_TEST(box_may_touch_walls),
+    BW_TEST(empty_boxes_are_refused), BW_TEST(all_implicit_is_refused)};
 BW_CHECK_MAIN("ns_channel.box", tests)

@@ -1,0 +1,194 @@
+/* ns_factored.c -- diffusion by Crank-Nicolson in all directions, in each sub-step, factored into
+ * lines. With kappa = gamma dt nu/2, L = D_xx + D_yy + D_zz and w the sweep's change of u (no
+ * viscous term in it), the increment d = u* - u of
+ *   u* - u = w + kappa L (u + u*)
+ * is found from
+ *   (1 - kappa D_yy) (1 - kappa D_xx) (1 - kappa D_zz) d = w + 2 kappa L u,
+ * which differs by kappa^2 (D_xx D_yy + ..) d = O(dt^3): second order in time, like
+ * Crank-Nicolson. Where u is steady d = 0: the steady states are those of the explicit scheme.
+ * Stability: with a, b, c = kappa |eigenvalue| of the three, diffusion alone multiplies a mode by
+ *   1 - 2 (a + b + c)/((1 + a) (1 + b) (1 + c)),
+ * within (-1, 1] for any step.
+ *
+ * Why not a Helmholtz solve by transforms: three more Poisson solves per sub-step, transforms for
+ * values on faces beside those of the pressure, and three more transposes between ranks; the lines
+ * take any pair of sides as they are, and only their separators travel.
+ *
+ * Boundary values that change in time: d is counted from the old field with the new values at its
+ * sides, so that it obeys the homogeneous conditions, and so does what is between two of the
+ * factors. u on the right then has, at sides, the mean of old and new values. */
+#include "bw_memory.h"
+#include "ns_channel_internal.h"
+
+#include <string.h>
+
+/* Visit what the second differences of component c see of side (d, s): its face, or the ghosts
+ * beyond it. */
+typedef void (*point_fn)(bw_real *u, bw_real *d);
+
+static void each_point(bw_ns_channel *ns, int c, int d, int s, point_fn f)
+{
+  const bw_grid_view *g = ns->g;
+  int from[3] = {1, 1, 1}, to[3] = {g->m[0], g->m[1], g->m[2]};
+  from[d] = to[d] = s == 0 ? 0 : c == d ? g->m[d] : g->m[d] + 1;
+  for (int k = from[2]; k <= to[2]; k++)
+    for (int j = from[1]; j <= to[1]; j++)
+      for (int i = from[0]; i <= to[0]; i++)
+        f(ns->u[c] + bw_at(g, i, j, k), ns->increment[c] + bw_at(g, i, j, k));
+}
+
+static void each_side(bw_ns_channel *ns, point_fn f)
+{
+  for (int c = 0; c < ns->components; c++)
+    for (int d = 0; d < ns->components; d++)
+      for (int s = 0; s < 2; s++)
+        if (ns->plane[d][s].here) each_point(ns, c, d, s, f);
+}
+
+static void keep(bw_real *u, bw_real *d)
+{
+  *d = *u;
+}
+
+static void average(bw_real *u, bw_real *d)
+{
+  *u = (*u + *d) / 2;
+  *d = 0;
+}
+
+/* d += 2 kappa L u in a row; f: 2 kappa/(heights) of the six neighbours (x: both the same). */
+typedef struct {
+  bw_real x, north, south, z;
+} factors;
+
+static void add_laplacian(int n, factors f, const bw_real *restrict u, const bw_real *restrict un,
+                          const bw_real *restrict us, const bw_real *restrict ut,
+                          const bw_real *restrict ub, bw_real *restrict d)
+{
+#pragma omp simd
+  for (int i = 1; i <= n; i++)
+    d[i] += f.x * ((u[i + 1] - u[i]) - (u[i] - u[i - 1])) +
+            (f.north * (un[i] - u[i]) - f.south * (u[i] - us[i])) +
+            f.z * ((ut[i] - u[i]) - (u[i] - ub[i]));
+}
+
+static factors factors_of_row(const bw_ns_channel *ns, int c, int j, double kappa)
+{
+  const bw_ns_metrics *m = &ns->metrics;
+  const bw_real twice = (bw_real)(2.0 * kappa);
+  return (factors){
+      .x = twice * m->rdx * m->rdx,
+      .north = twice * (c == 1 ? m->rdyf[j + 1] * m->rdyc[j] : m->rdyc[j] * m->rdyf[j]),
+      .south = twice * (c == 1 ? m->rdyf[j] * m->rdyc[j] : m->rdyc[j - 1] * m->rdyf[j]),
+      .z = twice * m->rdz * m->rdz};
+}
+
+/* Is local row `at` of direction d the face of an upper side, where the velocity is given? */
+static bool on_side(const bw_ns_channel *ns, int c, int d, int at)
+{
+  return c == d && at == ns->g->m[d] && ns->plane[d][1].here;
+}
+
+static void right_side(const bw_ns_channel *ns, int c, int j, int k, double kappa)
+{
+  const bw_grid_view *g = ns->g;
+  const ptrdiff_t at = bw_at(g, 0, j, k), row = g->stride[1], plane = g->stride[2];
+  bw_real *u = ns->u[c] + at, *d = ns->increment[c] + at;
+  if (on_side(ns, c, 1, j) || on_side(ns, c, 2, k)) {
+    memset(d + 1, 0, (size_t)g->m[0] * sizeof *d);
+    return;
+  }
+  add_laplacian(g->m[0], factors_of_row(ns, c, j, kappa), u, u + row, u - row, u + plane, u - plane,
+                d);
+  if (on_side(ns, c, 0, g->m[0])) d[g->m[0]] = 0;
+}
+
+/* Lines along x of a plane, several side by side to be vectorised. */
+static void solve_x(bw_ns_channel *ns, int c, int k)
+{
+  const bw_grid_view *g = ns->g;
+  const int n = g->m[0];
+  for (int j = 1; j <= g->m[1]; j += BW_NS_LANES) {
+    const int rows = g->m[1] + 1 - j < BW_NS_LANES ? g->m[1] + 1 - j : BW_NS_LANES;
+    bw_real *d = ns->increment[c] + bw_at(g, 1, j, k);
+    for (int q = 0; q < rows; q++)
+      for (int i = 0; i < n; i++)
+        ns->lanes[i * BW_NS_LANES + q] = d[q * g->stride[1] + i];
+    bw_ns__lines_solve(ns->lines[0], BW_NS_LANES, BW_NS_LANES, ns->lanes);
+    for (int q = 0; q < rows; q++)
+      for (int i = 0; i < n; i++)
+        d[q * g->stride[1] + i] = ns->lanes[i * BW_NS_LANES + q];
+  }
+}
+
+/* Right-hand side, y and x in one visit of each plane, which stays in the second-level cache. */
+static void solve_planes(bw_ns_channel *ns, int c, double kappa)
+{
+  const bw_grid_view *g = ns->g;
+  const bool divided = bw_ns__lines_are_divided(ns->lines[1]);
+  bw_real *d = ns->increment[c];
+  bw_ns__lines_set(ns, c, kappa, ns->lines[1]);
+  bw_ns__lines_set(ns, c, kappa, ns->lines[0]);
+  for (int k = 1; k <= g->m[2]; k++) {
+    for (int j = 1; j <= g->m[1]; j++)
+      right_side(ns, c, j, k, kappa);
+    if (divided) continue;
+    bw_ns__lines_solve(ns->lines[1], g->m[0], g->stride[1], d + bw_at(g, 1, 1, k));
+    solve_x(ns, c, k);
+  }
+  if (!divided) return;
+  bw_ns__lines_solve_divided(ns, ns->lines[1], d);
+  for (int k = 1; k <= g->m[2]; k++)
+    solve_x(ns, c, k);
+}
+
+static void add(bw_ns_channel *ns, int c, int j, int rows)
+{
+  const bw_grid_view *g = ns->g;
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int q = j; q < j + rows; q++) {
+      bw_real *restrict u = ns->u[c] + bw_at(g, 0, q, k);
+      const bw_real *restrict d = ns->increment[c] + bw_at(g, 0, q, k);
+      for (int i = 1; i <= g->m[0]; i++)
+        u[i] += d[i];
+    }
+}
+
+/* Rows of an x-z slab (all z) that fits the second-level cache. */
+static int slab(const bw_grid_view *g)
+{
+  enum { BUDGET = 512 * 1024 };
+  const int rows = (int)(BUDGET / (sizeof(bw_real) * (size_t)g->stride[1] * (size_t)g->m[2]));
+  return rows < 1 ? 1 : rows;
+}
+
+/* z, where there is one, and u += d. The lines through the halos between rows solve for nothing. */
+static void solve_z(bw_ns_channel *ns, int c, double kappa)
+{
+  const bw_grid_view *g = ns->g;
+  bw_ns_lines *z = ns->lines[2];
+  const bool divided = z != NULL && bw_ns__lines_are_divided(z);
+  const int most = slab(g);
+  if (z != NULL) bw_ns__lines_set(ns, c, kappa, z);
+  if (divided) bw_ns__lines_solve_divided(ns, z, ns->increment[c]);
+  for (int j = 1; j <= g->m[1]; j += most) {
+    const int rows = g->m[1] + 1 - j < most ? g->m[1] + 1 - j : most;
+    if (z != NULL && !divided)
+      bw_ns__lines_solve(z, (int)((rows - 1) * g->stride[1] + g->m[0]), g->stride[2],
+                         ns->increment[c] + bw_at(g, 1, j, 1));
+    add(ns, c, j, rows);
+  }
+}
+
+void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt)
+{
+  const double kappa = 0.5 * gamma_dt * ns->config.nu;
+  each_side(ns, keep);
+  bw_ns__faces(ns);
+  bw_ns__ghosts_velocity(ns);
+  each_side(ns, average);
+  for (int c = 0; c < ns->components; c++) {
+    solve_planes(ns, c, kappa);
+    solve_z(ns, c, kappa);
+  }
+}

@@ -76,7 +76,7 @@ struct bw_ns_channel {
   size_t scratch_size;
   bw_ns_sweep sweep;
   bw_ns_plane plane[3][2];
-  double outflow_area; /* of all outflow sides; 0: there is none */
+  double outflow_area;   /* of all outflow sides; 0: there is none */
   bw_ns_lines *lines[3]; /* of the directions with an implicit viscous term */
   bw_real *increment[3]; /* implicit: u* - u; the first is phi, free until the projection */
   bw_real *lanes;        /* (n0, BW_NS_LANES) */

@@ -54,6 +54,12 @@ static int by_size(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
+double bw_bench_middle(int n, double x[])
+{
+  qsort(x, (size_t)n, sizeof *x, by_size);
+  return x[n / 2];
+}
+
 double bw_bench_median(const bw_comm *comm, void (*work)(void *), void *context)
 {
   double seconds[BW_BENCH_REPETITIONS];
@@ -65,8 +71,7 @@ double bw_bench_median(const bw_comm *comm, void (*work)(void *), void *context)
     seconds[q] = bw_wall_time() - start;
   }
   bw_comm_max(comm, BW_BENCH_REPETITIONS, seconds);
-  qsort(seconds, BW_BENCH_REPETITIONS, sizeof *seconds, by_size);
-  return seconds[BW_BENCH_REPETITIONS / 2];
+  return bw_bench_middle(BW_BENCH_REPETITIONS, seconds);
 }
 
 typedef struct {

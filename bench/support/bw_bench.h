@@ -24,6 +24,9 @@ void bw_bench_put(bw_bench *b, const bw_bench_row *row);
  * more call before warms up. Collective. */
 double bw_bench_median(const bw_comm *comm, void (*work)(void *context), void *context);
 
+/* Median of x[n]; sorts x. */
+double bw_bench_middle(int n, double x[]);
+
 /* Bytes per second and rank of a triad a = b + s c on arrays far larger than any cache, all ranks
  * of comm at once (write-allocate traffic not counted, as in STREAM). Collective. */
 double bw_bench_triad(const bw_comm *comm);

@@ -166,3 +166,8 @@ bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c)
 {
   return c->interface;
 }
+
+bw_ibm_mdf *bw_coupler_markers(bw_coupler *c)
+{
+  return c->ibm;
+}

@@ -125,6 +125,7 @@ typedef enum {
 bw_timer *bw_coupler_timer(bw_coupler *c);
 
 bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c); /* borrowed. Local. */
+bw_ibm_mdf *bw_coupler_markers(bw_coupler *c);             /* borrowed: cost, reports. Local. */
 
 /* State. keep remembers the present state in memory (the last good one); save writes the present
  * state, save_kept the remembered one (BW_EINPUT when there is none); load replaces the state. */

@@ -165,6 +165,11 @@ bw_status bw_field_create(const bw_grid *grid, bw_real **out)
 static int cell_in_y(const bw_grid_view *v, double y)
 {
   int below = 0, above = v->n[1];
+  if (v->uniform_y) { /* up to one by rounding */
+    const int near = (int)(y / v->spacing[1]);
+    below = near > 1 ? near - 1 : 0;
+    above = near + 2 < above ? near + 2 : above;
+  }
   while (above - below > 1) {
     const int middle = (below + above) / 2;
     if (v->y_face[middle] <= y)
@@ -178,12 +183,18 @@ static int cell_in_y(const bw_grid_view *v, double y)
 /* Block of r blocks over n cells that holds the cell (1..n). */
 static int block_of(int n, int r, int cell)
 {
+  if (r == 1) return 0;
   int c = (int)((long)(cell - 1) * r / n); /* exact up to one where the blocks are uneven */
   while (c > 0 && bw_grid__block_start(n, r, c) >= cell)
     c--;
   while (c < r - 1 && bw_grid__block_start(n, r, c + 1) < cell)
     c++;
   return c;
+}
+
+int bw_grid_block_start(const bw_grid_view *v, int d, int c)
+{
+  return bw_grid__block_start(v->n[d], v->ranks[d], c);
 }
 
 int bw_grid_owner(const bw_grid *grid, const double x[3])

@@ -74,6 +74,9 @@ static inline ptrdiff_t bw_at(const bw_grid_view *g, int i, int j, int k)
  * outside the box in a direction that is not periodic. Local. */
 int bw_grid_owner(const bw_grid *grid, const double x[3]);
 
+/* Cells before block c, 0 <= c <= ranks[d], of direction d. Local. */
+int bw_grid_block_start(const bw_grid_view *view, int d, int c);
+
 /* A zeroed field with halos; free with bw_release. Local. */
 bw_status bw_field_create(const bw_grid *grid, bw_real **out) BW_MUST_CHECK;
 

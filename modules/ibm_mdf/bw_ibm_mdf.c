@@ -36,14 +36,23 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
   BW_REQUIRE(g->halo[0] == 2 && g->halo[1] == 2 && (g->n[2] == 1 || g->halo[2] == 2), BW_EINPUT,
              "the immersed boundary needs a grid with halo 2, found %d", g->halo[0]);
 
+  BW_REQUIRE(
+      g->size <= INT32_MAX, BW_EINPUT,
+      "the immersed boundary counts the cells of a rank in 31 bits, found %zu: use more ranks",
+      g->size);
+
   bw_ibm_mdf *ib = NULL;
   bw_status st = BW_ALLOCATE(&ib, 1);
   BW_TRY(bw_comm_agree(bw_grid_comm(grid), st));
   ib->grid = grid;
   ib->g = g;
+  st = bw_comm_agree(bw_grid_comm(grid), BW_ALLOCATE(&ib->layer, (size_t)g->m[2] + 1));
+  if (st != BW_OK) bw_ibm_mdf_destroy(&ib);
+  if (st != BW_OK) return st;
   ib->kernel = bw_kernel_delta_get(config->kernel);
   ib->n_iter = config->n_iter;
   ib->cell_volume = g->spacing[0] * g->spacing[1] * g->spacing[2];
+  bw_ibm_mdf__find_blocks(ib);
   ib->interpolate = bw_ibm_mdf__interpolator(ib->kernel->support, g->n[2] == 1);
   ib->spread = bw_ibm_mdf__spreader(ib->kernel->support, g->n[2] == 1);
   *out = ib;
@@ -55,36 +64,70 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib)
   if (*ib == NULL) return;
   bw_ibm_mdf *b = *ib;
   bw_exchange_destroy(&b->plan);
-  void *const arrays[] = {&b->sent_from, &b->destination, &b->item, &b->answer,   &b->received,
-                          &b->order,     &b->swap,        &b->key,  &b->key_swap, &b->stencil,
-                          &b->V,         &b->dV,          &b->QdV,  &b->reply,    &b->U};
+  bw_exchange_destroy(&b->image_plan);
+  void *const arrays[] = {
+      &b->sent_from, &b->destination, &b->item,   &b->answer, &b->received, &b->order, &b->swap,
+      &b->key,       &b->key_swap,    &b->V,      &b->dV,     &b->QdV,      &b->reply, &b->cast_to,
+      &b->cast_from, &b->cast_item,   &b->cast_F, &b->image,  &b->weights,  &b->nodes, &b->U};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(ib);
 }
 
-/* Spread U (held,3, times dV/h^3) onto u. What falls into halos travels to its owners: the halos
- * are zeroed first, so that the reduction adds nothing but the spread, and refreshed after. */
-static void spread_and_update(bw_ibm_mdf *ib, bw_real *const u[3])
+/* Held markers and images begin <= m < end. */
+static bw_ibm_mdf__stencils stencils(const bw_ibm_mdf *ib, size_t begin, size_t end)
 {
-  const int components = u[2] == NULL ? 2 : 3;
-  bw_ibm_mdf__clear_halos(ib->g, u);
-  ib->spread(ib->held, ib->stencil, ib->g->stride, ib->U, u);
-  bw_halo_reduce(ib->grid, components, u);
-  bw_halo_update(ib->grid, components, u);
+  return (bw_ibm_mdf__stencils){begin,           end, ib->weights, ib->nodes, ib->g->stride[1],
+                                ib->g->stride[2]};
 }
 
-/* U <- (V - U) dV/h^3, QdV += (V - U) dV/dt; returns sum |V - U|^2. */
-static double velocity_to_force(bw_ibm_mdf *ib, int components, double dt)
+/* U (held,3) <- u at the markers. Local. */
+static void gather_velocity(bw_ibm_mdf *ib, bw_real *const u[3])
 {
-  double slip = 0.0;
-  for (size_t m = 0; m < ib->held; m++) {
-    const double dV = ib->dV[m], share = dV / ib->cell_volume;
-    for (int c = 0; c < components; c++) {
-      const double lack = ib->V[3 * m + c] - (double)ib->U[3 * m + c];
+  const bw_ibm_mdf__stencils s = stencils(ib, 0, ib->held);
+  ib->interpolate(&s, u, ib->U);
+}
+
+/* u += what U (times dV/h^3) of markers and images from `begin` on spreads. Local. */
+static void spread_from(bw_ibm_mdf *ib, size_t begin, bw_real *const u[3])
+{
+  const bw_ibm_mdf__stencils s = stencils(ib, begin, ib->held + ib->images);
+  ib->spread(&s, ib->U, u);
+}
+
+/* Of the markers of s: U <- (V - U) dV/h^3, QdV += (V - U) dV/dt; returns sum |V - U|^2. */
+static double velocity_to_force(bw_ibm_mdf *ib, const bw_ibm_mdf__stencils *s, double dt)
+{
+  const double per_volume = 1.0 / ib->cell_volume, per_step = 1.0 / dt;
+  const double *restrict V = ib->V, *restrict dV = ib->dV;
+  double *restrict QdV = ib->QdV, slip = 0.0;
+  bw_real *restrict U = ib->U;
+  for (size_t m = s->begin; m < s->end; m++)
+    for (size_t i = 3 * m; i < 3 * m + 3; i++) {
+      const double lack = V[i] - (double)U[i];
       slip += lack * lack;
-      ib->QdV[3 * m + c] += lack * dV / dt;
-      ib->U[3 * m + c] = (bw_real)(lack * share);
+      QdV[i] += lack * dV[m] * per_step;
+      U[i] = (bw_real)(lack * dV[m] * per_volume);
+    }
+  return slip;
+}
+
+/* One iteration of the held markers: interpolate, then spread what is missing. No support is
+ * thicker than four layers, so that spreading may follow four layers behind, while the layers are
+ * still in the cache: the result is that of one after the other. */
+static double force_held(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
+{
+  enum { BEHIND = BW_KERNEL_MAX_SUPPORT };
+  double slip = 0.0;
+  for (int k = 0; k < ib->g->m[2] + BEHIND; k++) {
+    if (k < ib->g->m[2]) {
+      const bw_ibm_mdf__stencils s = stencils(ib, ib->layer[k], ib->layer[k + 1]);
+      ib->interpolate(&s, u, ib->U);
+      slip += velocity_to_force(ib, &s, dt);
+    }
+    if (k >= BEHIND) {
+      const bw_ibm_mdf__stencils s = stencils(ib, ib->layer[k - BEHIND], ib->layer[k - BEHIND + 1]);
+      ib->spread(&s, ib->U, u);
     }
   }
   return slip;
@@ -94,11 +137,27 @@ void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
 {
   if (ib->markers == ib->outside) return;
   for (int s = 0; s < ib->n_iter; s++) {
-    ib->interpolate(ib->held, ib->stencil, ib->g->stride, u, ib->U);
-    const double slip = velocity_to_force(ib, u[2] == NULL ? 2 : 3, dt);
+    const double start = bw_wall_time();
+    const double slip = force_held(ib, u, dt);
     if (s == 0) ib->slip_sum = slip;
-    spread_and_update(ib, u);
+    const double held = bw_wall_time();
+    bw_ibm_mdf__give_images(ib);
+    const double given = bw_wall_time();
+    spread_from(ib, ib->held, u);
+    ib->cost.images += given - held;
+    ib->cost.kernels += bw_wall_time() - given + held - start;
   }
+  ib->cost.forced += (int64_t)ib->held * ib->n_iter;
+}
+
+bw_ibm_mdf_cost bw_ibm_mdf_cost_of(const bw_ibm_mdf *ib)
+{
+  return ib->cost;
+}
+
+void bw_ibm_mdf_cost_reset(bw_ibm_mdf *ib)
+{
+  ib->cost = (bw_ibm_mdf_cost){.forced = 0};
 }
 
 void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib)
@@ -125,7 +184,7 @@ void bw_ibm_mdf_marker_force(bw_ibm_mdf *ib, double QdV[])
 
 void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[])
 {
-  ib->interpolate(ib->held, ib->stencil, ib->g->stride, u, ib->U);
+  gather_velocity(ib, u);
   for (size_t m = 0; m < ib->held; m++)
     for (int c = 0; c < 3; c++)
       ib->reply[3 * (size_t)ib->order[m] + c] = (double)ib->U[3 * m + c];
@@ -142,21 +201,21 @@ void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3])
     for (int c = 0; c < 3; c++)
       ib->U[3 * m + c] =
           (bw_real)(ib->reply[3 * (size_t)ib->order[m] + c] * ib->dV[m] / ib->cell_volume);
-  spread_and_update(ib, u);
+  bw_ibm_mdf__give_images(ib);
+  spread_from(ib, 0, u);
 }
 
 bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3])
 {
   const bw_comm *comm = bw_grid_comm(ib->grid);
-  const int components = u[2] == NULL ? 2 : 3;
   double sum[5] = {ib->slip_sum, 0.0, 0.0, 0.0, 0.0};
   double most[3] = {(double)ib->held, -HUGE_VAL, -HUGE_VAL}; /* held, dV/h^3, -dV/h^3 */
-  ib->interpolate(ib->held, ib->stencil, ib->g->stride, u, ib->U);
+  gather_velocity(ib, u);
   for (size_t m = 0; m < ib->held; m++) {
     const double volume = ib->dV[m] / ib->cell_volume;
     most[1] = fmax(most[1], volume);
     most[2] = fmax(most[2], -volume);
-    for (int c = 0; c < components; c++) {
+    for (int c = 0; c < 3; c++) {
       const double lack = ib->V[3 * m + c] - (double)ib->U[3 * m + c];
       sum[1] += lack * lack;
       sum[2 + c] += ib->QdV[3 * m + c];

@@ -7,7 +7,9 @@
  * Grid     must be uniform (checked, BW_EINPUT) with halo 2; kernels reach two cells.
  * Shapes   marker vectors are row-major (n,3); dV (n).
  * Owns     copies of the markers, sorted by cell, on the rank that owns the cell; their weights.
- * MPI      markers are handed over by whoever has them; the module sends them to their cells. */
+ * MPI      markers are handed over by whoever has them; the module sends them to their cells. Each
+ *          other block whose cells or halo a marker's support reaches holds an image of it, gets
+ * its force and spreads it itself: one message per iteration, as long as there are images. */
 #pragma once
 #include "bw_grid.h"
 #include "bw_kernel_delta.h"
@@ -42,7 +44,8 @@ bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], con
                                  const double dV[]) BW_MUST_CHECK;
 
 /* Make the velocity u[3] (fields with valid halos; u[2] may be NULL in 2D) meet V at the markers,
- * in place; halos of u are valid again afterwards, except beyond physical boundaries.
+ * in place; halos of u stay valid (their owners' values to round-off), except beyond physical
+ * boundaries.
  * Adds to the force of the step. Collective. */
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt);
 
@@ -69,3 +72,13 @@ typedef struct {
 } bw_ibm_mdf_report;
 /* u as in force: used to measure slip_after. Collective. */
 bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3]);
+
+/* Where this rank's time went since create or the last reset [s]. Local. */
+typedef struct {
+  double set;     /* set_markers: routes, order, weights */
+  double kernels; /* interpolation and spreading, those of images included */
+  double images;  /* forces to images on other blocks, waiting included */
+  int64_t forced; /* markers held, times iterations */
+} bw_ibm_mdf_cost;
+bw_ibm_mdf_cost bw_ibm_mdf_cost_of(const bw_ibm_mdf *ib);
+void bw_ibm_mdf_cost_reset(bw_ibm_mdf *ib);

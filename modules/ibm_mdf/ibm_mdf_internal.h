@@ -5,31 +5,59 @@
 
 enum { IBM_CENTRE, IBM_FACE, IBM_PLACES }; /* where nodes sit in one direction */
 enum { IBM_WIDTH = 4 };                    /* weights per direction, padded with zeros */
+enum { IBM_BLOCKS = 5 };                   /* blocks of a line whose halos a support can meet */
+enum { IBM_AHEAD = 12 };                   /* markers whose nodes are fetched early */
 
-/* The nodes and weights of one marker. Component c uses the face weights in direction c and the
- * centre weights in the others. In x four nodes are always read, so that a row is one vector. */
+/* Weights of one marker, per place and direction. Component c uses the face weights in direction c
+ * and the centre weights in the others. In x four nodes are always read: a row is one vector. */
 typedef struct {
   _Alignas(4 * sizeof(bw_real)) bw_real w[IBM_PLACES][3][IBM_WIDTH];
-  ptrdiff_t at[3];                   /* offset of the stencil's lowest node, per component */
-  unsigned char keep[IBM_PLACES][3]; /* bit q: node q is no ghost beyond a physical boundary */
-  unsigned char cut;                 /* some node is */
-} bw_ibm_mdf__stencil;
+} bw_ibm_mdf__weights;
 
-/* U (n,3) = interpolated u; component 2 is zero in 2D. Pure. */
-typedef void (*bw_ibm_mdf__interpolate_fn)(size_t n, const bw_ibm_mdf__stencil s[],
-                                           const ptrdiff_t stride[3], bw_real *const u[3],
+/* Offset of the lowest node of each component; bit IBM_WIDTH (3 place + d) + q of keep: node q is
+ * no ghost beyond a physical boundary (such nodes are read but never written). */
+typedef struct {
+  int32_t at[3];
+  uint32_t keep;
+} bw_ibm_mdf__nodes;
+#define IBM_KEEP_ALL 0xFFFFFFu
+
+/* What a kernel works on: markers in a field. There are IBM_AHEAD nodes more than markers. */
+typedef struct {
+  size_t begin, end;
+  const bw_ibm_mdf__weights *weights;
+  const bw_ibm_mdf__nodes *nodes;
+  ptrdiff_t row, plane; /* strides of the field */
+} bw_ibm_mdf__stencils;
+
+/* U (m,3) = interpolated u, begin <= m < end; component 2 is zero in 2D. Pure. */
+typedef void (*bw_ibm_mdf__interpolate_fn)(const bw_ibm_mdf__stencils *s, bw_real *const u[3],
                                            bw_real *restrict U);
-/* u += sum F phi, F (n,3) already times dV/h^3; nodes beyond physical boundaries get nothing. */
-typedef void (*bw_ibm_mdf__spread_fn)(size_t n, const bw_ibm_mdf__stencil s[],
-                                      const ptrdiff_t stride[3], const bw_real *restrict F,
+/* u += sum F phi, F (m,3) already times dV/h^3; nodes beyond physical boundaries get nothing. */
+typedef void (*bw_ibm_mdf__spread_fn)(const bw_ibm_mdf__stencils *s, const bw_real *restrict F,
                                       bw_real *const u[3]);
 
 bw_ibm_mdf__interpolate_fn bw_ibm_mdf__interpolator(int support, bool flat);
 bw_ibm_mdf__spread_fn bw_ibm_mdf__spreader(int support, bool flat);
 
+/* What travels to the marker's rank: place in cells from the lower corner of the box, periodic
+ * directions wrapped. */
 typedef struct {
-  double x[3], v[3], volume;
-} bw_ibm_mdf__item; /* what travels to the marker's rank */
+  double s[3], v[3], volume;
+} bw_ibm_mdf__item;
+
+/* The same place, in cells from the lower corner of the block that it is for. */
+typedef struct {
+  double s[3];
+} bw_ibm_mdf__place;
+
+/* Blocks of one direction whose cells or halos a marker of this block may reach, this block first:
+ * seen from this one they begin at start[] cells and have size[]. Between low and high a marker
+ * reaches no other. */
+typedef struct {
+  int n, coord[IBM_BLOCKS];
+  double start[IBM_BLOCKS], size[IBM_BLOCKS], low, high;
+} bw_ibm_mdf__blocks;
 
 struct bw_ibm_mdf {
   bw_grid *grid; /* borrowed */
@@ -37,6 +65,7 @@ struct bw_ibm_mdf {
   const bw_kernel_delta *kernel;
   int n_iter;
   double cell_volume;
+  bw_ibm_mdf__blocks blocks[3];
   bw_ibm_mdf__interpolate_fn interpolate;
   bw_ibm_mdf__spread_fn spread;
 
@@ -52,22 +81,53 @@ struct bw_ibm_mdf {
   size_t held, held_room;
   bw_ibm_mdf__item *received;              /* (held) */
   unsigned *order, *swap, *key, *key_swap; /* (held) */
-  bw_ibm_mdf__stencil *stencil;            /* (held) */
-  double *V, *dV;                          /* (held,3), (held) */
-  double *QdV;                             /* (held,3) since begin_step */
-  double *reply;                           /* (held,3) in the order received */
-  bw_real *U;                              /* (held,3) scratch: velocity, then force */
+  size_t *layer;  /* (m[2] + 1) first marker of each layer of cells in z, and the end */
+  double *V, *dV; /* (held,3), (held) */
+  double *QdV;    /* (held,3) since begin_step */
+  double *reply;  /* (held,3) in the order received */
+
+  /* images: of markers held here for other blocks (or this one, over a periodic side) ... */
+  size_t cast, cast_room;
+  unsigned *cast_from;          /* (cast) marker */
+  int *cast_to;                 /* (cast) rank */
+  bw_ibm_mdf__place *cast_item; /* (cast) */
+  bw_real *cast_F;              /* (cast,3) */
+  bw_exchange *image_plan;      /* NULL before the first set */
+  /* ... and those of others in this block, whose stencils follow those of the held markers */
+  size_t images, stencil_room;
+  bw_ibm_mdf__place *image;     /* (images) */
+  bw_ibm_mdf__weights *weights; /* (held + images) */
+  bw_ibm_mdf__nodes *nodes;     /* (held + images) */
+  bw_real *U;                   /* (held + images,3) scratch: velocity, then force */
 
   int64_t markers, outside; /* over all ranks */
   double slip_sum;          /* sum |V-U|^2 over held markers before the last force */
+  bw_ibm_mdf_cost cost;
 };
 
-/* Room for n handed over and held kept markers; contents are lost when it grows. Local. */
-bw_status bw_ibm_mdf__reserve(bw_ibm_mdf *ib, size_t n, size_t held) BW_MUST_CHECK;
+/* Grow-only array of `count` items; contents are lost. */
+#define IBM_RENEW(pointer, count)                                                                  \
+  do {                                                                                             \
+    bw_release(pointer);                                                                           \
+    BW_TRY(BW_ALLOCATE(pointer, count));                                                           \
+  } while (0)
 
-/* Sort the received markers by cell and compute stencils, V, dV. Local. */
-void bw_ibm_mdf__place(bw_ibm_mdf *ib);
+/* Place in cells from the block's lower edge, kept inside the block against rounding. */
+static inline double bw_ibm_mdf__local(const bw_grid_view *g, const double s[3], int d)
+{
+  const double local = s[d] - g->lo[d], m = g->m[d];
+  return local < 0.0 ? 0.0 : local > m ? m : local;
+}
 
-/* Zero the halo cells that bw_halo_reduce moves: all that an exchange reaches, so not those
- * beyond a physical boundary alone. Local. */
-void bw_ibm_mdf__clear_halos(const bw_grid_view *g, bw_real *const u[3]);
+/* Which blocks a marker's support can reach, for every place in this one. Local. */
+void bw_ibm_mdf__find_blocks(bw_ibm_mdf *ib);
+
+/* List the images of the held markers and send their places; room for the stencils of all.
+ * Collective. */
+bw_status bw_ibm_mdf__cast_images(bw_ibm_mdf *ib) BW_MUST_CHECK;
+
+/* U of the images from U of their markers. Collective. */
+void bw_ibm_mdf__give_images(bw_ibm_mdf *ib);
+
+/* Weights and nodes of held markers and images. Local. */
+void bw_ibm_mdf__weigh(bw_ibm_mdf *ib);

@@ -4,6 +4,7 @@
  * For every shift t: sum_i phi(t-i) = 1, sum_i (t-i) phi(t-i) = 0, sum_i phi(t-i)^2 = C
  * (C = 1/2 for Roma's, 3/8 for Peskin's; not constant for the hat). */
 #pragma once
+#include <stddef.h>
 
 typedef enum {
   BW_KERNEL_ROMA3,   /* support 3 cells; the default */
@@ -20,13 +21,15 @@ typedef struct {
   double radius;           /* phi(r) = 0 for |r| >= radius, in cells */
   double sum_of_squares;   /* C; 0 when it depends on the shift */
   double (*phi)(double r); /* r in cells [-]; even */
+  /* weight[q n + i] = phi(s[i] - (first[i] + q)), q < support; see bw_kernel_delta_weights */
+  void (*weigh)(size_t n, const double s[], int first[], double weight[]);
 } bw_kernel_delta;
 
 /* The row of a kernel; never NULL for a valid id. Local. */
 const bw_kernel_delta *bw_kernel_delta_get(bw_kernel_delta_id id);
 
-/* The weights of one direction. `s` is the position in cells measured so that node i sits at i.
- * Fills weight[0..support-1] = phi(s - (first+q)) and returns `first`, the lowest node of the
- * support. Local. */
-int bw_kernel_delta_weights(const bw_kernel_delta *kernel, double s,
-                            double weight[BW_KERNEL_MAX_SUPPORT]);
+/* The weights of n positions along one direction each, many at once. s[n]: positions in cells
+ * measured so that node i sits at i; first[n]: the lowest node of the support; node first[i] + q
+ * has weight[q n + i], q = 0..support-1. Local. */
+void bw_kernel_delta_weights(const bw_kernel_delta *kernel, size_t n, const double s[], int first[],
+                             double weight[]);

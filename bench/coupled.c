@@ -5,8 +5,9 @@
  * reaction, as in those files. No rival ships this combination. Shares are of the wall time of a
  * step. Per marker and iteration [core-ns]: `kernels` is interpolation and spreading, `forcing`
  * also the forces for images on other blocks (what a halo exchange would be).
- * `interface_over_fluid` is forcing and probes over momentum and Poisson; goal 0.3. BUILD
- * modules=coupler TEST ranks=2 */
+ * `interface_over_fluid` is forcing and probes over momentum and Poisson; goal 0.3.
+ * BUILD modules=coupler
+ * TEST ranks=2 */
 #include "bw_bench.h"
 #include "bw_coupler.h"
 #include "bw_memory.h"

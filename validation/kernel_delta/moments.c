@@ -28,11 +28,13 @@ typedef struct {
 /* Of the weights at a point t cells above a node of even number. */
 static moments moments_at(const bw_kernel_delta *k, double t)
 {
+  const double s = 2.0 + t;
   double w[BW_KERNEL_MAX_SUPPORT];
-  const int first = bw_kernel_delta_weights(k, 2.0 + t, w);
+  int first;
+  bw_kernel_delta_weights(k, 1, &s, &first, w);
   moments m = {0};
   for (int q = 0; q < k->support; q++) {
-    const double arm = 2.0 + t - (first + q);
+    const double arm = s - (first + q);
     m.sum += w[q];
     m.first += arm * w[q];
     m.second += arm * arm * w[q];
@@ -108,7 +110,8 @@ static double interpolation_error(const bw_kernel_delta *k, int n)
   for (int q = 0; q < SHIFTS; q++) {
     double w[BW_KERNEL_MAX_SUPPORT], u = 0.0;
     const double s = 10.0 + (double)n * q / SHIFTS;
-    const int first = bw_kernel_delta_weights(k, s, w);
+    int first;
+    bw_kernel_delta_weights(k, 1, &s, &first, w);
     for (int i = 0; i < k->support; i++)
       u += w[i] * cos(turn * (first + i) / n);
     worst = fmax(worst, fabs(u - cos(turn * s / n)));

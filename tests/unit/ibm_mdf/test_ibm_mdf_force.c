@@ -152,6 +152,43 @@ START_TEST(the_answer_does_not_depend_on_ranks)
 }
 END_TEST
 
+static void compare_with_update(fixture *f)
+{
+  for (int c = 0; c < 3 && f->u[c] != NULL; c++) {
+    bw_real *fresh = NULL;
+    bw_check_ok(bw_field_create(f->grid, &fresh));
+    memcpy(fresh, f->u[c], f->g->size * sizeof *fresh);
+    bw_halo_update(f->grid, 1, &fresh);
+    for (size_t q = 0; q < f->g->size; q++)
+      bw_check_near(f->u[c][q], fresh[q], 20.0 * BW_REAL_EPSILON);
+    bw_release(&fresh);
+  }
+}
+
+/* No halo travels while forcing, yet all hold what their owners hold: also where a support meets a
+ * block twice over a periodic side, and three blocks on (two cells thick on four ranks). */
+START_TEST(halos_stay_valid)
+{
+  static const fixture_case cases[] = {
+      {{12, 10, 8}, true, BW_KERNEL_ROMA3, 2}, {{6, 8, 2}, true, BW_KERNEL_ROMA3, 2},
+      {{6, 8, 2}, true, BW_KERNEL_PESKIN4, 2}, {{4, 8, 1}, true, BW_KERNEL_PESKIN4, 2},
+      {{12, 10, 8}, false, BW_KERNEL_HAT2, 2}, {{6, 8, 2}, false, BW_KERNEL_PESKIN4, 1}};
+  for (int t = 0; t < 6; t++) {
+    fixture f;
+    fixture_make(&f, bw_check_world(), &cases[t], FIX_MARKERS, 0.0);
+    for (size_t m = 0; m < f.n; m++) /* many in a small box: keep the iteration from growing */
+      f.dV[m] = 0.01 * cell_volume(&f);
+    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV));
+    fill_scattered(&f, 1.0);
+    bw_ibm_mdf_force(f.ib, f.u, DT);
+    compare_with_update(&f);
+    bw_ibm_mdf_spread(f.ib, f.F, f.u);
+    compare_with_update(&f);
+    fixture_free(&f);
+  }
+}
+END_TEST
+
 /* Outside a closed box: left out, counted, force zero; outside a periodic one: wrapped. */
 START_TEST(markers_outside_are_counted)
 {
@@ -238,9 +275,12 @@ START_TEST(bad_input_is_refused_on_all_ranks)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(one_marker_has_a_closed_form),     BW_TEST(momentum_given_is_momentum_received),
-    BW_TEST(slip_falls_with_iterations),       BW_TEST(the_answer_does_not_depend_on_ranks),
-    BW_TEST(markers_outside_are_counted),      BW_TEST(sets_can_be_replaced),
-    BW_TEST(bad_input_is_refused_on_all_ranks)};
+static const bw_check_test tests[] = {BW_TEST(one_marker_has_a_closed_form),
+                                      BW_TEST(momentum_given_is_momentum_received),
+                                      BW_TEST(slip_falls_with_iterations),
+                                      BW_TEST(the_answer_does_not_depend_on_ranks),
+                                      BW_TEST(halos_stay_valid),
+                                      BW_TEST(markers_outside_are_counted),
+                                      BW_TEST(sets_can_be_replaced),
+                                      BW_TEST(bad_input_is_refused_on_all_ranks)};
 BW_CHECK_MAIN("ibm_mdf.force", tests)

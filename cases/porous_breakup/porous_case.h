@@ -69,6 +69,7 @@ typedef struct {
   double last_drop, last_drop_time; /* pressure drop at the previous settling check */
   double kept_progress[N_PROGRESS]; /* what a checkpoint says of the run, of the last good state */
   double broken;                    /* bonds, at the last sample */
+  bool warned;                      /* that pieces hit each other too hard */
   bool stopped;                     /* a signal asked for an end in good order */
 } porous_run;
 

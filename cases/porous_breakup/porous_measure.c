@@ -130,6 +130,12 @@ static bw_status measure_solid(porous_run *p, double row[])
 {
   const size_t n = bw_pd_bond_count(p->solid);
   const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  if (e.closest < BW_PD_TOO_CLOSE && !p->warned)
+    bw_log_warn(bw_case_log(p->run),
+                "pieces hit each other so hard that particles came within %.2f of a spacing: they "
+                "may pass through each other from here on",
+                e.closest);
+  p->warned = p->warned || e.closest < BW_PD_TOO_CLOSE;
   double *X = NULL, *X0 = NULL, *damage = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * n);
   BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));

@@ -169,9 +169,14 @@ int64_t bw_pd_bond_events(const bw_pd_bond *pd);
 /* broken[count] <- broken bonds of each own particle (never falls, but by set_bits). Local. */
 void bw_pd_bond_get_broken(const bw_pd_bond *pd, uint16_t broken[]);
 
+#define BW_PD_TOO_CLOSE 0.6
+
 typedef struct {
   double kinetic, elastic;        /* [M L^2/T^2] present */
   double contact;                 /* elastic energy of contact, present */
+  double closest;                 /* least distance of a pair in contact so far, over ds; INFINITY:
+                                     none. Below BW_PD_TOO_CLOSE a particle may have passed
+                                     between others: the impact is too violent for this ds. */
   double damping, fracture;       /* dissipated since the start (or restart's stored value) */
   double external;                /* work of F and of prescribed motion since the start */
   double momentum[3], angular[3]; /* about the origin */

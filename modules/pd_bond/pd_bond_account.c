@@ -1,5 +1,7 @@
 /* The energy book: sums over particles, bonds and ranks. */
-#include "pd_bond_internal.h"
+#include "pd_bond_contact.h"
+
+#include <math.h>
 
 /* Kinetic energy and momenta of this rank: book[0], [1..3], [4..6]. */
 static void motion(const bw_pd_bond *pd, double book[7])
@@ -33,6 +35,8 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
   book[11] = pd->done_external;
   for (size_t q = 0; q < pd->n_slot; q++)
     count[1] += __builtin_popcount((unsigned)(pd->slot[q].family & ~pd->slot[q].mask));
+  double closest = pd->config.contact ? pd->contact->closest : INFINITY;
+  bw_comm_min(pd->comm, 1, &closest);
   bw_comm_sum(pd->comm, 12, book);
   bw_comm_sum_int(pd->comm, 3, count);
   return (bw_pd_bond_ledger){.kinetic = book[0],
@@ -40,6 +44,7 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
                              .angular = {book[4], book[5], book[6]},
                              .elastic = book[7],
                              .contact = book[8],
+                             .closest = closest,
                              .damping = book[9],
                              .fracture = book[10],
                              .external = book[11],

@@ -18,6 +18,7 @@ bw_status bw_pd_bond__contact_create(bw_pd_bond *pd)
   bw_pd_contact *c = pd->contact;
   c->reach = pd->config.ds;
   c->skin = SKIN * pd->config.ds;
+  c->closest = INFINITY;
   for (int k = 0; k < 3; k++)
     BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
   return BW_OK;
@@ -87,12 +88,14 @@ bw_status bw_pd_bond__contact_update(bw_pd_bond *pd)
  * the half of its energy is returned. */
 typedef struct {
   double reach, k; /* k_c dV/rho */
+  double closest;  /* least r/reach met */
 } law;
 
-static double repel(const law *w, const double d[3], double r2, double sum[3])
+static double repel(law *w, const double d[3], double r2, double sum[3])
 {
   const double r = sqrt(r2);
   if (!(r2 < w->reach * w->reach) || r == 0) return 0;
+  w->closest = fmin(w->closest, r / w->reach);
   const double f = w->k * (w->reach / r - 1) / r;
   for (int k = 0; k < 3; k++)
     sum[k] -= f * d[k];
@@ -100,7 +103,7 @@ static double repel(const law *w, const double d[3], double r2, double sum[3])
 }
 
 /* The lanes `near` of a slot with bonds x; reach: in a cloud of each bond. */
-static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block, unsigned near,
+static double short_bonds(bw_pd_bond *pd, law *w, const bw_pd_block *block, unsigned near,
                           const bond *x, vec reach2, bool force)
 {
   double energy = 0;
@@ -108,8 +111,9 @@ static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block
     if (!(near >> lane & 1)) continue;
     double sum[3] = {0};
     const double d[3] = {(double)x->z[0][lane], (double)x->z[1][lane], (double)x->z[2][lane]};
-    const law one = {sqrt((double)reach2[lane]), w->k};
+    law one = {sqrt((double)reach2[lane]), w->k, w->closest};
     energy += repel(&one, d, (double)x->r2[lane], sum);
+    w->closest = one.closest;
     const int32_t h = bw_pd_bond__owner(block, lane);
     for (int k = 0; force && k < 3; k++)
       pd->extra[k][h] += (bw_real)sum[k];
@@ -118,7 +122,7 @@ static double short_bonds(bw_pd_bond *pd, const law *w, const bw_pd_block *block
 }
 
 /* Broken bonds of a block that are short. */
-static double block_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *block, bool force)
+static double block_contact(bw_pd_bond *pd, law *w, const bw_pd_block *block, bool force)
 {
   const sweep all = sweep_of(pd);
   const bool cloud = pd->config.disorder > 0;
@@ -138,7 +142,7 @@ static double block_contact(bw_pd_bond *pd, const law *w, const bw_pd_block *blo
   return energy;
 }
 
-static double family_contact(bw_pd_bond *pd, const law *w, bool force)
+static double family_contact(bw_pd_bond *pd, law *w, bool force)
 {
   double energy = 0;
   for (size_t b = 0; b < pd->n_block; b++)
@@ -146,7 +150,7 @@ static double family_contact(bw_pd_bond *pd, const law *w, bool force)
   return energy;
 }
 
-static double other_contact(bw_pd_bond *pd, const law *w, bool force)
+static double other_contact(bw_pd_bond *pd, law *w, bool force)
 {
   const bw_pd_contact *c = pd->contact;
   double energy = 0;
@@ -165,18 +169,19 @@ static double other_contact(bw_pd_bond *pd, const law *w, bool force)
 
 static law law_of(const bw_pd_bond *pd)
 {
-  return (law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho};
+  return (law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho, pd->contact->closest};
 }
 
 void bw_pd_bond__contact_force(bw_pd_bond *pd)
 {
-  const law w = law_of(pd);
+  law w = law_of(pd);
   family_contact(pd, &w, true);
   other_contact(pd, &w, true);
+  pd->contact->closest = w.closest;
 }
 
 double bw_pd_bond__contact_energy(bw_pd_bond *pd)
 {
-  const law w = law_of(pd);
+  law w = law_of(pd);
   return (family_contact(pd, &w, false) + other_contact(pd, &w, false)) * pd->config.rho * pd->dv;
 }

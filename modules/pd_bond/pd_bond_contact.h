@@ -9,6 +9,7 @@
 
 struct bw_pd_contact {
   double reach, skin; /* r_c = ds [L] */
+  double closest;     /* least distance of a pair over its reach, in the forces so far */
   bool built;
   bw_real *u_built[3]; /* (n) displacement at the last search */
 

@@ -126,6 +126,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
   c->block = (int)fmax(1.0, floor(k + 1e-9));
+  BW_THEN(st, bw_coupler__bodies_create(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
   BW_THEN(st, bw_coupler__follow_surface(c));
   if (st != BW_OK) bw_coupler_destroy(&c);
@@ -151,6 +152,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   for (int q = 0; q < 3; q++)
     bw_release(&c->iterate[q]);
   bw_coupler__blocks_release(&c->blocks);
+  bw_coupler__bodies_release(c);
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);
   bw_ibm_mdf_destroy(&c->ibm);

@@ -35,6 +35,12 @@
  * markers. Particles that lost a bond, and new crack faces, keep markers of their own. Every
  * surface particle has its own probe in any case.
  *
+ * Free bodies. With contact on in the solid, sides of the fluid that are walls, free-slip or inflow
+ * are walls to the particles (bw_pd_bond_set_walls); what moves through a periodic side goes on; a
+ * piece passes an outflow, meets the fluid with the part that is still inside, and is retired
+ * (bw_pd_bond_retire) when all of it has passed. Fluid pressure is without its hydrostatic part, so
+ * bodies weigh (rho_s - rho) g.
+ *
  * The solid can be held (rigid): then no solid step, no load, no surface update is computed.
  * Life: config_default -> create -> { step } -> destroy. All functions are collective unless said
  * otherwise. */
@@ -72,6 +78,7 @@ typedef struct {
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
   double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
                                 that ends the iteration [-]             default 1e-4 */
+  double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
   bool count_work;           /* work_given of the report (an exchange per step)  default false */
   bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
@@ -107,8 +114,11 @@ typedef struct {
   double residual;                /* ... what it ended with [-]; 0 when explicit */
   int64_t unconverged;            /* steps so far that used up their iterations */
   int64_t markers, markers_outside, probes_shortened, probes_blocked;
-  double surface_area; /* [L^2] */
-  double imbalance;    /* most markers on a rank over the mean [-] */
+  double surface_area;                     /* [L^2] */
+  double mass_inside, mass_out, mass_left; /* of the solid [M]: in the box, with what holds it under
+                                 the walls; beyond a side, still joined to what is inside; retired.
+                                 Their sum never changes */
+  double imbalance;                        /* most markers on a rank over the mean [-] */
 } bw_coupler_report;
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHECK;
 

@@ -9,7 +9,7 @@ typedef struct {
   double fluid_numbers[2]; /* time, gradient of the forcing */
   bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
   double *rows;            /* (n,BW_PD_RESTART_ROW) of bw_pd_bond_get_restart */
-  double sums[4];
+  double sums[BW_PD_RESTART_SUMS];
   uint8_t *bits;        /* (n, bits_bytes) */
   double *V_before, *F; /* (n,3) */
 } bw_coupler__state;
@@ -60,7 +60,11 @@ struct bw_coupler {
   double bonds; /* intact ends of this rank at the start: work of one force evaluation */
   int block;    /* particles of a face along each side that share a marker; 1: no blocks */
   bw_coupler__blocks blocks;
-  double work_given; /* of this rank's markers [M L^2/T^2] */
+  bool open[3][2], has_outflow; /* outflow sides */
+  bool *gone;                   /* (n) scratch: particles beyond an outflow */
+  uint8_t *stays;               /* (particles and copies) scratch: not gone */
+  bw_pd_bond_link *link;        /* (family) scratch */
+  double work_given;            /* of this rank's markers [M L^2/T^2] */
   bw_coupler__state kept;
   /* Iterated coupling: state at the beginning of the step; guess of the surface's velocity, its
    * residual and the one before (n,3) each. */
@@ -82,6 +86,14 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;
 void bw_coupler__reaction_force(bw_coupler *c);
 /* Work of the fluid through the markers over a step of dt; c->force holds the reaction. Local. */
 void bw_coupler__count_work(bw_coupler *c, double dt);
+
+/* Free bodies (bodies.c): walls and arrays; the solid's force from c->F and gravity (local); retire
+ * what left; mass inside, out, left. */
+bw_status bw_coupler__bodies_create(bw_coupler *c) BW_MUST_CHECK;
+void bw_coupler__bodies_release(bw_coupler *c);
+void bw_coupler__push_solid(bw_coupler *c);
+bw_status bw_coupler__let_go(bw_coupler *c) BW_MUST_CHECK;
+void bw_coupler__count_mass(bw_coupler *c, double mass[3]);
 
 /* Blocks: tables of the reference shape (after the first surface is known); markers of the present
  * surface; the reaction of the markers, minus rho Q dV, to c->force in shares of area. */

@@ -25,7 +25,7 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .iterations = c->iterations,
                          .residual = c->residual,
                          .unconverged = c->unconverged};
-  double box[3];
+  double box[3], mass[3];
   int64_t count[2];
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
   if (!probed) BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
@@ -40,6 +40,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);
+  bw_coupler__count_mass(c, mass);
+  r.mass_inside = mass[0], r.mass_out = mass[1], r.mass_left = mass[2];
   count_probes(c, count);
   bw_comm_sum_int(comm, 2, count);
   r.probes_shortened = count[0];

@@ -72,7 +72,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
-  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", 4, s->sums));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(
@@ -90,7 +90,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", 4, s->sums));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(

@@ -61,7 +61,7 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
   bw_coupler__relax_load(c, relaxation);
-  bw_pd_bond_set_force(c->solid, c->F);
+  bw_coupler__push_solid(c);
   bw_timer_stop(c->timer, BW_PART_PROBES);
   return st;
 }
@@ -116,5 +116,6 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
     BW_TRY(bw_coupler__load_solid(c, dt, c->config.load_relaxation)); /* stress of the new flow */
     BW_TRY(bw_coupler__advance_solid(c, dt));                         /* X, V, bonds at t + dt */
   }
-  return move_surface(c); /* surface and markers at t + dt */
+  BW_TRY(bw_coupler__let_go(c)); /* pieces that have passed an outflow */
+  return move_surface(c);        /* surface and markers at t + dt */
 }

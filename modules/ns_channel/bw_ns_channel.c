@@ -178,6 +178,11 @@ bw_grid *bw_ns_channel_grid(bw_ns_channel *ns)
   return ns->grid;
 }
 
+const bw_ns_channel_config *bw_ns_channel_settings(const bw_ns_channel *ns)
+{
+  return &ns->config;
+}
+
 double bw_ns_channel_time(const bw_ns_channel *ns)
 {
   return ns->time;

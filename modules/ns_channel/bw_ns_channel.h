@@ -95,6 +95,7 @@ bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
 bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns); /* u[3] [L/T] */
 bw_real *bw_ns_channel_pressure(bw_ns_channel *ns);        /* p/rho [L^2/T^2] */
 bw_grid *bw_ns_channel_grid(bw_ns_channel *ns);
+const bw_ns_channel_config *bw_ns_channel_settings(const bw_ns_channel *ns);
 double bw_ns_channel_time(const bw_ns_channel *ns);
 void bw_ns_channel_set_time(bw_ns_channel *ns, double t);
 

@@ -75,8 +75,9 @@ typedef struct {
 bw_pd_bond_config bw_pd_bond_config_default(void);
 
 /* What a particle is. Prescribed ones move with the velocity given by set_prescribed (0 at first)
- * and are not accelerated: the ghost layers of POROUS 3.3.11. Unbreakable ones keep their bonds. */
-enum { BW_PD_FREE = 0, BW_PD_PRESCRIBED = 1, BW_PD_UNBREAKABLE = 2 };
+ * and are not accelerated: the ghost layers of POROUS 3.3.11. Unbreakable ones keep their bonds.
+ * Retired: bw_pd_bond_retire made it so; not for create. */
+enum { BW_PD_FREE = 0, BW_PD_PRESCRIBED = 1, BW_PD_UNBREAKABLE = 2, BW_PD_RETIRED = 4 };
 
 /* Build particles, families and bonds of `n` lattice sites: site (n,3), kind (n) or NULL. All
  * ranks pass the same list. BW_EINPUT names the field; two particles on one site are an error.
@@ -94,6 +95,26 @@ bw_status bw_pd_bond_precrack(bw_pd_bond *pd, const double a[3], const double b[
 void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on); /* default on. Local. */
 void bw_pd_bond_set_damping(bw_pd_bond *pd, double pair, double mean, double absolute); /* Local */
 void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0); /* new s0. Local. */
+
+/* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
+ * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by
+ * its own mirror image with the law of contact, so it touches with its cube's face, ds/2 from its
+ * centre, without friction. Not met by prescribed and retired particles, nor by those that an
+ * intact bond joins to a particle beyond the plane (what stands on a foundation). BW_EINPUT without
+ * contact, when n > BW_PD_WALLS, a normal is no unit vector, or a free particle stands inside the
+ * wall. BW_EDIVERGED of a step when one was thrown through. Collective. */
+enum { BW_PD_WALLS = 6 };
+typedef struct {
+  double normal[3];
+  double offset; /* [L] */
+} bw_pd_wall;
+bw_status bw_pd_bond_set_walls(bw_pd_bond *pd, int n, const bw_pd_wall wall[]) BW_MUST_CHECK;
+
+/* Take own particles (those with gone[i], n) out of the mechanics for good, whole pieces of them:
+ * they keep their velocity, no force acts on them or comes from them, and what they stored is
+ * booked. Their bonds and damage stay as they are. They carry BW_PD_RETIRED in
+ * bw_pd_bond_kind. Collective. */
+bw_status bw_pd_bond_retire(bw_pd_bond *pd, const bool gone[]) BW_MUST_CHECK;
 
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
 void bw_pd_bond_set_force(bw_pd_bond *pd, const double F[]);
@@ -173,13 +194,15 @@ void bw_pd_bond_get_broken(const bw_pd_bond *pd, uint16_t broken[]);
 
 typedef struct {
   double kinetic, elastic;        /* [M L^2/T^2] present */
-  double contact;                 /* elastic energy of contact, present */
+  double contact;                 /* elastic energy of contact, with walls too, present */
   double closest;                 /* least distance of a pair in contact so far, over ds; INFINITY:
                                      none. Below BW_PD_TOO_CLOSE a particle may have passed
                                      between others: the impact is too violent for this ds. */
+  double retired;                 /* elastic energy of bonds when their particles were retired */
   double damping, fracture;       /* dissipated since the start (or restart's stored value) */
   double external;                /* work of F and of prescribed motion since the start */
-  double momentum[3], angular[3]; /* about the origin */
+  double momentum[3], angular[3]; /* about the origin; retired particles too, as in kinetic */
+  double wall[3];                 /* impulse given to the walls since the start [M L/T] */
   int64_t bonds, broken;          /* undirected bonds: at the start without those a pre-crack cut;
                                      broken by stretch since */
 } bw_pd_bond_ledger;
@@ -190,11 +213,12 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
 size_t bw_pd_bond_bits_bytes(const bw_pd_bond *pd);
 void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[]);
 bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[]) BW_MUST_CHECK;
-enum { BW_PD_RESTART_ROW = 12 };
+enum { BW_PD_RESTART_ROW = 13, BW_PD_RESTART_SUMS = 11 };
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
- * part (n,12), and the ledger's running sums of all ranks (4: damping, fracture, external, directed
- * bonds cut by pre-cracks). Set bits and rows, in any order, then force and prescribed velocities:
- * the run goes on to the same bits. Both collective. */
-void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4]);
+ * part, 1 when retired (n,13), and the ledger's running sums of all ranks (11: damping, fracture,
+ * external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them). Set bits
+ * and rows, in any order, then force and prescribed velocities: the run goes on to the same bits.
+ * Both collective. */
+void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[]);
 bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[],
-                                 const double sums[4]) BW_MUST_CHECK;
+                                 const double sums[]) BW_MUST_CHECK;

@@ -23,7 +23,7 @@ static void motion(const bw_pd_bond *pd, double book[7])
 
 bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
 {
-  double book[12] = {0};
+  double book[16] = {0};
   int64_t count[3] = {pd->bonds_directed, 0, pd->precracked};
   if (!pd->current) pd->current = bw_pd_bond__evaluate(pd, false) == BW_OK;
   motion(pd, book);
@@ -35,9 +35,12 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
   book[11] = pd->done_external;
   for (size_t q = 0; q < pd->n_slot; q++)
     count[1] += __builtin_popcount((unsigned)(pd->slot[q].family & ~pd->slot[q].mask));
+  book[12] = pd->done_retired;
+  for (int k = 0; k < 3; k++)
+    book[13 + k] = pd->done_wall[k];
   double closest = pd->config.contact ? pd->contact->closest : INFINITY;
   bw_comm_min(pd->comm, 1, &closest);
-  bw_comm_sum(pd->comm, 12, book);
+  bw_comm_sum(pd->comm, 16, book);
   bw_comm_sum_int(pd->comm, 3, count);
   return (bw_pd_bond_ledger){.kinetic = book[0],
                              .momentum = {book[1], book[2], book[3]},
@@ -48,6 +51,8 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
                              .damping = book[9],
                              .fracture = book[10],
                              .external = book[11],
+                             .retired = book[12],
+                             .wall = {book[13], book[14], book[15]},
                              .bonds = (count[0] - count[2]) / 2,
                              .broken = (count[1] - count[2]) / 2};
 }

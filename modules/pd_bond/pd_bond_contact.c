@@ -21,7 +21,7 @@ bw_status bw_pd_bond__contact_create(bw_pd_bond *pd)
   c->closest = INFINITY;
   for (int k = 0; k < 3; k++)
     BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
-  return BW_OK;
+  return BW_ALLOCATE(&c->link, (size_t)pd->stencil.n);
 }
 
 void bw_pd_bond__contact_destroy(bw_pd_bond *pd)
@@ -31,6 +31,8 @@ void bw_pd_bond__contact_destroy(bw_pd_bond *pd)
   bw_pd_contact__forget(c);
   for (int k = 0; k < 3; k++)
     bw_release(&c->u_built[k]);
+  bw_release(&c->near);
+  bw_release(&c->link);
   bw_release(&pd->contact);
 }
 
@@ -81,17 +83,10 @@ bw_status bw_pd_bond__contact_update(bw_pd_bond *pd)
     remember(pd, c);
   }
   positions(pd, c);
-  return BW_OK;
+  return bw_pd_contact__wall_update(pd);
 }
 
-/* What a pair at distance r and difference d (from h to l) does to h: force adds to sum[], or
- * the half of its energy is returned. */
-typedef struct {
-  double reach, k; /* k_c dV/rho */
-  double closest;  /* least r/reach met */
-} law;
-
-static double repel(law *w, const double d[3], double r2, double sum[3])
+double bw_pd_contact__repel(bw_pd_law *w, const double d[3], double r2, double sum[3])
 {
   const double r = sqrt(r2);
   if (!(r2 < w->reach * w->reach) || r == 0) return 0;
@@ -103,16 +98,18 @@ static double repel(law *w, const double d[3], double r2, double sum[3])
 }
 
 /* The lanes `near` of a slot with bonds x; reach: in a cloud of each bond. */
-static double short_bonds(bw_pd_bond *pd, law *w, const bw_pd_block *block, unsigned near,
-                          const bond *x, vec reach2, bool force)
+static double short_bonds(bw_pd_bond *pd, bw_pd_law *w, const bw_pd_block *block,
+                          const bw_pd_slot *slot, unsigned near, const bond *x, vec reach2,
+                          bool force)
 {
   double energy = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(near >> lane & 1)) continue;
+    if (pd->kind[pd->occupant[slot->base + lane]] & BW_PD_RETIRED) continue;
     double sum[3] = {0};
     const double d[3] = {(double)x->z[0][lane], (double)x->z[1][lane], (double)x->z[2][lane]};
-    law one = {sqrt((double)reach2[lane]), w->k, w->closest};
-    energy += repel(&one, d, (double)x->r2[lane], sum);
+    bw_pd_law one = {sqrt((double)reach2[lane]), w->k, w->closest};
+    energy += bw_pd_contact__repel(&one, d, (double)x->r2[lane], sum);
     w->closest = one.closest;
     const int32_t h = bw_pd_bond__owner(block, lane);
     for (int k = 0; force && k < 3; k++)
@@ -122,13 +119,13 @@ static double short_bonds(bw_pd_bond *pd, law *w, const bw_pd_block *block, unsi
 }
 
 /* Broken bonds of a block that are short. */
-static double block_contact(bw_pd_bond *pd, law *w, const bw_pd_block *block, bool force)
+static double block_contact(bw_pd_bond *pd, bw_pd_law *w, const bw_pd_block *block, bool force)
 {
   const sweep all = sweep_of(pd);
   const bool cloud = pd->config.disorder > 0;
   const owners h = owners_of(&all, block, 3, cloud);
   double energy = 0;
-  for (uint32_t q = block->slot; q < block[1].slot; q++) {
+  for (uint32_t q = block->slot; q < bw_pd_bond__slot_end(block); q++) {
     const bw_pd_slot *slot = &pd->slot[q];
     if (slot->family == slot->mask) continue;
     const bw_real *row = pd->stencil.row + slot->direction * BW_PD_ROW;
@@ -136,13 +133,13 @@ static double block_contact(bw_pd_bond *pd, law *w, const bw_pd_block *block, bo
     vec reach2 = vec_all((bw_real)(w->reach * w->reach));
     if (cloud) reach2 = vec_least(reach2, x.rest2);
     const unsigned near =
-        (unsigned)(slot->family & ~slot->mask) & lanes_bits(vec_above(reach2, x.r2));
-    if (near != 0) energy += short_bonds(pd, w, block, near, &x, reach2, force);
+        (unsigned)(slot->family & ~slot->mask & ~block->gone) & lanes_bits(vec_above(reach2, x.r2));
+    if (near != 0) energy += short_bonds(pd, w, block, slot, near, &x, reach2, force);
   }
   return energy;
 }
 
-static double family_contact(bw_pd_bond *pd, law *w, bool force)
+static double family_contact(bw_pd_bond *pd, bw_pd_law *w, bool force)
 {
   double energy = 0;
   for (size_t b = 0; b < pd->n_block; b++)
@@ -150,7 +147,7 @@ static double family_contact(bw_pd_bond *pd, law *w, bool force)
   return energy;
 }
 
-static double other_contact(bw_pd_bond *pd, law *w, bool force)
+static double other_contact(bw_pd_bond *pd, bw_pd_law *w, bool force)
 {
   const bw_pd_contact *c = pd->contact;
   double energy = 0;
@@ -158,7 +155,7 @@ static double other_contact(bw_pd_bond *pd, law *w, bool force)
     double sum[3] = {0}, d[3];
     for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
       bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * (size_t)c->pair[p], d);
-      energy += repel(w, d, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], sum);
+      energy += bw_pd_contact__repel(w, d, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], sum);
     }
     for (int k = 0; force && k < 3; k++)
       for (int a = 0; a < 3; a++) /* back from lattice axes */
@@ -167,21 +164,25 @@ static double other_contact(bw_pd_bond *pd, law *w, bool force)
   return energy;
 }
 
-static law law_of(const bw_pd_bond *pd)
+static bw_pd_law law_of(const bw_pd_bond *pd)
 {
-  return (law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho, pd->contact->closest};
+  return (bw_pd_law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho,
+                     pd->contact->closest};
 }
 
 void bw_pd_bond__contact_force(bw_pd_bond *pd)
 {
-  law w = law_of(pd);
+  bw_pd_law w = law_of(pd);
   family_contact(pd, &w, true);
   other_contact(pd, &w, true);
+  bw_pd_contact__wall_act(pd, &w, true);
   pd->contact->closest = w.closest;
 }
 
 double bw_pd_bond__contact_energy(bw_pd_bond *pd)
 {
-  law w = law_of(pd);
-  return (family_contact(pd, &w, false) + other_contact(pd, &w, false)) * pd->config.rho * pd->dv;
+  bw_pd_law w = law_of(pd);
+  const double energy = family_contact(pd, &w, false) + other_contact(pd, &w, false) +
+                        bw_pd_contact__wall_act(pd, &w, false);
+  return energy * pd->config.rho * pd->dv;
 }

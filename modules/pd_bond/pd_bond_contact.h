@@ -1,4 +1,4 @@
-/* pd_bond_contact.h -- state of the contact between particles that no bond joins.
+/* pd_bond_contact.h -- state of the contact between particles that no bond joins, and with walls.
  *
  * Two kinds of pairs. Family pairs whose bond broke are found where their slots are: no search.
  * All others start further apart than the horizon; among the particles at a surface (family
@@ -6,6 +6,12 @@
  * something moved by half the skin since. Positions are in lattice axes, where periods act. */
 #pragma once
 #include "pd_bond_internal.h"
+
+typedef struct {
+  int32_t particle;
+  int8_t wall;
+  bool held; /* by an intact bond across the wall: does not meet it */
+} bw_pd_near;
 
 struct bw_pd_contact {
   double reach, skin; /* r_c = ds [L] */
@@ -22,7 +28,25 @@ struct bw_pd_contact {
   double *shift;      /* (n_mine + n_theirs,3) from the site, in a cloud; else NULL */
   size_t *pair_start; /* (n_mine + 1) */
   int32_t *pair;      /* index into y */
+
+  size_t n_near;
+  bw_pd_near *near;      /* (n_near) own particles near walls, at the last search */
+  int64_t events;        /* of pd when `held` was found */
+  bw_pd_bond_link *link; /* (stencil) scratch */
 };
+
+/* What a pair does to h at the distance r = sqrt(r2), d from h to l: adds its acceleration to
+ * sum[] and returns half of its energy over rho dV. */
+typedef struct {
+  double reach, k; /* k_c dV/rho */
+  double closest;  /* least r/reach met */
+} bw_pd_law;
+double bw_pd_contact__repel(bw_pd_law *law, const double d[3], double r2, double sum[3]);
+
+/* pd_bond_wall.c. act returns energy over rho dV; with force adds to extra and sets wall_force. */
+bw_status bw_pd_wall__search(bw_pd_bond *pd);
+bw_status bw_pd_wall__update(bw_pd_bond *pd);
+double bw_pd_wall__act(bw_pd_bond *pd, const bw_pd_law *law, bool force);
 
 void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_bond *pd); /* Collective. */

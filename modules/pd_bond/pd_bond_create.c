@@ -44,6 +44,7 @@ static bw_status state_arrays(bw_pd_bond *pd)
 
 static bw_status prescribed_list(bw_pd_bond *pd)
 {
+  BW_TRY(BW_ALLOCATE(&pd->retired, pd->n));
   for (size_t i = 0; i < pd->n; i++)
     pd->n_prescribed += (pd->kind[i] & BW_PD_PRESCRIBED) != 0;
   BW_TRY(BW_ALLOCATE(&pd->prescribed, pd->n_prescribed));
@@ -133,10 +134,10 @@ void bw_pd_bond_destroy(bw_pd_bond **pd_)
   bw_pd_bond__contact_destroy(pd);
   release_stencil(&pd->stencil);
   bw_exchange_destroy(&pd->halo);
-  void *plain[] = {&pd->site,       &pd->id,     &pd->kind,       &pd->place,
-                   &pd->occupant,   &pd->asked,  &pd->reply,      &pd->answer,
-                   &pd->extended_X, &pd->block,  &pd->slot,       &pd->run,
-                   &pd->hit,        &pd->mobile, &pd->prescribed, &pd->prescribed_v};
+  void *plain[] = {&pd->site,         &pd->id,     &pd->kind,   &pd->place,      &pd->occupant,
+                   &pd->asked,        &pd->reply,  &pd->answer, &pd->extended_X, &pd->block,
+                   &pd->slot,         &pd->run,    &pd->hit,    &pd->mobile,     &pd->prescribed,
+                   &pd->prescribed_v, &pd->retired};
   for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
     bw_release(plain[q]);
   release_storage_array(&pd->w);

@@ -43,7 +43,7 @@ static void block_damping(const bw_pd_bond *pd, const bw_pd_block *block)
   damping_sums s = {0};
   for (int k = 0; k < 3; k++)
     vh[k] = vec_load(pd->vs[k] + block->first);
-  for (uint32_t q = block->slot; q < block[1].slot; q++)
+  for (uint32_t q = block->slot; q < bw_pd_bond__slot_end(block); q++)
     if (pd->slot[q].mask != 0) add_slot(&all, &pd->slot[q], &h, vh, cloud, &s);
   vec some; /* a particle without bonds has no mean */
   for (int k = 0; k < BW_PD_LANES; k++)

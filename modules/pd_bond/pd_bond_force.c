@@ -71,7 +71,7 @@ INLINE bool block_force(const sweep *s, const bw_pd_block *block, int dimension,
     vh[k] = vec_load(s->v[k] + block->first);
     sum[k] = damp[k] = vec_all(0);
   }
-  const bw_pd_slot *end = s->slot + block[1].slot;
+  const bw_pd_slot *end = s->slot + bw_pd_bond__slot_end(block);
   for (const bw_pd_slot *slot = s->slot + block->slot; slot < end; slot++) {
     if (slot->mask == 0) continue;
     const lanes holds = lanes_of(slot->mask);
@@ -176,11 +176,12 @@ static bool break_block(bw_pd_bond *pd, const sweep *s, bw_pd_block *block)
   bool any = false;
   for (int k = 0; k < 3; k++)
     lost[k] = vec_all(0);
-  for (uint32_t q = block->slot; q < block[1].slot; q++) {
+  for (uint32_t q = block->slot; q < bw_pd_bond__slot_end(block); q++) {
     bw_pd_slot *slot = &pd->slot[q];
     const bw_real *row = s->row + slot->direction * BW_PD_ROW;
     const bond x = bond_of(s, slot, row, &h, 3, cloud);
-    uint8_t over = slot->mask & lanes_bits(vec_above(x.r2, limit_of(row, &x, cloud)));
+    uint8_t over =
+        slot->mask & (uint8_t)~block->gone & lanes_bits(vec_above(x.r2, limit_of(row, &x, cloud)));
     if (over == 0) continue;
     over &= (uint8_t)~unbreakable(pd, block, slot, over);
     const vec c = vec_keep(lanes_of(over), coefficient(s, slot, row, &x, wh, surface, cloud).force);
@@ -207,32 +208,35 @@ bool bw_pd_bond__break_hits(bw_pd_bond *pd)
 }
 
 /* Half of 1/2 c0 alpha s^2 |xi| Gamma dV dV for each end: summed over ranks, every bond once. */
-double bw_pd_bond__elastic(const bw_pd_bond *pd)
+double bw_pd_bond__elastic_of(const bw_pd_bond *pd, const bw_pd_block *block, uint8_t lanes_asked)
 {
   const sweep s = sweep_of(pd);
   const bool cloud = pd->config.disorder > 0;
-  double energy = 0;
-  for (size_t b = 0; b < pd->n_block; b++) {
-    const bw_pd_block *block = &pd->block[b];
-    const owners h = owners_of(&s, block, 3, cloud);
-    vec sum = vec_all(0), wh = vec_load(s.w + block->first);
-    for (uint32_t q = block->slot; q < block[1].slot; q++) {
-      const bw_real *row = s.row + s.slot[q].direction * BW_PD_ROW;
-      const bond x = bond_of(&s, &s.slot[q], row, &h, 3, cloud);
-      vec r0 = vec_all(row[BW_PD_R0]), k = vec_all(row[BW_PD_STIFFNESS]);
-      if (cloud) {
-        const vec q0 = vec_rsqrt(x.rest2);
-        r0 = x.rest2 * q0;
-        k *= gamma_of(&s, r0) * q0;
-      }
-      const vec both = wh + vec_load(s.w + s.slot[q].base);
-      const vec alpha = pd->config.surface_correction == BW_PD_SURFACE_VOLUME   ? 1 / both
-                        : pd->config.surface_correction == BW_PD_SURFACE_ENERGY ? both
-                                                                                : vec_all(1);
-      const vec stretch = x.r2 * vec_rsqrt(x.r2) - r0;
-      sum += vec_keep(lanes_of(s.slot[q].mask), k * alpha * stretch * stretch);
+  const owners h = owners_of(&s, block, 3, cloud);
+  vec sum = vec_all(0), wh = vec_load(s.w + block->first);
+  for (uint32_t q = block->slot; q < bw_pd_bond__slot_end(block); q++) {
+    const bw_real *row = s.row + s.slot[q].direction * BW_PD_ROW;
+    const bond x = bond_of(&s, &s.slot[q], row, &h, 3, cloud);
+    vec r0 = vec_all(row[BW_PD_R0]), k = vec_all(row[BW_PD_STIFFNESS]);
+    if (cloud) {
+      const vec q0 = vec_rsqrt(x.rest2);
+      r0 = x.rest2 * q0;
+      k *= gamma_of(&s, r0) * q0;
     }
-    energy += vec_sum(sum);
+    const vec both = wh + vec_load(s.w + s.slot[q].base);
+    const vec alpha = pd->config.surface_correction == BW_PD_SURFACE_VOLUME   ? 1 / both
+                      : pd->config.surface_correction == BW_PD_SURFACE_ENERGY ? both
+                                                                              : vec_all(1);
+    const vec stretch = x.r2 * vec_rsqrt(x.r2) - r0;
+    sum += vec_keep(lanes_of(s.slot[q].mask & lanes_asked), k * alpha * stretch * stretch);
   }
-  return 0.25 * pd->config.rho * pd->dv * energy;
+  return 0.25 * pd->config.rho * pd->dv * vec_sum(sum);
+}
+
+double bw_pd_bond__elastic(const bw_pd_bond *pd)
+{
+  double energy = 0;
+  for (size_t b = 0; b < pd->n_block; b++)
+    energy += bw_pd_bond__elastic_of(pd, &pd->block[b], (uint8_t)~pd->block[b].gone);
+  return energy;
 }

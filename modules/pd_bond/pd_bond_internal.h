@@ -77,6 +77,7 @@ typedef struct {
   int32_t own;   /* own particle of the first lane set in mask; the others follow */
   uint32_t slot; /* first slot; the block's last one is before the next block's first */
   uint8_t mask;  /* lanes that are own particles */
+  uint8_t gone;  /* lanes that are retired; all of mask: the block costs nothing */
   bool broken;   /* a bond of it broke */
 } bw_pd_block;
 
@@ -145,9 +146,15 @@ struct bw_pd_bond {
   bool loaded;          /* extra may differ from zero */
   bool restored;        /* a was given by set_restart */
   bw_pd_contact *contact;
+  int n_wall;
+  bw_pd_wall wall[BW_PD_WALLS];
+  size_t n_retired;
+  int32_t *retired; /* (n_retired of n) own particles */
 
   double done_damping, done_fracture, done_external; /* of this rank */
-  int64_t events, bonds_directed, precracked;        /* precracked: directed, of this rank */
+  double done_retired, done_wall[3];                 /* of this rank */
+  double wall_force[3]; /* on the walls, of this rank, at the last evaluation [M L/T^2] */
+  int64_t events, bonds_directed, precracked; /* precracked: directed, of this rank */
 };
 
 /* pd_bond_create.c: zeros, with BW_PD_PAD more before and after */
@@ -228,12 +235,23 @@ bw_status bw_pd_bond__contact_update(bw_pd_bond *pd); /* Collective. */
 void bw_pd_bond__contact_force(bw_pd_bond *pd);       /* adds to extra; Collective */
 double bw_pd_bond__contact_energy(bw_pd_bond *pd);    /* of this rank's halves; Collective */
 
+/* pd_bond_retire.c */
+void bw_pd_bond__retire_rows(bw_pd_bond *pd, const double rows[]); /* of a restart; Collective */
+void bw_pd_bond__still_retired(bw_pd_bond *pd);                    /* no force on them */
+double bw_pd_bond__elastic_of(const bw_pd_bond *pd, const bw_pd_block *block, uint8_t lanes_asked);
+
 /* pd_bond_views.c */
 void bw_pd_bond__adopt_prescribed(bw_pd_bond *pd);
 
 /* pd_bond_step.c */
 bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check);
 void bw_pd_bond__impose(bw_pd_bond *pd);
+
+/* First slot after a block's; a block whose particles are all retired has none. */
+static inline uint32_t bw_pd_bond__slot_end(const bw_pd_block *block)
+{
+  return block->gone == block->mask ? block->slot : block[1].slot;
+}
 
 /* Own particle of lane `lane` of a block. */
 static inline int32_t bw_pd_bond__owner(const bw_pd_block *block, int lane)

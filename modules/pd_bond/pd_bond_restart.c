@@ -1,5 +1,5 @@
 /* What a checkpoint holds. */
-#include "pd_bond_internal.h"
+#include "pd_bond_contact.h"
 
 #include <string.h>
 
@@ -40,27 +40,48 @@ bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[])
     }
   }
   pd->events++;
+  for (size_t q = 0; pd->contact != NULL && q < pd->contact->n_near; q++)
+    pd->contact->near[q].held = true; /* to be looked at again */
   if (!pd->restored) pd->current = false;
   return BW_OK;
 }
 
-void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[4])
+void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[])
 {
-  for (size_t i = 0; i < pd->n; i++)
+  for (size_t i = 0; i < pd->n; i++) {
+    double *row = rows + BW_PD_RESTART_ROW * i;
     for (size_t k = 0; k < 3; k++) {
-      double *row = rows + BW_PD_RESTART_ROW * i + k;
-      row[0] = (double)pd->u[k][pd->place[i]];
-      row[3] = (double)pd->v[k][i];
-      row[6] = (double)(pd->a[k][i] + pd->extra[k][i]);
-      row[9] = (double)pd->damp[k][i];
+      row[k] = (double)pd->u[k][pd->place[i]];
+      row[3 + k] = (double)pd->v[k][i];
+      row[6 + k] = (double)(pd->a[k][i] + pd->extra[k][i]);
+      row[9 + k] = (double)pd->damp[k][i];
     }
-  double mine[4] = {pd->done_damping, pd->done_fracture, pd->done_external, (double)pd->precracked};
-  bw_comm_sum(pd->comm, 4, mine);
-  for (int q = 0; q < 4; q++)
-    sums[q] = mine[q];
+    row[BW_PD_RESTART_ROW - 1] = (pd->kind[i] & BW_PD_RETIRED) != 0;
+  }
+  const double mine[BW_PD_RESTART_SUMS] = {
+      pd->done_damping,  pd->done_fracture, pd->done_external, (double)pd->precracked,
+      pd->done_retired,  pd->done_wall[0],  pd->done_wall[1],  pd->done_wall[2],
+      pd->wall_force[0], pd->wall_force[1], pd->wall_force[2]};
+  memcpy(sums, mine, sizeof mine);
+  bw_comm_sum(pd->comm, BW_PD_RESTART_SUMS, sums);
 }
 
-bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const double sums[4])
+/* The sums of all ranks are the first one's. */
+static void set_sums(bw_pd_bond *pd, const double sums[])
+{
+  const double own = bw_comm_rank(pd->comm) == 0;
+  pd->done_damping = own * sums[0];
+  pd->done_fracture = own * sums[1];
+  pd->done_external = own * sums[2];
+  pd->precracked = (int64_t)(own * sums[3]);
+  pd->done_retired = own * sums[4];
+  for (int k = 0; k < 3; k++) {
+    pd->done_wall[k] = own * sums[5 + k];
+    pd->wall_force[k] = own * sums[8 + k];
+  }
+}
+
+bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const double sums[])
 {
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++) {
@@ -72,11 +93,8 @@ bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[], const doub
       pd->extra[k][i] = 0;              /* inside a */
     }
   bw_pd_bond__adopt_prescribed(pd);
-  const bool first = bw_comm_rank(pd->comm) == 0;
-  pd->done_damping = first ? sums[0] : 0;
-  pd->done_fracture = first ? sums[1] : 0;
-  pd->done_external = first ? sums[2] : 0;
-  pd->precracked = first ? (int64_t)sums[3] : 0;
+  bw_pd_bond__retire_rows(pd, rows);
+  set_sums(pd, sums);
   bw_pd_bond__refresh(pd, true);
   pd->current = pd->restored = true;
   pd->loaded = pd->config.contact || bw_pd_bond__damped(pd);

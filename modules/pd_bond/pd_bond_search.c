@@ -47,7 +47,8 @@ static bw_status candidates(const bw_pd_bond *pd, bw_pd_contact *c)
     }
   bw_status st = BW_ALLOCATE(&c->mine, pd->n);
   for (size_t i = 0; i < pd->n && st == BW_OK; i++)
-    if (held[i] < pd->stencil.n_sure) c->mine[c->n_mine++] = (int32_t)i;
+    if (held[i] < pd->stencil.n_sure && !(pd->kind[i] & BW_PD_RETIRED))
+      c->mine[c->n_mine++] = (int32_t)i;
   bw_release(&held);
   return st;
 }
@@ -296,7 +297,9 @@ bw_status bw_pd_contact__search(bw_pd_bond *pd)
   if (st == BW_OK) st = bw_comm_agree(pd->comm, choose_sent(pd, c, box, &destination));
   BW_THEN(st, bw_exchange_create(pd->comm, c->n_sent, destination, &c->plan));
   BW_THEN(st, share(pd, c));
-  if (st == BW_OK) st = bw_comm_agree(pd->comm, list_pairs(pd, c));
+  if (st == BW_OK) st = list_pairs(pd, c);
+  BW_THEN(st, bw_pd_contact__wall_search(pd));
+  st = bw_comm_agree(pd->comm, st);
   bw_release(&box);
   bw_release(&destination);
   return st;

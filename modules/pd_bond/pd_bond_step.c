@@ -58,6 +58,7 @@ bw_status bw_pd_bond__evaluate(bw_pd_bond *pd, bool check)
   for (int k = 0; damped && k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++)
       pd->extra[k][i] += pd->damp[k][i];
+  bw_pd_bond__still_retired(pd);
   pd->current = true;
   return BW_OK;
 }
@@ -77,6 +78,14 @@ static void break_bonds(bw_pd_bond *pd)
           pd->extra[k][i] += sign * pd->damp[k][i];
     }
   }
+  bw_pd_bond__still_retired(pd);
+}
+
+/* The walls' share of the momentum, with the integrator's weight h. */
+static void push_walls(bw_pd_bond *pd, double h, const double force[3])
+{
+  for (int k = 0; k < 3; k++)
+    pd->done_wall[k] += h * force[k];
 }
 
 /* The prescribed particles' share of the book over a time dt with the present forces. */
@@ -126,6 +135,7 @@ static void kick(bw_pd_bond *pd, double h)
   pd->done_external += scale * work[0];
   if (bw_pd_bond__damped(pd)) pd->done_damping += scale * work[1];
   if (pd->n_prescribed > 0) prescribed_work(pd, h);
+  push_walls(pd, h, pd->wall_force);
 }
 
 /* u += dt (alpha v + beta v_before); returns whether every move is finite and within a horizon.
@@ -221,13 +231,16 @@ static void stage_velocity(bw_pd_bond *pd, double alpha, double beta)
 static bw_status step_rk3(bw_pd_bond *pd, double dt)
 {
   static const double alpha[] = {8.0 / 15, 5.0 / 12, 3.0 / 4}, beta[] = {0, -17.0 / 60, -5.0 / 12};
-  double before[2] = {0}, rate[2];
+  double before[2] = {0}, rate[2], wall_before[3] = {0};
   bw_status st = BW_OK;
   for (int r = 0; r < 3; r++) {
     power(pd, rate);
     pd->done_external += dt * (alpha[r] * rate[0] + beta[r] * before[0]);
     pd->done_damping += dt * (alpha[r] * rate[1] + beta[r] * before[1]);
     before[0] = rate[0], before[1] = rate[1];
+    push_walls(pd, dt * alpha[r], pd->wall_force);
+    push_walls(pd, dt * beta[r], wall_before);
+    memcpy(wall_before, pd->wall_force, sizeof wall_before);
     const bool fine = drift(pd, dt * alpha[r], dt * beta[r], pd->v_before);
     if (!fine && st == BW_OK) st = diverged(pd, dt);
     stage_velocity(pd, dt * alpha[r], dt * beta[r]);

@@ -99,5 +99,53 @@ static inline void pd_steps(bw_pd_bond *pd, int n, double dt)
 static inline double pd_energy(bw_pd_bond *pd)
 {
   const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
-  return l.kinetic + l.elastic + l.contact + l.damping + l.fracture - l.external;
+  return l.kinetic + l.elastic + l.contact + l.retired + l.damping + l.fracture - l.external;
+}
+
+/* Rows of a rank to rows of another division: through the global id, by a sum over ranks. */
+static inline void pd_move_rows(const bw_pd_bond *from, const bw_pd_bond *to, size_t width,
+                                const double rows[], double out[])
+{
+  const size_t total = (size_t)bw_pd_bond_total(from);
+  double *all = NULL;
+  bw_check_ok(BW_ALLOCATE(&all, width * total));
+  for (size_t i = 0; i < bw_pd_bond_count(from); i++)
+    for (size_t k = 0; k < width; k++)
+      all[width * (size_t)bw_pd_bond_id(from)[i] + k] = rows[width * i + k];
+  bw_comm_sum(bw_pd_bond_comm(from), (int)(width * total), all);
+  for (size_t i = 0; i < bw_pd_bond_count(to); i++)
+    for (size_t k = 0; k < width; k++)
+      out[width * i + k] = all[width * (size_t)bw_pd_bond_id(to)[i] + k];
+  bw_release(&all);
+}
+
+static inline void pd_restart_from(const bw_pd_bond *from, bw_pd_bond *to)
+{
+  const size_t n = bw_pd_bond_count(from), m = bw_pd_bond_count(to);
+  const size_t bytes = bw_pd_bond_bits_bytes(from);
+  double *rows = NULL, *moved = NULL, sums[BW_PD_RESTART_SUMS];
+  uint8_t *bits = NULL;
+  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_PD_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_PD_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
+  bw_pd_bond_get_restart(from, rows, sums);
+  pd_move_rows(from, to, BW_PD_RESTART_ROW, rows, moved);
+  bw_check_ok(bw_pd_bond_set_restart(to, moved, sums));
+  bw_pd_bond_get_bits(from, bits);
+  for (size_t q = 0; q < n * bytes; q++)
+    rows[q] = bits[q];
+  pd_move_rows(from, to, bytes, rows, moved);
+  for (size_t q = 0; q < m * bytes; q++)
+    bits[q] = (uint8_t)moved[q];
+  bw_check_ok(bw_pd_bond_set_bits(to, bits));
+  bw_release(&rows);
+  bw_release(&moved);
+  bw_release(&bits);
+}
+
+static inline bw_comm *pd_alone(void)
+{
+  bw_comm *self = NULL;
+  bw_check_ok(bw_comm_self(&self));
+  return self;
 }

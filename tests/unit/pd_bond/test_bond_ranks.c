@@ -9,13 +9,6 @@ static void shake(const double X0[3], double v[3])
   v[2] = 0.2 * sin(X0[2] * X0[0]);
 }
 
-static bw_comm *alone(void)
-{
-  bw_comm *self = NULL;
-  bw_check_ok(bw_comm_self(&self));
-  return self;
-}
-
 /* A block with a hole, so that rows are ragged and cuts go through them. */
 static pd_body holed(void)
 {
@@ -63,7 +56,7 @@ static bw_pd_bond_config breaking(int way)
 
 START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
 {
-  bw_comm *self = alone();
+  bw_comm *self = pd_alone();
   pd_body body = holed();
   for (int way = 0; way < WAYS; way++) {
     const bw_pd_bond_config c = breaking(way);
@@ -92,52 +85,11 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
 }
 END_TEST
 
-/* Rows of a rank to rows of another division: through the global id, by a sum over ranks. */
-static void move_rows(const bw_pd_bond *from, const bw_pd_bond *to, size_t width,
-                      const double rows[], double out[])
-{
-  const size_t total = (size_t)bw_pd_bond_total(from);
-  double *all = NULL;
-  bw_check_ok(BW_ALLOCATE(&all, width * total));
-  for (size_t i = 0; i < bw_pd_bond_count(from); i++)
-    for (size_t k = 0; k < width; k++)
-      all[width * (size_t)bw_pd_bond_id(from)[i] + k] = rows[width * i + k];
-  bw_comm_sum(bw_pd_bond_comm(from), (int)(width * total), all);
-  for (size_t i = 0; i < bw_pd_bond_count(to); i++)
-    for (size_t k = 0; k < width; k++)
-      out[width * i + k] = all[width * (size_t)bw_pd_bond_id(to)[i] + k];
-  bw_release(&all);
-}
-
-static void restart_from(const bw_pd_bond *from, bw_pd_bond *to)
-{
-  const size_t n = bw_pd_bond_count(from), m = bw_pd_bond_count(to);
-  const size_t bytes = bw_pd_bond_bits_bytes(from);
-  double *rows = NULL, *moved = NULL, sums[4];
-  uint8_t *bits = NULL;
-  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_PD_RESTART_ROW)));
-  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_PD_RESTART_ROW)));
-  bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
-  bw_pd_bond_get_restart(from, rows, sums);
-  move_rows(from, to, BW_PD_RESTART_ROW, rows, moved);
-  bw_check_ok(bw_pd_bond_set_restart(to, moved, sums));
-  bw_pd_bond_get_bits(from, bits);
-  for (size_t q = 0; q < n * bytes; q++)
-    rows[q] = bits[q];
-  move_rows(from, to, bytes, rows, moved);
-  for (size_t q = 0; q < m * bytes; q++)
-    bits[q] = (uint8_t)moved[q];
-  bw_check_ok(bw_pd_bond_set_bits(to, bits));
-  bw_release(&rows);
-  bw_release(&moved);
-  bw_release(&bits);
-}
-
 /* Stop in the middle of cracking, go on with one rank each: the same to the last bit but for the
  * order of sums over ranks in the book. */
 START_TEST(restart_on_another_number_of_ranks)
 {
-  bw_comm *self = alone();
+  bw_comm *self = pd_alone();
   pd_body body = holed();
   for (int way = 0; way < WAYS; way++) {
     const bw_pd_bond_config c = breaking(way);
@@ -147,7 +99,7 @@ START_TEST(restart_on_another_number_of_ranks)
                                     (double[]){1, 2, 0.5}));
     pd_set(many, NULL, shake);
     pd_steps(many, 80, dt);
-    restart_from(many, one);
+    pd_restart_from(many, one);
     ck_assert_int_eq(bw_pd_bond_account(many).bonds, bw_pd_bond_account(one).bonds);
     ck_assert_int_eq(bw_pd_bond_account(many).broken, bw_pd_bond_account(one).broken);
     pd_steps(many, 100, dt);

@@ -1,0 +1,134 @@
+/* Free bodies: the walls they meet, the weight they have, and what becomes of those that leave. */
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "coupler_internal.h"
+
+#include <string.h>
+
+/* Sides that turn a body back. Through an inflow only fluid comes: its profile is given, a body in
+ * it would be run through. */
+static bool turns_back(bw_ns_side_kind kind)
+{
+  return kind == BW_SIDE_WALL || kind == BW_SIDE_FREE_SLIP || kind == BW_SIDE_INFLOW;
+}
+
+bw_status bw_coupler__bodies_create(bw_coupler *c)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  const bw_ns_channel_config *fluid = bw_ns_channel_settings(c->fluid);
+  const bool planar = bw_pd_bond_settings(c->solid)->geometry != BW_PD_3D;
+  bw_pd_wall wall[BW_PD_WALLS];
+  int n = 0;
+  for (int d = 0; d < (planar ? 2 : 3); d++)
+    for (int s = 0; s < 2; s++) {
+      const bw_ns_side_kind kind = fluid->side[d][s].kind;
+      if (kind == BW_SIDE_OUTFLOW) c->open[d][s] = c->has_outflow = true;
+      if (!turns_back(kind)) continue;
+      wall[n] = (bw_pd_wall){.offset = s == 0 ? 0.0 : -g->length[d]};
+      wall[n++].normal[d] = s == 0 ? 1.0 : -1.0;
+    }
+  bw_status st = BW_ALLOCATE(&c->stays, bw_pd_bond_get_extended(c->solid).n);
+  BW_THEN(st, BW_ALLOCATE(&c->gone, c->n));
+  BW_THEN(st, BW_ALLOCATE(&c->link, (size_t)bw_pd_bond_max_family(c->solid)));
+  st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
+  if (st != BW_OK || !bw_pd_bond_settings(c->solid)->contact) return st;
+  return bw_pd_bond_set_walls(c->solid, n, wall);
+}
+
+void bw_coupler__bodies_release(bw_coupler *c)
+{
+  bw_release(&c->stays);
+  bw_release(&c->gone);
+  bw_release(&c->link);
+}
+
+/* Load of the fluid and weight less buoyancy: the fluid's pressure has no hydrostatic part. */
+void bw_coupler__push_solid(bw_coupler *c)
+{
+  const double *g = c->config.gravity;
+  const double excess = bw_pd_bond_settings(c->solid)->rho - c->config.rho;
+  for (size_t i = 0; i < c->n; i++)
+    for (int d = 0; d < 3; d++)
+      c->V[3 * i + d] = c->F[3 * i + d] + excess * g[d];
+  bw_pd_bond_set_force(c->solid, c->V);
+}
+
+/* Is the whole cube of a particle at x beyond an outflow (open), or any side of the box? */
+static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  const double half = open_only ? 0.5 * bw_pd_bond_settings(c->solid)->ds : 0.0;
+  for (int d = 0; d < 3; d++) {
+    if (g->periodic[d] || (g->n[d] == 1 && g->halo[d] == 0)) continue;
+    if ((!open_only || c->open[d][0]) && x[d] < -half) return true;
+    if ((!open_only || c->open[d][1]) && x[d] > g->length[d] + half) return true;
+  }
+  return false;
+}
+
+/* c->gone: particles beyond an outflow. Returns how many on all ranks. */
+static int64_t find_beyond(bw_coupler *c)
+{
+  const uint8_t *kind = bw_pd_bond_kind(c->solid), settled = BW_PD_PRESCRIBED | BW_PD_RETIRED;
+  int64_t n = 0;
+  bw_pd_bond_get_position(c->solid, c->X);
+  for (size_t i = 0; i < c->n; i++) {
+    c->gone[i] = !(kind[i] & settled) && is_beyond(c, c->X + 3 * i, true);
+    n += c->gone[i];
+  }
+  bw_comm_sum_int(bw_pd_bond_comm(c->solid), 1, &n);
+  return n;
+}
+
+/* Does a bond that holds join particle i to one that stays? */
+static bool is_kept(bw_coupler *c, size_t i)
+{
+  const int n = bw_pd_bond_links(c->solid, i, c->link);
+  for (int q = 0; q < n; q++)
+    if (c->link[q].intact && c->stays[c->link[q].neighbour]) return true;
+  return false;
+}
+
+/* Takes from c->gone what is joined, directly or through others, to what stays in the box.
+ * Returns how many are left in it on all ranks. */
+static int64_t keep_joined(bw_coupler *c)
+{
+  int64_t count[2]; /* kept in this round, gone */
+  for (size_t i = 0; i < c->n; i++)
+    c->stays[i] = !c->gone[i];
+  do {
+    bw_pd_bond_fill_extended(c->solid, sizeof *c->stays, c->stays, c->stays);
+    memset(count, 0, sizeof count);
+    for (size_t i = 0; i < c->n; i++) {
+      if (!c->gone[i]) continue;
+      c->stays[i] = is_kept(c, i);
+      c->gone[i] = !c->stays[i];
+      count[c->gone[i]]++;
+    }
+    bw_comm_sum_int(bw_pd_bond_comm(c->solid), 2, count);
+  } while (count[0] > 0);
+  return count[1];
+}
+
+/* Pieces that are wholly beyond an outflow are retired: they fly on and cost nothing. */
+bw_status bw_coupler__let_go(bw_coupler *c)
+{
+  if (!c->has_outflow || find_beyond(c) == 0 || keep_joined(c) == 0) return BW_OK;
+  return bw_pd_bond_retire(c->solid, c->gone);
+}
+
+/* Mass in the box (held particles under its walls too), beyond its sides, and retired. */
+void bw_coupler__count_mass(bw_coupler *c, double mass[3])
+{
+  const uint8_t *kind = bw_pd_bond_kind(c->solid);
+  const double of_one = bw_pd_bond_settings(c->solid)->rho * bw_pd_bond_volume(c->solid);
+  int64_t count[3] = {0};
+  bw_pd_bond_get_position(c->solid, c->X);
+  for (size_t i = 0; i < c->n; i++) {
+    const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, c->X + 3 * i, false);
+    count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0]++;
+  }
+  bw_comm_sum_int(bw_pd_bond_comm(c->solid), 3, count);
+  for (int q = 0; q < 3; q++)
+    mass[q] = of_one * (double)count[q];
+}

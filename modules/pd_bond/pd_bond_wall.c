@@ -1,0 +1,149 @@
+/* Walls: a particle is pushed by its own image in the plane, with the law of contact.
+ *
+ * At a distance y from the plane the image is r = 2 y away: the force is that of a pair at r, the
+ * energy half of a pair's (the image holds the other half), and dW/dy = -force. So a body meets a
+ * wall as it would meet its mirror image head on. */
+#include "bw_memory.h"
+#include "pd_bond_contact.h"
+
+#include <math.h>
+
+static double distance(const bw_pd_wall *w, const double X[3])
+{
+  return w->normal[0] * X[0] + w->normal[1] * X[1] + w->normal[2] * X[2] - w->offset;
+}
+
+static void position(const bw_pd_bond *pd, int32_t i, double X[3])
+{
+  bw_pd_bond__reference(&pd->config, pd->site + 3 * (size_t)i, X);
+  for (int k = 0; k < 3; k++)
+    X[k] += (double)pd->u[k][pd->place[i]];
+}
+
+/* Does an intact bond join particle i to one that started beyond the plane? */
+static bool is_held(const bw_pd_bond *pd, const bw_pd_wall *w, bw_pd_bond_link link[], int32_t i)
+{
+  const int n = bw_pd_bond_links(pd, (size_t)i, link);
+  for (int q = 0; q < n; q++) {
+    double X0[3];
+    bw_pd_bond__reference(&pd->config, pd->site + 3 * (size_t)link[q].neighbour, X0);
+    if (link[q].intact && distance(w, X0) < 0) return true;
+  }
+  return false;
+}
+
+/* Particles that may touch a wall before one has moved by half the skin. */
+bw_status bw_pd_wall__search(bw_pd_bond *pd)
+{
+  bw_pd_contact *c = pd->contact;
+  const double far = 0.5 * (c->reach + c->skin);
+  bw_release(&c->near);
+  c->n_near = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    size_t n = 0;
+    for (int w = 0; w < pd->n_wall; w++)
+      for (size_t i = 0; i < pd->n; i++) {
+        double X[3];
+        position(pd, (int32_t)i, X);
+        if (pd->mobile[i] == 0 || !(distance(&pd->wall[w], X) < far)) continue;
+        if (pass == 1) c->near[n] = (bw_pd_near){(int32_t)i, (int8_t)w, true};
+        n++;
+      }
+    if (pass == 0) BW_TRY(BW_ALLOCATE(&c->near, n));
+    c->n_near = n;
+  }
+  c->events = -1;
+  return BW_OK;
+}
+
+/* Lets go of those that lost their last bond across; a particle beyond a wall is an error. */
+bw_status bw_pd_wall__update(bw_pd_bond *pd)
+{
+  bw_pd_contact *c = pd->contact;
+  const bool changed = c->events != pd->events;
+  c->events = pd->events;
+  for (size_t q = 0; q < c->n_near; q++) {
+    bw_pd_near *p = &c->near[q];
+    const bw_pd_wall *w = &pd->wall[p->wall];
+    double X[3];
+    if (p->held && changed) p->held = is_held(pd, w, c->link, p->particle);
+    position(pd, p->particle, X);
+    BW_REQUIRE(p->held || distance(w, X) > 0, BW_EDIVERGED,
+               "pd_bond: particle %lld at (%g, %g, %g) was thrown through the wall with the normal "
+               "(%g, %g, %g); its speed or dt is too large",
+               (long long)pd->id[p->particle], X[0], X[1], X[2], w->normal[0], w->normal[1],
+               w->normal[2]);
+  }
+  return BW_OK;
+}
+
+double bw_pd_wall__act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
+{
+  const bw_pd_contact *c = pd->contact;
+  double energy = 0, on_walls[3] = {0};
+  for (size_t q = 0; q < c->n_near; q++) {
+    const bw_pd_wall *w = &pd->wall[c->near[q].wall];
+    const int32_t i = c->near[q].particle;
+    double X[3], to_image[3], sum[3] = {0};
+    if (c->near[q].held) continue;
+    position(pd, i, X);
+    const double y = distance(w, X);
+    for (int k = 0; k < 3; k++)
+      to_image[k] = -2 * y * w->normal[k];
+    energy += bw_pd_contact__repel(law, to_image, 4 * y * y, sum);
+    for (int k = 0; force && k < 3; k++) {
+      pd->extra[k][i] += (bw_real)sum[k];
+      on_walls[k] -= pd->config.rho * pd->dv * sum[k];
+    }
+  }
+  for (int k = 0; force && k < 3; k++)
+    pd->wall_force[k] = on_walls[k];
+  return energy;
+}
+
+static bw_status check_wall(const bw_pd_wall *w)
+{
+  const double *n = w->normal, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  BW_REQUIRE(fabs(length - 1) < 1e-12 && isfinite(w->offset), BW_EINPUT,
+             "pd_bond: the normal (%g, %g, %g) of a wall must be a unit vector, its offset %g "
+             "finite",
+             n[0], n[1], n[2], w->offset);
+  return BW_OK;
+}
+
+/* No free particle may stand in a wall, but for one that a bond across it holds. */
+static bw_status check_room(const bw_pd_bond *pd, const bw_pd_wall *w)
+{
+  bw_status st = BW_OK;
+  const double least = 0.5 * pd->config.ds * (1 - 1e-6); /* lattices that touch it, to rounding */
+  for (size_t i = 0; i < pd->n && st == BW_OK; i++) {
+    double X[3];
+    position(pd, (int32_t)i, X);
+    if (pd->mobile[i] == 0 || distance(w, X) >= least) continue;
+    if (is_held(pd, w, pd->contact->link, (int32_t)i)) continue;
+    st = BW_FAIL(BW_EINPUT,
+                 "pd_bond: particle %lld at (%g, %g, %g) stands in the wall with the normal (%g, "
+                 "%g, %g), %g from it; it needs half a spacing, %g: move the body or hold it",
+                 (long long)pd->id[i], X[0], X[1], X[2], w->normal[0], w->normal[1], w->normal[2],
+                 distance(w, X), 0.5 * pd->config.ds);
+  }
+  return bw_comm_agree(pd->comm, st);
+}
+
+bw_status bw_pd_bond_set_walls(bw_pd_bond *pd, int n, const bw_pd_wall wall[])
+{
+  BW_REQUIRE(n >= 0 && n <= BW_PD_WALLS, BW_EINPUT, "pd_bond: %d walls; at most %d", n,
+             BW_PD_WALLS);
+  BW_REQUIRE(n == 0 || pd->config.contact, BW_EINPUT, "pd_bond: walls need contact = true");
+  pd->n_wall = 0;
+  for (int w = 0; w < n; w++) {
+    BW_TRY(check_wall(&wall[w]));
+    BW_TRY(check_room(pd, &wall[w]));
+  }
+  for (int w = 0; w < n; w++)
+    pd->wall[w] = wall[w];
+  pd->n_wall = n;
+  if (pd->contact != NULL) pd->contact->built = false;
+  pd->current = false;
+  return BW_OK;
+}

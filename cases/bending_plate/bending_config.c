@@ -1,4 +1,5 @@
 #include "bending_case.h"
+#include "bw_coupler_fields.h"
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field channel_fields[] = {
@@ -35,40 +36,11 @@ static const bw_config_field plate_fields[] = {
                    "stiffness of bonds near surfaces"),
     BW_CONFIG_END};
 
-static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
-                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
-                                              {"hat2", BW_KERNEL_HAT2, NULL},
-                                              {NULL, 0, NULL}};
-static const bw_config_word profile_words[] = {
-    {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
-    {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
-    {NULL, 0, NULL}};
-static const bw_config_word load_words[] = {
-    {"probes", BW_LOAD_PROBES, "stress seen by normal probes"},
-    {"reaction", BW_LOAD_REACTION, "reaction of the markers, as in FSI"},
-    {NULL, 0, NULL}};
-static const bw_config_field coupling_fields[] = {
-    BW_CONFIG_WORD(bending_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
-    V(bending_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
-    BW_CONFIG_WORD(bending_coupling, probe_profile, BW_OPTIONAL, profile_words,
-                   "of the velocity along a probe"),
-    BW_CONFIG_WORD(bending_coupling, load, BW_OPTIONAL, load_words, "what loads the solid"),
-    V(bending_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
-      "of the markers, inwards from the nominal surface; left out: by kernel and iterations"),
-    V(bending_coupling, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
-      "along the surface; 0: every surface particle is a marker"),
-    V(bending_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
-    V(bending_coupling, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
-      "share of the new fluid load in each step"),
-    V(bending_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
-      "solid sub-step over its stability limit"),
-    BW_CONFIG_END};
-
 static const bw_config_field physics_fields[] = {
     BW_CONFIG_MAP(bending_config, channel, channel_fields, "the channel"),
     BW_CONFIG_MAP(bending_config, fluid, fluid_fields, "the fluid"),
     BW_CONFIG_MAP(bending_config, plate, plate_fields, "the plate"),
-    BW_CONFIG_MAP(bending_config, coupling, coupling_fields, "fluid and solid"), BW_CONFIG_END};
+    BW_CONFIG_MAP(bending_config, coupling, bw_coupler_fields, "fluid and solid"), BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
     V(bending_time, step, BW_REQUIRED, BW_ABOVE(0), "s", "of the fluid; the solid sub-cycles"),
     V(bending_time, release, BW_OPTIONAL, BW_AT_LEAST(0), "s", "the plate is held until then"),

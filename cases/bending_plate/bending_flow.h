@@ -28,16 +28,12 @@ typedef struct {
   double damping_mean, damping_pair, damping_absolute; /* [M/(L^3 T)], [M/(L^6 T)] default 0 */
   int surface_correction;                              /* default volume */
 } bending_plate;
-typedef struct {
-  int kernel, iterations, probe_profile, load;
-  double retraction, marker_spacing, probe_length, load_relaxation, solid_safety;
-} bending_coupling;
 
 typedef struct {
   bending_channel channel;
   bending_fluid fluid;
   bending_plate plate;
-  bending_coupling coupling;
+  bw_coupler_config coupling;
 } bending_config;
 
 typedef struct {
@@ -63,7 +59,8 @@ typedef struct {
 
 static inline bending_config bending_config_default(void)
 {
-  const bw_coupler_config c = bw_coupler_config_default();
+  bw_coupler_config c = bw_coupler_config_default();
+  c.marker_spacing = 1.0;
   return (bending_config){.channel = {.length = NAN, .height = NAN, .cells = {INT_MIN, INT_MIN}},
                           .fluid = {.density = NAN, .viscosity = NAN, .bulk_velocity = NAN},
                           .plate = {.front = NAN,
@@ -75,15 +72,7 @@ static inline bending_config bending_config_default(void)
                                     .density = NAN,
                                     .horizon_ratio = 3.0,
                                     .surface_correction = BW_PD_SURFACE_VOLUME},
-                          .coupling = {.kernel = (int)c.kernel,
-                                       .iterations = c.n_iter,
-                                       .probe_profile = (int)c.profile,
-                                       .load = BW_LOAD_PROBES,
-                                       .retraction = c.retraction,
-                                       .marker_spacing = 1.0,
-                                       .probe_length = c.probe_length,
-                                       .load_relaxation = c.load_relaxation,
-                                       .solid_safety = c.solid_safety}};
+                          .coupling = c};
 }
 
 static inline void bending_destroy(bending_flow *f)
@@ -205,22 +194,12 @@ static inline bw_status bending_create(const bw_comm *comm, const bending_config
                                        bending_flow *f)
 {
   *f = (bending_flow){.config = *config, .comm = comm};
-  const bending_coupling *q = &f->config.coupling;
   BW_TRY(bending_check(config));
   BW_TRY(bending_make_fluid(f));
   BW_TRY(bending_make_solid(f));
-  bw_coupler_config c = bw_coupler_config_default();
+  bw_coupler_config c = f->config.coupling;
   c.rho = config->fluid.density;
   c.nu = config->fluid.viscosity;
-  c.kernel = (bw_kernel_delta_id)q->kernel;
-  c.n_iter = q->iterations;
-  c.retraction = q->retraction;
-  c.marker_spacing = q->marker_spacing;
-  c.probe_length = q->probe_length;
-  c.profile = (bw_probe_profile)q->probe_profile;
-  c.load = (bw_coupler_load_kind)q->load;
-  c.load_relaxation = q->load_relaxation;
-  c.solid_safety = q->solid_safety;
   c.count_work = true;
   c.walled[1][0] = true;
   return bw_coupler_create(&c, f->fluid, f->solid, &f->coupler);

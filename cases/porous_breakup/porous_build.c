@@ -95,17 +95,10 @@ static bw_status build_solid(porous_run *p)
 static bw_status build_coupler(porous_run *p)
 {
   const porous_config *q = p->config;
-  bw_coupler_config c = bw_coupler_config_default();
+  bw_coupler_config c = q->coupling;
   c.rho = q->fluid.density;
   c.nu = q->fluid.viscosity;
-  c.kernel = (bw_kernel_delta_id)q->coupling.kernel;
-  c.n_iter = q->coupling.iterations;
-  c.retraction = q->coupling.retraction;
-  c.probe_length = q->coupling.probe_length;
-  c.profile = (bw_probe_profile)q->coupling.probe_profile;
-  c.load = (bw_coupler_load_kind)q->coupling.load;
-  c.load_relaxation = q->coupling.load_relaxation;
-  c.solid_safety = q->coupling.solid_safety;
+  c.count_work = true;
   c.walled[1][0] = c.walled[1][1] = true;
   return bw_coupler_create(&c, p->fluid, p->solid, &p->coupler);
 }

@@ -25,10 +25,6 @@ typedef struct {
   int clamped_layers;
 } porous_medium;
 typedef struct {
-  int kernel, iterations, probe_profile, load;
-  double retraction, probe_length, solid_safety, load_relaxation;
-} porous_coupling;
-typedef struct {
   double time_step, settled, settling_rate;
   int steps;
 } porous_phase;
@@ -42,7 +38,7 @@ typedef struct {
   porous_fluid fluid;
   porous_solid solid;
   porous_medium medium;
-  porous_coupling coupling;
+  bw_coupler_config coupling;
   porous_phase flow, deformation, breakage;
   porous_output output;
 } porous_config;
@@ -106,6 +102,12 @@ enum {
   COL_SLIP = COL_BOX + 3,
   COL_BLOCKED,
   COL_DISPLACEMENT,
+  COL_GIVEN,
+  COL_INSIDE,
+  COL_OUT,
+  COL_LEFT,
+  COL_WALLS,
+  COL_IMBALANCE = COL_WALLS + 3,
   COL_COUNT
 };
 extern const char *const porous_columns[COL_COUNT];

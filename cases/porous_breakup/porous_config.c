@@ -1,3 +1,4 @@
+#include "bw_coupler_fields.h"
 #include "porous_case.h"
 
 #include <limits.h>
@@ -50,33 +51,6 @@ static const bw_config_field medium_fields[] = {
       "particles under the lower wall that hold the medium"),
     BW_CONFIG_END};
 
-static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
-                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
-                                              {"hat2", BW_KERNEL_HAT2, NULL},
-                                              {NULL, 0, NULL}};
-static const bw_config_word profile_words[] = {
-    {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
-    {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
-    {NULL, 0, NULL}};
-static const bw_config_word load_words[] = {
-    {"probes", BW_LOAD_PROBES, "stress seen by normal probes, as in POROUS"},
-    {"reaction", BW_LOAD_REACTION, "reaction of the markers, as in FSI"},
-    {NULL, 0, NULL}};
-static const bw_config_field coupling_fields[] = {
-    BW_CONFIG_WORD(porous_coupling, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
-    V(porous_coupling, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
-    V(porous_coupling, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
-      "of the markers, inwards from the nominal surface; left out: by kernel and iterations"),
-    V(porous_coupling, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
-    BW_CONFIG_WORD(porous_coupling, probe_profile, BW_OPTIONAL, profile_words,
-                   "of the velocity along a probe"),
-    V(porous_coupling, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
-      "share of the new fluid load in each step; 1: plain explicit coupling"),
-    BW_CONFIG_WORD(porous_coupling, load, BW_OPTIONAL, load_words, "what loads the solid"),
-    V(porous_coupling, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
-      "solid sub-step over its stability limit"),
-    BW_CONFIG_END};
-
 static const bw_config_field phase_fields[] = {
     V(porous_phase, time_step, BW_REQUIRED, BW_ABOVE(0), "s", "of the fluid; the solid sub-cycles"),
     V(porous_phase, steps, BW_REQUIRED, BW_AT_LEAST(0), "", "at most"),
@@ -101,7 +75,7 @@ const bw_config_field porous_fields[] = {
     BW_CONFIG_MAP(porous_config, fluid, fluid_fields, "the fluid"),
     BW_CONFIG_MAP(porous_config, solid, solid_fields, "the material"),
     BW_CONFIG_MAP(porous_config, medium, medium_fields, "the porous body"),
-    BW_CONFIG_MAP(porous_config, coupling, coupling_fields, "fluid and solid"),
+    BW_CONFIG_MAP(porous_config, coupling, bw_coupler_fields, "fluid and solid"),
     BW_CONFIG_MAP(porous_config, flow, phase_fields, "phase 1: rigid medium, the flow settles"),
     BW_CONFIG_MAP(porous_config, deformation, phase_fields, "phase 2: elastic, nothing breaks"),
     BW_CONFIG_MAP(porous_config, breakage, phase_fields, "phase 3: bonds may break"),
@@ -129,14 +103,7 @@ porous_config porous_config_default(void)
                                     .radius_over_pitch = NAN,
                                     .offset = {0.5, 0.5, 0.5},
                                     .clamped_layers = 3},
-                         .coupling = {.kernel = BW_KERNEL_ROMA3,
-                                      .iterations = 2,
-                                      .retraction = NAN,
-                                      .probe_length = 2.0,
-                                      .probe_profile = BW_PROBE_QUADRATIC,
-                                      .load = BW_LOAD_PROBES,
-                                      .solid_safety = 0.8,
-                                      .load_relaxation = 0.1},
+                         .coupling = bw_coupler_config_default(),
                          .flow = phase,
                          .deformation = phase,
                          .breakage = phase,

@@ -34,6 +34,14 @@ const char *const porous_columns[COL_COUNT] = {
     [COL_SLIP] = "slip_rms_over_U_b[-]",
     [COL_BLOCKED] = "probes_blocked[-]",
     [COL_DISPLACEMENT] = "displacement_max_over_h[-]",
+    [COL_GIVEN] = "work_given_by_fluid[J]",
+    [COL_INSIDE] = "solid_mass_inside[kg]",
+    [COL_OUT] = "solid_mass_passing_out[kg]",
+    [COL_LEFT] = "solid_mass_left[kg]",
+    [COL_WALLS] = "impulse_on_walls_x[N s]",
+    [COL_WALLS + 1] = "impulse_on_walls_y[N s]",
+    [COL_WALLS + 2] = "impulse_on_walls_z[N s]",
+    [COL_IMBALANCE] = "markers_most_over_mean[-]",
 };
 
 /* Mean of p/rho over the plane of cells i. */
@@ -153,6 +161,8 @@ static bw_status measure_solid(porous_run *p, double row[])
     row[COL_DAMPING] = e.damping;
     row[COL_FRACTURE] = e.fracture;
     row[COL_EXTERNAL] = e.external;
+    for (int d = 0; d < 3; d++)
+      row[COL_WALLS + d] = e.wall[d];
     st = measure_fragments(p, row);
   }
   bw_release(&X);
@@ -179,6 +189,11 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_PERMEABILITY] = permeability(p->config, row[COL_DROP]);
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_BLOCKED] = (double)r.probes_blocked;
+  row[COL_GIVEN] = r.work_given;
+  row[COL_INSIDE] = r.mass_inside;
+  row[COL_OUT] = r.mass_out;
+  row[COL_LEFT] = r.mass_left;
+  row[COL_IMBALANCE] = r.imbalance;
   for (int d = 0; d < 3; d++) {
     row[COL_REACTION + d] = r.force_reaction[d];
     row[COL_PROBE + d] = r.force_probe[d];

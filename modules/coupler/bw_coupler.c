@@ -10,10 +10,10 @@ bw_coupler_config bw_coupler_config_default(void)
   return (bw_coupler_config){.rho = NAN,
                              .nu = NAN,
                              .kernel = BW_KERNEL_ROMA3,
-                             .n_iter = 2,
+                             .iterations = 2,
                              .retraction = NAN,
                              .probe_length = 2.0,
-                             .profile = BW_PROBE_QUADRATIC,
+                             .probe_profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
                              .load_relaxation = 0.1,
                              .coupling_iterations = 1,
@@ -50,10 +50,10 @@ static bw_status create_parts(bw_coupler *c)
   bw_probe_config probe = bw_probe_config_default();
   bw_pd_interface_config surface = bw_pd_interface_config_default();
   ibm.kernel = c->config.kernel;
-  ibm.n_iter = c->config.n_iter;
+  ibm.n_iter = c->config.iterations;
   if (isnan(c->config.retraction)) c->config.retraction = bw_ibm_mdf_retraction(&ibm);
   probe.length = c->config.probe_length;
-  probe.profile = c->config.profile;
+  probe.profile = c->config.probe_profile;
   probe.rho = c->config.rho;
   probe.nu = c->config.nu;
   memcpy(surface.walled, c->config.walled, sizeof surface.walled);

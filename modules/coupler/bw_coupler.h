@@ -65,13 +65,14 @@ typedef struct {
   double rho;                /* density of the fluid [M/L^3]                required */
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
-  int n_iter;                /* forcing iterations [-]                      default 2 */
+  int iterations;            /* forcing iterations [-]                      default 2 */
   double retraction;         /* of the markers, in grid spacings [-]; NaN: the best one known
-                                for kernel and n_iter (bw_ibm_mdf_retraction)  default NaN */
+                                for kernel and iterations (bw_ibm_mdf_retraction)  default NaN */
   double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);
                                 0: every surface particle is a marker   default 0 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
-  bw_probe_profile profile;  /* of the velocity along a probe               default quadratic */
+  bw_probe_profile
+      probe_profile;         /* of the velocity along a probe               default quadratic */
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
   bw_coupler_load_kind load; /*                                             default probes */
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
@@ -106,7 +107,7 @@ typedef struct {
   double force_probe[3];          /* on the solid, sum t A over unblocked probes */
   double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
                                      balance of a box around it; 0 when no box was watched */
-  double work_given;              /* by the fluid through the markers since create or load:
+  double work_given;              /* by the fluid through the markers since the start:
                                      -rho int sum Q dV.V dt; received: the solid's ledger, external
                                      [M L^2/T^2]; 0 without count_work */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */

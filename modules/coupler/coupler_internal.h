@@ -9,7 +9,7 @@ typedef struct {
   double fluid_numbers[2]; /* time, gradient of the forcing */
   bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
   double *rows;            /* (n,BW_PD_RESTART_ROW) of bw_pd_bond_get_restart */
-  double sums[BW_PD_RESTART_SUMS];
+  double sums[BW_PD_RESTART_SUMS], work_given;
   uint8_t *bits;        /* (n, bits_bytes) */
   double *V_before, *F; /* (n,3) */
 } bw_coupler__state;

@@ -96,7 +96,7 @@ static void count_work(bw_coupler *c, double dt)
   bw_timer_work(c->timer, BW_PART_MOMENTUM, cells);
   bw_timer_work(c->timer, BW_PART_POISSON, cells);
   bw_timer_work(c->timer, BW_PART_FORCING,
-                3.0 * c->config.n_iter * (double)(c->block > 1 ? c->blocks.n : c->n_surface));
+                3.0 * c->config.iterations * (double)(c->block > 1 ? c->blocks.n : c->n_surface));
   if (!c->held)
     bw_timer_work(c->timer, BW_PART_SOLID, c->bonds * bw_coupler_substeps(c, dt) * (rk3 ? 3 : 1));
 }

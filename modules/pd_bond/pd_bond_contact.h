@@ -44,9 +44,9 @@ typedef struct {
 double bw_pd_contact__repel(bw_pd_law *law, const double d[3], double r2, double sum[3]);
 
 /* pd_bond_wall.c. act returns energy over rho dV; with force adds to extra and sets wall_force. */
-bw_status bw_pd_wall__search(bw_pd_bond *pd);
-bw_status bw_pd_wall__update(bw_pd_bond *pd);
-double bw_pd_wall__act(bw_pd_bond *pd, const bw_pd_law *law, bool force);
+bw_status bw_pd_contact__wall_search(bw_pd_bond *pd);
+bw_status bw_pd_contact__wall_update(bw_pd_bond *pd);
+double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force);
 
 void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_bond *pd); /* Collective. */

@@ -33,7 +33,7 @@ static bool is_held(const bw_pd_bond *pd, const bw_pd_wall *w, bw_pd_bond_link l
 }
 
 /* Particles that may touch a wall before one has moved by half the skin. */
-bw_status bw_pd_wall__search(bw_pd_bond *pd)
+bw_status bw_pd_contact__wall_search(bw_pd_bond *pd)
 {
   bw_pd_contact *c = pd->contact;
   const double far = 0.5 * (c->reach + c->skin);
@@ -57,7 +57,7 @@ bw_status bw_pd_wall__search(bw_pd_bond *pd)
 }
 
 /* Lets go of those that lost their last bond across; a particle beyond a wall is an error. */
-bw_status bw_pd_wall__update(bw_pd_bond *pd)
+bw_status bw_pd_contact__wall_update(bw_pd_bond *pd)
 {
   bw_pd_contact *c = pd->contact;
   const bool changed = c->events != pd->events;
@@ -77,7 +77,7 @@ bw_status bw_pd_wall__update(bw_pd_bond *pd)
   return BW_OK;
 }
 
-double bw_pd_wall__act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
+double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
 {
   const bw_pd_contact *c = pd->contact;
   double energy = 0, on_walls[3] = {0};

@@ -1,0 +1,42 @@
+#include "bw_coupler_fields.h"
+#include "bw_coupler.h"
+
+static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
+                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
+                                              {"hat2", BW_KERNEL_HAT2, NULL},
+                                              {NULL, 0, NULL}};
+static const bw_config_word profile_words[] = {
+    {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
+    {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
+    {NULL, 0, NULL}};
+static const bw_config_word load_words[] = {
+    {"probes", BW_LOAD_PROBES, "stress seen by normal probes, as in POROUS"},
+    {"reaction", BW_LOAD_REACTION, "reaction of the markers, as in FSI"},
+    {NULL, 0, NULL}};
+
+#define V    BW_CONFIG_VALUE
+#define WORD BW_CONFIG_WORD
+#define OURS bw_coupler_config
+const bw_config_field bw_coupler_fields[] = {
+    WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
+    V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
+    V(OURS, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
+      "of the markers, inwards from the nominal surface; left out: by kernel and iterations"),
+    V(OURS, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
+      "along the surface; 0: every surface particle is a marker"),
+    V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
+    WORD(OURS, probe_profile, BW_OPTIONAL, profile_words, "of the velocity along a probe"),
+    WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
+    V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "share of the new fluid load in each step; 1: plain explicit coupling"),
+    V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",
+      "at most, of a step; 1: explicit"),
+    V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",
+      "of the surface's velocity, ends the iteration"),
+    V(OURS, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "solid sub-step over its stability limit"),
+    V(OURS, gravity, BW_OPTIONAL, BW_ANY, "m/s2", "on solid and fluid"),
+    BW_CONFIG_END};
+#undef V
+#undef WORD
+#undef OURS

@@ -1,0 +1,6 @@
+/* bw_coupler_fields.h -- the `coupling:` block of a case's YAML: what of bw_coupler_config a user
+ * chooses. The case sets the rest (densities, viscosity, walled sides). */
+#pragma once
+#include "bw_config.h"
+
+extern const bw_config_field bw_coupler_fields[]; /* of a bw_coupler_config */

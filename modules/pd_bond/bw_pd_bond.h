@@ -99,10 +99,11 @@ void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0); /* new s0. Local. */
 /* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
  * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by
  * its own mirror image with the law of contact, so it touches with its cube's face, ds/2 from its
- * centre, without friction. Not met by prescribed and retired particles, nor by those that an
- * intact bond joins to a particle beyond the plane (what stands on a foundation). BW_EINPUT without
- * contact, when n > BW_PD_WALLS, a normal is no unit vector, or a free particle stands inside the
- * wall. BW_EDIVERGED of a step when one was thrown through. Collective. */
+ * centre (or as near as it began), without friction. Not met by prescribed and retired particles,
+ * nor by those that an intact bond joins to a prescribed one beyond the plane (what stands on a
+ * foundation). BW_EINPUT without contact, when n > BW_PD_WALLS, a normal is no unit vector, or a
+ * free particle is beyond the wall. BW_EDIVERGED of a step when one was thrown through.
+ * Collective. */
 enum { BW_PD_WALLS = 6 };
 typedef struct {
   double normal[3];

@@ -2,7 +2,8 @@
  *
  * At a distance y from the plane the image is r = 2 y away: the force is that of a pair at r, the
  * energy half of a pair's (the image holds the other half), and dW/dy = -force. So a body meets a
- * wall as it would meet its mirror image head on. */
+ * wall as it would meet its mirror image head on. A particle that began nearer than ds/2 touches
+ * where it began. */
 #include "bw_memory.h"
 #include "pd_bond_contact.h"
 
@@ -13,21 +14,31 @@ static double distance(const bw_pd_wall *w, const double X[3])
   return w->normal[0] * X[0] + w->normal[1] * X[1] + w->normal[2] * X[2] - w->offset;
 }
 
-static void position(const bw_pd_bond *pd, int32_t i, double X[3])
+/* Of particle i from the wall, now and at first (X0). */
+typedef struct {
+  double now, first, X[3];
+} gap;
+
+static gap gap_of(const bw_pd_bond *pd, const bw_pd_wall *w, int32_t i)
 {
-  bw_pd_bond__reference(&pd->config, pd->site + 3 * (size_t)i, X);
+  gap g;
+  bw_pd_bond__reference(pd, (size_t)i, g.X);
+  g.first = distance(w, g.X);
   for (int k = 0; k < 3; k++)
-    X[k] += (double)pd->u[k][pd->place[i]];
+    g.X[k] += (double)pd->u[k][pd->place[i]];
+  g.now = distance(w, g.X);
+  return g;
 }
 
-/* Does an intact bond join particle i to one that started beyond the plane? */
+/* Does an intact bond join particle i to a prescribed one that started beyond the plane? */
 static bool is_held(const bw_pd_bond *pd, const bw_pd_wall *w, bw_pd_bond_link link[], int32_t i)
 {
   const int n = bw_pd_bond_links(pd, (size_t)i, link);
   for (int q = 0; q < n; q++) {
     double X0[3];
-    bw_pd_bond__reference(&pd->config, pd->site + 3 * (size_t)link[q].neighbour, X0);
-    if (link[q].intact && distance(w, X0) < 0) return true;
+    bw_pd_bond__reference(pd, (size_t)link[q].neighbour, X0);
+    const bool fixed = pd->kind[link[q].neighbour] & BW_PD_PRESCRIBED;
+    if (link[q].intact && fixed && distance(w, X0) < 0) return true;
   }
   return false;
 }
@@ -43,9 +54,7 @@ bw_status bw_pd_contact__wall_search(bw_pd_bond *pd)
     size_t n = 0;
     for (int w = 0; w < pd->n_wall; w++)
       for (size_t i = 0; i < pd->n; i++) {
-        double X[3];
-        position(pd, (int32_t)i, X);
-        if (pd->mobile[i] == 0 || !(distance(&pd->wall[w], X) < far)) continue;
+        if (pd->mobile[i] == 0 || !(gap_of(pd, &pd->wall[w], (int32_t)i).now < far)) continue;
         if (pass == 1) c->near[n] = (bw_pd_near){(int32_t)i, (int8_t)w, true};
         n++;
       }
@@ -65,13 +74,12 @@ bw_status bw_pd_contact__wall_update(bw_pd_bond *pd)
   for (size_t q = 0; q < c->n_near; q++) {
     bw_pd_near *p = &c->near[q];
     const bw_pd_wall *w = &pd->wall[p->wall];
-    double X[3];
+    const gap g = gap_of(pd, w, p->particle);
     if (p->held && changed) p->held = is_held(pd, w, c->link, p->particle);
-    position(pd, p->particle, X);
-    BW_REQUIRE(p->held || distance(w, X) > 0, BW_EDIVERGED,
+    BW_REQUIRE(p->held || g.now > 0, BW_EDIVERGED,
                "pd_bond: particle %lld at (%g, %g, %g) was thrown through the wall with the normal "
                "(%g, %g, %g); its speed or dt is too large",
-               (long long)pd->id[p->particle], X[0], X[1], X[2], w->normal[0], w->normal[1],
+               (long long)pd->id[p->particle], g.X[0], g.X[1], g.X[2], w->normal[0], w->normal[1],
                w->normal[2]);
   }
   return BW_OK;
@@ -84,13 +92,13 @@ double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
   for (size_t q = 0; q < c->n_near; q++) {
     const bw_pd_wall *w = &pd->wall[c->near[q].wall];
     const int32_t i = c->near[q].particle;
-    double X[3], to_image[3], sum[3] = {0};
+    double to_image[3], sum[3] = {0};
     if (c->near[q].held) continue;
-    position(pd, i, X);
-    const double y = distance(w, X);
+    const gap g = gap_of(pd, w, i);
+    const bw_pd_law one = {fmin(law->reach, 2 * g.first), law->k};
     for (int k = 0; k < 3; k++)
-      to_image[k] = -2 * y * w->normal[k];
-    energy += bw_pd_contact__repel(law, to_image, 4 * y * y, sum);
+      to_image[k] = -2 * g.now * w->normal[k];
+    energy += bw_pd_contact__repel(&one, to_image, 4 * g.now * g.now, sum);
     for (int k = 0; force && k < 3; k++) {
       pd->extra[k][i] += (bw_real)sum[k];
       on_walls[k] -= pd->config.rho * pd->dv * sum[k];
@@ -111,21 +119,19 @@ static bw_status check_wall(const bw_pd_wall *w)
   return BW_OK;
 }
 
-/* No free particle may stand in a wall, but for one that a bond across it holds. */
+/* No free particle may stand or have begun beyond a wall, but for one that a bond holds. */
 static bw_status check_room(const bw_pd_bond *pd, const bw_pd_wall *w)
 {
   bw_status st = BW_OK;
-  const double least = 0.5 * pd->config.ds * (1 - 1e-6); /* lattices that touch it, to rounding */
   for (size_t i = 0; i < pd->n && st == BW_OK; i++) {
-    double X[3];
-    position(pd, (int32_t)i, X);
-    if (pd->mobile[i] == 0 || distance(w, X) >= least) continue;
+    const gap g = gap_of(pd, w, (int32_t)i);
+    if (pd->mobile[i] == 0 || fmin(g.now, g.first) > 0) continue;
     if (is_held(pd, w, pd->contact->link, (int32_t)i)) continue;
     st = BW_FAIL(BW_EINPUT,
-                 "pd_bond: particle %lld at (%g, %g, %g) stands in the wall with the normal (%g, "
-                 "%g, %g), %g from it; it needs half a spacing, %g: move the body or hold it",
-                 (long long)pd->id[i], X[0], X[1], X[2], w->normal[0], w->normal[1], w->normal[2],
-                 distance(w, X), 0.5 * pd->config.ds);
+                 "pd_bond: particle %lld at (%g, %g, %g) is free and beyond the wall with the "
+                 "normal (%g, %g, %g) by %g: move the body, or hold what stands under a wall",
+                 (long long)pd->id[i], g.X[0], g.X[1], g.X[2], w->normal[0], w->normal[1],
+                 w->normal[2], -fmin(g.now, g.first));
   }
   return bw_comm_agree(pd->comm, st);
 }

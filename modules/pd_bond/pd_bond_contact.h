@@ -46,7 +46,7 @@ double bw_pd_contact__repel(bw_pd_law *law, const double d[3], double r2, double
 /* pd_bond_wall.c. act returns energy over rho dV; with force adds to extra and sets wall_force. */
 bw_status bw_pd_contact__wall_search(bw_pd_bond *pd);
 bw_status bw_pd_contact__wall_update(bw_pd_bond *pd);
-double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force);
+double bw_pd_contact__wall_act(bw_pd_bond *pd, bw_pd_law *law, bool force);
 
 void bw_pd_contact__position(const bw_pd_bond *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_bond *pd); /* Collective. */

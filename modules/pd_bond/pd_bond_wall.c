@@ -85,7 +85,7 @@ bw_status bw_pd_contact__wall_update(bw_pd_bond *pd)
   return BW_OK;
 }
 
-double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
+double bw_pd_contact__wall_act(bw_pd_bond *pd, bw_pd_law *law, bool force)
 {
   const bw_pd_contact *c = pd->contact;
   double energy = 0, on_walls[3] = {0};
@@ -95,10 +95,11 @@ double bw_pd_contact__wall_act(bw_pd_bond *pd, const bw_pd_law *law, bool force)
     double to_image[3], sum[3] = {0};
     if (c->near[q].held) continue;
     const gap g = gap_of(pd, w, i);
-    const bw_pd_law one = {fmin(law->reach, 2 * g.first), law->k};
+    bw_pd_law one = {fmin(law->reach, 2 * g.first), law->k, law->closest};
     for (int k = 0; k < 3; k++)
       to_image[k] = -2 * g.now * w->normal[k];
     energy += bw_pd_contact__repel(&one, to_image, 4 * g.now * g.now, sum);
+    law->closest = one.closest;
     for (int k = 0; force && k < 3; k++) {
       pd->extra[k][i] += (bw_real)sum[k];
       on_walls[k] -= pd->config.rho * pd->dv * sum[k];

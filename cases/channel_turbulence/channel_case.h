@@ -8,9 +8,12 @@
 typedef struct {
   double length[3];
   int cells[3];
+  double stretch;
+  char faces[256];
 } channel_domain;
 typedef struct {
   double reynolds, perturbation;
+  int viscous;
 } channel_fluid;
 typedef struct {
   double spin_up, statistics, interval, courant_share;

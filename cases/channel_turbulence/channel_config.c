@@ -5,11 +5,22 @@
 #define V BW_CONFIG_VALUE
 static const bw_config_field domain_fields[] = {
     V(channel_domain, length, BW_REQUIRED, BW_ABOVE(0), "h", "box; the height, length[1], is 1"),
-    V(channel_domain, cells, BW_REQUIRED, BW_AT_LEAST(8), "", "cells in x, y, z"), BW_CONFIG_END};
+    V(channel_domain, cells, BW_REQUIRED, BW_AT_LEAST(8), "", "cells in x, y, z"),
+    V(channel_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
+      "y_j = (1 + tanh(s (2j/n - 1))/tanh s)/2; 0: uniform"),
+    V(channel_domain, faces, BW_OPTIONAL, BW_ANY, "", "text file with the faces in y, 0 to 1"),
+    BW_CONFIG_END};
+static const bw_config_word viscous_words[] = {
+    {"explicit", BW_VISCOUS_EXPLICIT, "third order in time"},
+    {"implicit_y", BW_VISCOUS_IMPLICIT_Y,
+     "Crank-Nicolson in y: thin cells at the walls cost no steps"},
+    {"implicit", BW_VISCOUS_IMPLICIT, "Crank-Nicolson in all directions"},
+    {0}};
 static const bw_config_field fluid_fields[] = {
     V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE(0), "", "Re_b = U_b h/nu"),
     V(channel_fluid, perturbation, BW_OPTIONAL, BW_FROM_TO(0, 1), "U_b",
       "rolls, waves and noise on the laminar profile"),
+    BW_CONFIG_WORD(channel_fluid, viscous, BW_OPTIONAL, viscous_words, "treatment of nu lap u"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
     V(channel_time, spin_up, BW_REQUIRED, BW_AT_LEAST(0), "h/U_b", "before the statistics"),
@@ -32,15 +43,18 @@ const bw_config_field channel_fields[] = {
 channel_case channel_case_default(void)
 {
   return (channel_case){
-      .domain = {.length = {NAN, NAN, NAN}, .cells = {INT_MIN, INT_MIN, INT_MIN}},
-      .fluid = {.reynolds = NAN, .perturbation = 0.2},
+      .domain = {.length = {NAN, NAN, NAN}, .cells = {INT_MIN, INT_MIN, INT_MIN}, .stretch = 0.0},
+      .fluid = {.reynolds = NAN, .perturbation = 0.2, .viscous = BW_VISCOUS_EXPLICIT},
       .time = {.spin_up = NAN, .statistics = NAN, .interval = 0.2, .courant_share = 0.8},
       .output = {.checkpoint_every = 5.0}};
 }
 
 channel_config channel_config_of(const channel_case *c)
 {
-  channel_config q = {.reynolds = c->fluid.reynolds,
+  channel_config q = {.stretch = c->domain.stretch,
+                      .faces = c->domain.faces[0] != 0 ? c->domain.faces : NULL,
+                      .viscous = c->fluid.viscous,
+                      .reynolds = c->fluid.reynolds,
                       .perturbation = c->fluid.perturbation,
                       .interval = c->time.interval,
                       .courant_share = c->time.courant_share,

@@ -16,6 +16,9 @@
 typedef struct {
   double length[3]; /* box [h]; length[1] is 1 */
   int cells[3];
+  double stretch;       /* of y by tanh; 0: uniform */
+  const char *faces;    /* file with the faces in y; NULL: none */
+  int viscous;          /* bw_ns_viscous */
   double reynolds;      /* U_b h/nu */
   double perturbation;  /* of the laminar profile that the run starts from [U_b] */
   double interval;      /* between samples [h/U_b] */
@@ -50,12 +53,14 @@ static const int channel_heights[CHANNEL_HEIGHTS] = {5, 15, 30, 60, 180};
 
 /* Row j of u and w next to the height, and its mirror image: planes q and CHANNEL_HEIGHTS + q. (v
  * is at the faces above these centres: one above row j, the other, mirrored, below it.) */
-static inline int channel_row(const channel_config *q, int plane)
+static inline int channel_row(const bw_grid_view *g, int plane)
 {
-  const int n = q->cells[1];
+  const int n = g->n[1];
   const double y = (double)channel_heights[plane % CHANNEL_HEIGHTS] / 360.0;
-  const int j = (int)fmin(fmax(1.0, round(y * n + 0.5)), (n + 1) / 2);
-  return plane < CHANNEL_HEIGHTS ? j : n + 1 - j;
+  int best = 1;
+  for (int j = 2; j <= (n + 1) / 2; j++)
+    if (fabs(g->y_centre[j] - y) <= fabs(g->y_centre[best] - y)) best = j;
+  return plane < CHANNEL_HEIGHTS ? best : n + 1 - best;
 }
 
 /* A number in (-1, 1) that looks random, the same on all machines and ranks. */
@@ -89,6 +94,40 @@ static inline void channel_initial(const double x[3], double t, void *context, d
     u[c] += 0.2 * a * f * channel_noise(x, c);
 }
 
+/* Profiles are means of both halves. */
+static inline bw_status channel_symmetric(const bw_grid_view *g, const char *faces)
+{
+  const int n = g->n[1];
+  for (int j = 0; j <= n; j++)
+    BW_REQUIRE(
+        fabs(g->y_face[j] + g->y_face[n - j] - g->length[1]) <= 1e-9 * g->length[1], BW_EINPUT,
+        "%s: face %d at %.12g is not the mirror image of face %d at %.12g; both halves of the "
+        "channel are averaged, make them alike",
+        faces, j, g->y_face[j], n - j, g->y_face[n - j]);
+  return BW_OK;
+}
+
+static inline bw_status channel_grid(const bw_comm *comm, const channel_config *q, bw_grid **grid)
+{
+  double *faces = NULL;
+  bw_grid_config g = bw_grid_config_default();
+  for (int d = 0; d < 3; d++)
+    g.n[d] = q->cells[d], g.length[d] = q->length[d], g.periodic[d] = d != 1;
+  BW_REQUIRE(
+      q->stretch == 0.0 || q->faces == NULL, BW_EINPUT,
+      "domain.stretch = %g and domain.faces = %s both say where the faces in y are; give one",
+      q->stretch, q->faces);
+  if (q->stretch > 0.0) g.y_stretch = BW_STRETCH_TANH, g.y_stretch_strength = q->stretch;
+  if (q->faces != NULL) {
+    BW_TRY(bw_grid_read_table(comm, q->faces, g.n[1], g.length[1], &faces));
+    g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
+  }
+  bw_status st = bw_grid_create(comm, &g, grid);
+  if (faces != NULL) BW_THEN(st, channel_symmetric(bw_grid_look(*grid), q->faces));
+  bw_release(&faces);
+  return st;
+}
+
 /* All objects; the fluid is at rest. `config` is borrowed until destroy. */
 static inline bw_status channel_create(const bw_comm *comm, const channel_config *config,
                                        channel_flow *f)
@@ -96,21 +135,19 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
   *f = (channel_flow){.config = config};
   BW_REQUIRE(config->length[1] == 1.0, BW_EINPUT,
              "channel: the height is %g, but h is the unit of length; give 1", config->length[1]);
-  bw_grid_config grid = bw_grid_config_default();
-  for (int d = 0; d < 3; d++)
-    grid.n[d] = config->cells[d], grid.length[d] = config->length[d], grid.periodic[d] = d != 1;
-  BW_TRY(bw_grid_create(comm, &grid, &f->grid));
+  BW_TRY(channel_grid(comm, config, &f->grid));
   bw_ns_channel_config c = bw_ns_channel_config_default();
   for (int s = 0; s < 2; s++)
     c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
   c.nu = 1.0 / config->reynolds;
+  c.viscous = (bw_ns_viscous)config->viscous;
   c.forcing = BW_FORCING_FLOW_RATE;
   c.forcing_value = 1.0;
   BW_TRY(bw_ns_channel_create(f->grid, &c, &f->fluid));
   BW_TRY(bw_ns_statistics_create(f->fluid, &f->statistics));
   int row[CHANNEL_PLANES];
   for (int plane = 0; plane < CHANNEL_PLANES; plane++)
-    row[plane] = channel_row(config, plane);
+    row[plane] = channel_row(bw_grid_look(f->grid), plane);
   BW_TRY(bw_ns_correlations_create(f->fluid, CHANNEL_PLANES, row, &f->correlations));
   const size_t a = bw_ns_statistics_state_size(f->statistics);
   const size_t b = bw_ns_correlations_state_size(f->correlations);

@@ -27,49 +27,7 @@ static bw_status check(const bw_grid_config *c)
              c->halo);
   BW_REQUIRE(c->n[0] >= c->halo, BW_EINPUT, "grid: n[0] = %d cells in x are fewer than halo = %d",
              c->n[0], c->halo);
-  BW_REQUIRE(c->y_stretch == BW_STRETCH_NONE || c->y_stretch == BW_STRETCH_TANH, BW_EINPUT,
-             "grid: y_stretch = %d is no kind of stretching", (int)c->y_stretch);
-  if (c->y_stretch == BW_STRETCH_NONE) return BW_OK;
-  BW_REQUIRE(isfinite(c->y_stretch_strength) && c->y_stretch_strength > 0 &&
-                 c->y_stretch_strength <= 10,
-             BW_EINPUT, "grid: y_stretch_strength = %g; a number above 0 and up to 10 is needed",
-             c->y_stretch_strength);
-  BW_REQUIRE(!c->periodic[1], BW_EINPUT,
-             "grid: y is periodic and stretched; choose one (the mirror image would not fit)");
-  return BW_OK;
-}
-
-/* y_j = L/2 (1 + tanh(s (2j/n - 1)) / tanh s), finest at both walls, 0 and L exactly; ghosts
- * mirror about the boundary faces (which is the periodic image too, as that grid is uniform). */
-static bw_status make_y(bw_grid *g, const bw_grid_config *c)
-{
-  const int n = c->n[1];
-  const double length = c->length[1], s = c->y_stretch_strength;
-  BW_TRY(BW_ALLOCATE(&g->y_face, (size_t)n + 1));
-  BW_TRY(BW_ALLOCATE(&g->y_centre_store, (size_t)n + 4));
-  double *face = g->y_face, *centre = g->y_centre_store + 1;
-  for (int j = 0; j <= n; j++) {
-    const double t = 2.0 * j / n - 1.0; /* -1 .. 1 */
-    if (c->y_stretch == BW_STRETCH_NONE)
-      face[j] = length * j / n;
-    else
-      face[j] = 0.5 * length * (1.0 + tanh(s * t) / tanh(s));
-  }
-  face[0] = 0.0;
-  face[n] = length;
-  for (int j = 1; j <= n; j++)
-    centre[j] = 0.5 * (face[j - 1] + face[j]);
-  for (int q = 0; q < 2; q++) {
-    centre[-q] = -centre[1 + q];
-    centre[n + 1 + q] = 2.0 * length - centre[n - q];
-  }
-  g->view.y_face = face;
-  g->view.y_centre = centre;
-  for (int j = 1; j <= n; j++)
-    BW_REQUIRE(face[j] > face[j - 1], BW_EINPUT,
-               "grid: y_stretch_strength = %g makes the cell %d in y empty; use a smaller one", s,
-               j);
-  return BW_OK;
+  return bw_grid__y_check(c);
 }
 
 /* In every row i = 1 lies on 16 bytes, as vectorised transforms want it. (Whole cache lines made no
@@ -120,7 +78,7 @@ bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_g
   if (st == BW_OK) {
     g->comm = comm;
     set_view(g, config);
-    st = make_y(g, config);
+    st = bw_grid__y_create(g, config);
   }
   BW_THEN(st, bw_grid__halo_create(g));
   BW_THEN(st, bw_grid__line_create(g));

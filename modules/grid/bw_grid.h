@@ -1,9 +1,9 @@
 /* bw_grid.h -- staggered Cartesian grid, its division into pencils, fields and halos.
  *
- * x streamwise, y wall-normal, z spanwise; spacing uniform in x and z, uniform or stretched in
- * y. Global cells 1..n[d]. Cell i covers ((i-1) dx, i dx); its centre is at (i-1/2) dx. On the
- * staggered grid u[i] sits on the face x = i dx between cells i and i+1 (so u[0] is on the lower
- * boundary), v and w likewise in y and z; scalars at centres.
+ * x streamwise, y wall-normal, z spanwise; spacing uniform in x and z, uniform or stretched
+ * (tanh, or a table of faces) in y. Global cells 1..n[d]. Cell i covers ((i-1) dx, i dx); its
+ * centre is at (i-1/2) dx. On the staggered grid u[i] sits on the face x = i dx between cells i and
+ * i+1 (so u[0] is on the lower boundary), v and w likewise in y and z; scalars at centres.
  *
  * Decomposition: x-pencils. Every rank holds all of x and a block of y and z (ranks[1] x
  * ranks[2] blocks). Local cells 1..m[d], global index = local + lo[d], with lo[d] the number of
@@ -20,7 +20,7 @@
 
 typedef struct bw_grid bw_grid;
 
-typedef enum { BW_STRETCH_NONE, BW_STRETCH_TANH } bw_stretch;
+typedef enum { BW_STRETCH_NONE, BW_STRETCH_TANH, BW_STRETCH_TABLE } bw_stretch;
 
 typedef struct {
   int n[3];                  /* cells                                        required */
@@ -28,13 +28,24 @@ typedef struct {
   bool periodic[3];          /*                                              default false */
   bw_stretch y_stretch;      /*                                           default none */
   double y_stretch_strength; /* tanh parameter [-], > 0              default 1.5 */
+  const double *y_table;     /* table: the faces y_0 = 0 < .. < y_n = length [L]; read by create */
   int halo;                  /* layers, 1 or 2 (2 where markers are)         default 1 */
   int ranks[2];              /* blocks in y and z; 0,0: chosen for the least halo */
 } bw_grid_config;
 
 bw_grid_config bw_grid_config_default(void);
 
-/* y faces: L j/n, or L/2 (1 + tanh(s (2j/n - 1)) / tanh s) with s = y_stretch_strength (<= 10). */
+/* y faces: L j/n, or L/2 (1 + tanh(s (2j/n - 1)) / tanh s) with s = y_stretch_strength (<= 10), or
+ * a table, which for second order has to be smooth: neighbouring cells may differ by the factor 4
+ * in height at most. */
+
+/* *y (allocated, owned by the caller: bw_release) = the n + 1 faces of a text file: numbers
+ * between blanks or on lines of their own, what follows # is left out. BW_EIO when it cannot be
+ * read, BW_EINPUT (file and place named) for another count, for what is no number, does not go
+ * from 0 to `length`, does not increase, or jumps in height by more than that factor. Collective.
+ */
+bw_status bw_grid_read_table(const bw_comm *comm, const char *path, int n, double length,
+                             double **y) BW_MUST_CHECK;
 
 /* What kernels need to know; read-only, owned by the grid. Arrays of y are indexed globally:
  * y_face[0..n1] faces, y_centre[1-2..n1+2] centres with two mirrored ghosts on either side. */

@@ -24,6 +24,10 @@ static inline int bw_grid__block_start(int n, int r, int c)
   return c * base + (c < extra ? c : extra);
 }
 
+/* y: is its stretching possible; faces and centres. Local. */
+bw_status bw_grid__y_check(const bw_grid_config *config);
+bw_status bw_grid__y_create(bw_grid *grid, const bw_grid_config *config);
+
 /* Neighbours and buffers of the halo exchange. Local. */
 bw_status bw_grid__halo_create(bw_grid *grid);
 void bw_grid__halo_destroy(bw_grid *grid);

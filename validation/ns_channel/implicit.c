@@ -23,39 +23,11 @@
  * relative order z^2. (2) Convection is 1e-9 of it, the solves' round-off less: 1e-8. (3) e^(-s t)
  * of the slowest mode is below 1e-12, the runs' round-off in p is divided by dt: 1e-10 of the
  * largest value. TEST ranks=1,2 */
-#include "flow.h"
+#include "stokes_mode.h"
 
 #include <stdio.h>
 
-static const double pi = 3.141592653589793;
-
 /* ---- (1) a mode of Stokes flow between walls ---- */
-
-typedef struct {
-  double k, q, rate, amplitude;
-} stokes_mode;
-
-static stokes_mode slowest_mode(double nu)
-{
-  stokes_mode m = {.k = 2.0 * pi, .amplitude = 1e-6};
-  double low = pi * (1.0 + 1e-12), high = 2.0 * pi; /* q h in (pi/2, pi), h = 1/2 */
-  for (int i = 0; i < 100; i++) {
-    m.q = 0.5 * (low + high);
-    *(m.q * tan(0.5 * m.q) < -m.k * tanh(0.5 * m.k) ? &low : &high) = m.q;
-  }
-  m.rate = nu * (m.q * m.q + m.k * m.k);
-  return m;
-}
-
-static void stokes(const double x[3], double t, void *context, double u[3])
-{
-  const stokes_mode *m = context;
-  const double y = x[1] - 0.5, f = m->amplitude * exp(-m->rate * t);
-  const double c = cos(0.5 * m->q), ch = cosh(0.5 * m->k);
-  u[0] = f * cos(m->k * x[0]) * (-m->q * sin(m->q * y) / c - m->k * sinh(m->k * y) / ch);
-  u[1] = f * m->k * sin(m->k * x[0]) * (cos(m->q * y) / c - cosh(m->k * y) / ch);
-  u[2] = 0.0;
-}
 
 /* Rate of decay of u over s t = 2. */
 static bw_status stokes_run(const bw_comm *comm, stokes_mode *m, int n, int steps, double *rate)
@@ -66,7 +38,7 @@ static bw_status stokes_run(const bw_comm *comm, stokes_mode *m, int n, int step
   bw_ns_channel_config c = bw_ns_channel_config_default();
   c.nu = 1.0, c.viscous = BW_VISCOUS_IMPLICIT;
   BW_TRY(flow_create(comm, &box, &c, &grid, &ns));
-  BW_TRY(bw_ns_channel_set_velocity(ns, stokes, m, 0.0));
+  BW_TRY(bw_ns_channel_set_velocity(ns, stokes_velocity, m, 0.0));
   const double before = bw_ns_channel_summary(ns).kinetic_energy, end = 2.0 / m->rate;
   BW_TRY(flow_run(ns, end, steps));
   *rate = 0.5 * log(before / bw_ns_channel_summary(ns).kinetic_energy) / end;
@@ -78,7 +50,7 @@ static bw_status decay(bw_validation *v)
 {
   enum { N = 64, RUNS = 4 };
   const double explicit_limit = 2.5127453 / (8.0 * N * N);
-  stokes_mode m = slowest_mode(1.0);
+  stokes_mode m = stokes_slowest(1.0);
   double rate[RUNS];
   for (int q = 0; q < RUNS; q++)
     BW_TRY(stokes_run(bw_validation_comm(v), &m, N, 10 << q, &rate[q]));
@@ -106,7 +78,7 @@ static void fourier(const double x[3], double t, void *context, double u[3])
   double phase = 0.3, k[3];
   (void)t, (void)context;
   for (int d = 0; d < 3; d++)
-    k[d] = 2.0 * pi * wave[d] / mode_length[d], phase += k[d] * x[d];
+    k[d] = 2.0 * stokes_pi * wave[d] / mode_length[d], phase += k[d] * x[d];
   u[0] = u[1] = 1e-9 * cos(phase);
   u[2] = -(k[0] + k[1]) / k[2] * u[0];
 }
@@ -118,7 +90,8 @@ static double multiplier(double nu, double dt)
   for (int r = 0; r < 3; r++) {
     double sum = 0.0, product = 1.0;
     for (int d = 0; d < 3; d++) {
-      const double root = 2.0 * sin(pi * wave[d] / mode_cells[d]) * mode_cells[d] / mode_length[d];
+      const double root =
+          2.0 * sin(stokes_pi * wave[d] / mode_cells[d]) * mode_cells[d] / mode_length[d];
       const double a = 0.5 * gamma[r] * dt * nu * root * root;
       sum += a, product *= 1.0 + a;
     }

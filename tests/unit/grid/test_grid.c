@@ -1,9 +1,11 @@
 /* Grid: geometry, division into blocks, owners, refusals.
  * TEST ranks=1,2,3,4 */
 #include "bw_check.h"
+#include "bw_file.h"
 #include "bw_grid.h"
 #include "bw_memory.h"
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 static bw_grid_config box(int n0, int n1, int n2)
@@ -120,6 +122,63 @@ START_TEST(stretched_faces)
 }
 END_TEST
 
+/* A table is taken as it is, the last face to the last bit of the box. */
+START_TEST(faces_of_a_table)
+{
+  static const double y[7] = {0, 0.25, 0.6, 1.0, 1.4, 1.8, 2.0 + 1e-15};
+  bw_grid_config c = box(4, 6, 8);
+  c.y_stretch = BW_STRETCH_TABLE, c.y_table = y;
+  bw_grid *grid = make(&c);
+  const bw_grid_view *v = bw_grid_look(grid);
+  ck_assert(!v->uniform_y);
+  for (int j = 0; j < 6; j++)
+    ck_assert_double_eq(v->y_face[j], y[j]);
+  ck_assert_double_eq(v->y_face[6], 2.0);
+  bw_check_near(v->y_centre[2], 0.425, 1e-15);
+  ck_assert_int_eq(bw_grid_owner(grid, (double[3]){0.1, 0.59, 0.1}),
+                   bw_grid_owner(grid, (double[3]){0.1, 0.26, 0.1}));
+  bw_grid_destroy(&grid);
+}
+END_TEST
+
+static void table_refused(const char *text, const char *word)
+{
+  const bw_comm *comm = bw_check_world();
+  double *y = NULL;
+  bw_check_ok(bw_file_write_text(comm, "test_grid_table.txt", text));
+  bw_check_status(bw_grid_read_table(comm, "test_grid_table.txt", 4, 2.0, &y), BW_EINPUT);
+  ck_assert_ptr_null(y);
+  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "\"%s\" does not say \"%s\"",
+                bw_last_message(), word);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "test_grid_table.txt"));
+}
+
+START_TEST(tables_of_files)
+{
+  const bw_comm *comm = bw_check_world();
+  double *y = NULL;
+  bw_check_ok(bw_file_write_text(comm, "test_grid_table.txt", "# faces\n0 0.4\n1.0# mid\n1.6 2\n"));
+  bw_check_ok(bw_grid_read_table(comm, "test_grid_table.txt", 4, 2.0, &y));
+  ck_assert_double_eq(y[1], 0.4);
+  ck_assert_double_eq(y[4], 2.0);
+  bw_release(&y);
+  table_refused("0 0.5 1 2", "4 faces, but 4 cells in y have 5");
+  table_refused("0 0.5 1 1.5 1.8 2", "6 faces");
+  table_refused("0 0.5\n1 x.5 2", "line 2: \"x.5\" is no number");
+  table_refused("0 0.5 1 1.5e 2", "\"1.5e\"");
+  table_refused("0 0.5 1 nan 2", "face 3 is nan");
+  table_refused("0.1 0.5 1 1.5 2", "first face");
+  table_refused("0 0.5 1 1.5 2.1", "last face is at 2.1");
+  table_refused("0 0.5 0.5 1.5 2", "face 2 at 0.5 is not above face 1");
+  table_refused("0 0.5 0.4 1.5 2", "is not above");
+  table_refused("0 0.1 0.55 1.3 2", "cells 1 and 2 differ by the factor 4.5");
+  bw_check_status(bw_grid_read_table(comm, "no_such_table.txt", 4, 2.0, &y), BW_EIO);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "no_such_table.txt"));
+  bw_comm_barrier(comm);
+  if (bw_comm_rank(comm) == 0) remove("test_grid_table.txt");
+}
+END_TEST
+
 START_TEST(uniform_faces_are_exact)
 {
   bw_grid_config c = box(4, 8, 8);
@@ -180,6 +239,9 @@ START_TEST(impossible_grids_are_refused_by_name)
   c = good, c.y_stretch = BW_STRETCH_TANH, c.periodic[1] = true, refused(c, "periodic");
   c = good, c.y_stretch = BW_STRETCH_TANH, c.y_stretch_strength = -1, refused(c, "strength");
   c = good, c.y_stretch = BW_STRETCH_TANH, c.y_stretch_strength = NAN, refused(c, "strength");
+  c = good, c.y_stretch = BW_STRETCH_TABLE, refused(c, "y_table is NULL");
+  c.y_table = (const double[]){0, 1, 2, 3, 4, 5, 6, 7, 1.5}, refused(c, "y_table: the last face");
+  c.periodic[1] = true, refused(c, "periodic");
   c = good, c.ranks[0] = 3, c.ranks[1] = 5, refused(c, "3 x 5");
   c = good, c.ranks[0] = 2, refused(c, "2 x 0");
   bw_grid *none = NULL;
@@ -204,6 +266,8 @@ static const bw_check_test tests[] = {BW_TEST(blocks_tile_the_box_and_owner_know
                                       BW_TEST(owner_at_and_beyond_the_boundary),
                                       BW_TEST(storage_holds_every_cell_once),
                                       BW_TEST(stretched_faces),
+                                      BW_TEST(faces_of_a_table),
+                                      BW_TEST(tables_of_files),
                                       BW_TEST(uniform_faces_are_exact),
                                       BW_TEST(least_halo_is_chosen),
                                       BW_TEST(impossible_grids_are_refused_by_name),

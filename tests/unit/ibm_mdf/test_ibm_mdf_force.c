@@ -271,6 +271,12 @@ START_TEST(bad_input_is_refused_on_all_ranks)
   bw_check_status(bw_ibm_mdf_create(thin, &config, &ib), BW_EINPUT);
   ck_assert_ptr_null(ib);
   bw_grid_destroy(&thin);
+  g.halo = 2, g.y_stretch = BW_STRETCH_TABLE; /* even a table of equal heights */
+  g.y_table = (const double[]){0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
+  bw_check_ok(bw_grid_create(comm, &g, &thin));
+  bw_check_status(bw_ibm_mdf_create(thin, &config, &ib), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "y"));
+  bw_grid_destroy(&thin);
   fixture_free(&f);
 }
 END_TEST

@@ -33,9 +33,9 @@ double channel_record(channel_flow *f, bw_history *history)
 {
   const bw_ns_summary now = bw_ns_channel_summary(f->fluid);
   const double *L = f->config->length, half = 0.5 * f->config->reynolds; /* (h/2) U_b/nu */
-  double shear[2];
-  bw_ns_channel_wall_shear(f->fluid, shear);
-  const double re_tau = half * sqrt(fmax(0.0, 0.5 * (shear[0] + shear[1])));
+  const double shear = 0.5 * (bw_ns_channel_side(f->fluid, 1, 0).stress[0] +
+                              bw_ns_channel_side(f->fluid, 1, 1).stress[0]);
+  const double re_tau = half * sqrt(fmax(0.0, shear));
   const double row[] = {bw_ns_channel_time(f->fluid),
                         half * sqrt(fmax(0.0, 0.5 * f->gradient)), /* u_tau^2 = G h/2 */
                         re_tau,

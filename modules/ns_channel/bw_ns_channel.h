@@ -57,6 +57,10 @@ typedef struct {
 
 bw_ns_channel_config bw_ns_channel_config_default(void);
 
+/* Is it possible on this grid? The check that create makes, before anything exists. Local. */
+bw_status bw_ns_channel_config_check(const bw_grid_config *grid,
+                                     const bw_ns_channel_config *config) BW_MUST_CHECK;
+
 /* `grid` is borrowed until destroy. BW_EINPUT for impossible or contradictory boundaries (named),
  * nu <= 0 or NaN, forcing without periodic x. Fluid at rest. Collective. */
 bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config,
@@ -111,6 +115,14 @@ typedef struct {
   double inflow, outflow;   /* volume flux through x sides [L^3/T] */
 } bw_ns_summary;
 bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns); /* Collective. */
+
+/* One side of the present field. Collective. */
+typedef struct {
+  double flux;      /* out of the box [L^3/T] */
+  double stress[3]; /* mean of nu du_c/dn of the tangential components, n into the fluid [L^2/T^2]:
+                       force of the fluid on a wall per area and density; [d] is 0 */
+} bw_ns_side_report;
+bw_ns_side_report bw_ns_channel_side(bw_ns_channel *ns, int d, int s);
 
 /* Watch the momentum of the cells lo[d] < i <= hi[d] (global; per velocity component those of
  * its points with these indices). Before a step; replaces an earlier box; costs the faces of the

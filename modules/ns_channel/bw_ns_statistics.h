@@ -118,7 +118,3 @@ void bw_ns_statistics_profile(const bw_ns_statistics *s, bw_ns_profile_kind kind
 size_t bw_ns_statistics_state_size(const bw_ns_statistics *s);
 void bw_ns_statistics_get_state(const bw_ns_statistics *s, double x[]);
 bw_status bw_ns_statistics_set_state(bw_ns_statistics *s, const double x[]) BW_MUST_CHECK;
-
-/* Mean nu du/dy at the lower and -nu du/dy at the upper wall of the present field [L^2/T^2]: what
- * holds the fluid back, over its density. Collective. */
-void bw_ns_channel_wall_shear(bw_ns_channel *ns, double shear[2]);

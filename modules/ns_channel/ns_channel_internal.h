@@ -140,6 +140,8 @@ static inline size_t bw_ns__plane_size(const bw_ns_plane *p)
 /* ns_inflow.c */
 bw_status bw_ns__inflow_create(bw_ns_channel *ns); /* steady profiles, areas. Collective. */
 double bw_ns__inflow(bw_ns_channel *ns, double t); /* callbacks; net influx. Collective. */
+double bw_ns__side_area(const bw_ns_channel *ns, int d, int a,
+                        int b);                                 /* of cell (a, b) of a side */
 double bw_ns__side_flux(const bw_ns_channel *ns, int d, int s); /* out of the box, local share */
 
 /* ns_outflow.c */

@@ -134,3 +134,11 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
   }
   return balance_check(g, c);
 }
+
+bw_status bw_ns_channel_config_check(const bw_grid_config *grid, const bw_ns_channel_config *config)
+{
+  bw_grid_view g = {.n = {0}};
+  for (int d = 0; d < 3; d++)
+    g.n[d] = grid->n[d], g.length[d] = grid->length[d], g.periodic[d] = grid->periodic[d];
+  return bw_ns__config_check(&g, config);
+}

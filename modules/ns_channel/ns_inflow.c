@@ -70,19 +70,22 @@ static bw_status solve_section(bw_ns_channel *ns, int d)
   return BW_OK;
 }
 
+double bw_ns__side_area(const bw_ns_channel *ns, int d, int a, int b)
+{
+  const int t0 = bw_ns__tangent(d, 0), t1 = bw_ns__tangent(d, 1);
+  const double *h = ns->g->spacing;
+  return (t0 == 1 ? ns->metrics.dyf[a] : h[t0]) * (t1 == 1 ? ns->metrics.dyf[b] : h[t1]);
+}
+
 /* Sum over the interior of a side of value dA; NULL: of dA. */
 static double plane_flux(const bw_ns_channel *ns, int d, int s, const bw_real *value)
 {
-  const bw_grid_view *g = ns->g;
   const bw_ns_plane *p = &ns->plane[d][s];
-  const int t0 = bw_ns__tangent(d, 0), t1 = bw_ns__tangent(d, 1);
   double sum = 0.0;
-  for (int b = 1; b <= g->m[t1]; b++)
-    for (int a = 1; a <= g->m[t0]; a++) {
-      const double h0 = t0 == 1 ? ns->metrics.dyf[a] : g->spacing[t0];
-      const double h1 = t1 == 1 ? ns->metrics.dyf[b] : g->spacing[t1];
+  for (int b = 1; b <= ns->g->m[bw_ns__tangent(d, 1)]; b++)
+    for (int a = 1; a <= ns->g->m[bw_ns__tangent(d, 0)]; a++) {
       const ptrdiff_t at = (ptrdiff_t)(b - p->low[1]) * p->extent[0] + (a - p->low[0]);
-      sum += h0 * h1 * (value != NULL ? (double)value[at] : 1.0);
+      sum += bw_ns__side_area(ns, d, a, b) * (value != NULL ? (double)value[at] : 1.0);
     }
   return sum;
 }

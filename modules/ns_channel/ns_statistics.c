@@ -143,22 +143,3 @@ bw_status bw_ns_statistics_set_state(bw_ns_statistics *s, const double x[])
   memcpy(s->batch, x + HEAD, BW_NS_BATCHES * s->size * sizeof *x);
   return BW_OK;
 }
-
-void bw_ns_channel_wall_shear(bw_ns_channel *ns, double shear[2])
-{
-  const bw_grid_view *g = ns->g;
-  const int face[2] = {0, g->m[1]};
-  const double points = (double)g->n[0] * g->n[2], sign[2] = {1.0, -1.0};
-  for (int side = 0; side < 2; side++) {
-    shear[side] = 0.0;
-    if (!(side == 0 ? g->first[1] : g->last[1])) continue;
-    const int j = face[side], y = j + g->lo[1];
-    double sum = 0.0;
-    for (int k = 1; k <= g->m[2]; k++)
-      for (int i = 1; i <= g->m[0]; i++)
-        sum += (double)ns->u[0][bw_at(g, i, j + 1, k)] - (double)ns->u[0][bw_at(g, i, j, k)];
-    shear[side] =
-        sign[side] * ns->config.nu * sum / ((g->y_centre[y + 1] - g->y_centre[y]) * points);
-  }
-  bw_comm_sum(ns->comm, 2, shear);
-}

@@ -58,3 +58,40 @@ bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns)
                          .inflow = sum[INFLOW],
                          .outflow = sum[OUTFLOW]};
 }
+
+/* This rank's sum of du_c/dn (into the fluid) over the cells of a side, times their areas. A cell
+ * has the mean of the component's two points. */
+static double slope(const bw_ns_channel *ns, int d, int s, int c)
+{
+  const bw_grid_view *g = ns->g;
+  const int face = bw_ns__face_index(ns, d, s), which = c == bw_ns__tangent(d, 0) ? 0 : 1;
+  const bw_ns_walk w = bw_ns__walk(ns, d, s, s == 0 ? 1 : face);
+  const ptrdiff_t outwards = s == 0 ? -g->stride[d] : g->stride[d];
+  const ptrdiff_t previous = which == 0 ? w.step0 : w.step1;
+  const double distance = d == 1 ? ns->metrics.dyc[face] : g->spacing[d];
+  double sum = 0.0;
+  for (int b = 1; b <= g->m[bw_ns__tangent(d, 1)]; b++)
+    for (int a = 1; a <= g->m[bw_ns__tangent(d, 0)]; a++) {
+      const bw_real *u =
+          ns->u[c] + w.base + (a - w.p->low[0]) * w.step0 + (b - w.p->low[1]) * w.step1;
+      const double here = (double)u[0] - (double)u[outwards];
+      const double before = (double)u[-previous] - (double)u[outwards - previous];
+      sum += 0.5 * (here + before) / distance * bw_ns__side_area(ns, d, a, b);
+    }
+  return sum;
+}
+
+bw_ns_side_report bw_ns_channel_side(bw_ns_channel *ns, int d, int s)
+{
+  const bw_grid_view *g = ns->g;
+  const bool here = ns->plane[d][s].here;
+  double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* slopes, flux */
+  for (int c = 0; c < ns->components && here; c++)
+    if (c != d) sum[c] = slope(ns, d, s, c);
+  if (here) sum[3] = bw_ns__side_flux(ns, d, s);
+  bw_comm_sum(ns->comm, 4, sum);
+  const double per_area =
+      ns->config.nu * g->length[d] / (g->length[0] * g->length[1] * g->length[2]);
+  return (bw_ns_side_report){.flux = sum[3],
+                             .stress = {per_area * sum[0], per_area * sum[1], per_area * sum[2]}};
+}

@@ -1,0 +1,214 @@
+#include "box_case.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#define V BW_CONFIG_VALUE
+static const bw_config_field domain_fields[] = {
+    V(box_domain, length, BW_REQUIRED, BW_ABOVE(0), "L", "box in x, y, z"),
+    V(box_domain, cells, BW_REQUIRED, BW_AT_LEAST(1), "", "in x, y, z; 1 in z: two dimensions"),
+    V(box_domain, stretching, BW_OPTIONAL, BW_FROM_TO(0, 10), "", "tanh, towards both y sides"),
+    BW_CONFIG_END};
+static const bw_config_word viscous_words[] = {
+    {"explicit", BW_VISCOUS_EXPLICIT, "cheapest; the step is limited by dx^2/nu"},
+    {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "for cells that are thin in y"},
+    {NULL, 0, NULL}};
+static const bw_config_field fluid_fields[] = {
+    V(box_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T", "kinematic"),
+    BW_CONFIG_WORD(box_fluid, viscous, BW_OPTIONAL, viscous_words, "viscous term in time"),
+    BW_CONFIG_END};
+static const bw_config_word kind_words[] = {
+    {"periodic", BW_SIDE_PERIODIC, "both sides of a direction"},
+    {"wall", BW_SIDE_WALL, "no slip; velocity: it moves in its plane"},
+    {"free_slip", BW_SIDE_FREE_SLIP, "a plane of symmetry"},
+    {"inflow", BW_SIDE_INFLOW, "velocity given by profile"},
+    {"outflow", BW_SIDE_OUTFLOW, "convective"},
+    {NULL, 0, NULL}};
+static const bw_config_word profile_words[] = {
+    {"uniform", BW_PROFILE_UNIFORM, "velocity"},
+    {"poiseuille", BW_PROFILE_POISEUILLE, "laminar profile between the walls: bulk_velocity"},
+    {NULL, 0, NULL}};
+static const bw_config_field side_fields[] = {
+    BW_CONFIG_WORD(box_side, kind, BW_REQUIRED, kind_words, "what the side is"),
+    BW_CONFIG_WORD(box_side, profile, BW_OPTIONAL, profile_words, "of an inflow"),
+    V(box_side, velocity, BW_OPTIONAL, BW_ANY, "L/T", "of a wall or a uniform inflow"),
+    V(box_side, bulk_velocity, BW_OPTIONAL, BW_ANY, "L/T",
+      "of a poiseuille inflow, along +x, +y or +z (through an upper side: negative)"),
+    BW_CONFIG_END};
+static const bw_config_field pair_fields[] = {
+    BW_CONFIG_MAP(box_pair, lower, side_fields, "at 0"),
+    BW_CONFIG_MAP(box_pair, upper, side_fields, "at the length"), BW_CONFIG_END};
+static const bw_config_field sides_fields[] = {
+    BW_CONFIG_MAP(box_sides, x, pair_fields, "sides normal to x"),
+    BW_CONFIG_MAP(box_sides, y, pair_fields, "sides normal to y"),
+    BW_CONFIG_MAP_IF(box_sides, z, has_z, pair_fields, "sides normal to z; none in 2D"),
+    BW_CONFIG_END};
+static const bw_config_word forcing_words[] = {
+    {"flow_rate", BW_FORCING_FLOW_RATE, "value: bulk velocity [L/T]"},
+    {"gradient", BW_FORCING_GRADIENT, "value: -dp/dx over the density [L/T2]"},
+    {NULL, 0, NULL}};
+static const bw_config_field forcing_fields[] = {
+    BW_CONFIG_WORD(box_forcing, kind, BW_REQUIRED, forcing_words, "what is held, along periodic x"),
+    V(box_forcing, value, BW_REQUIRED, BW_ANY, "L/T or L/T2", "its value"), BW_CONFIG_END};
+static const bw_config_field vortex_fields[] = {
+    V(box_vortex, centre, BW_REQUIRED, BW_ANY, "L", "x, y; the axis is along z"),
+    V(box_vortex, radius, BW_REQUIRED, BW_ABOVE(0), "L", "where it is fastest"),
+    V(box_vortex, swirl, BW_REQUIRED, BW_ANY, "L/T", "largest velocity; > 0: counterclockwise"),
+    BW_CONFIG_END};
+static const bw_config_field start_fields[] = {
+    V(box_start, velocity, BW_OPTIONAL, BW_ANY, "L/T", "everywhere"),
+    BW_CONFIG_LIST(box_start, vortices, n_vortices, BW_OPTIONAL, vortex_fields, "added to it"),
+    BW_CONFIG_END};
+static const bw_config_field time_fields[] = {
+    V(box_time, end, BW_REQUIRED, BW_ABOVE(0), "T", "of the run"),
+    V(box_time, step, BW_OPTIONAL, BW_ABOVE(0), "T", "fixed; else from the largest stable step"),
+    V(box_time, limit_share, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "step over the largest stable one (convective and viscous); 0.8 without step"),
+    BW_CONFIG_END};
+static const bw_config_field output_fields[] = {
+    V(box_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "rows of history.csv"),
+    V(box_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "T", "fluid.pvd; 0: at the end"),
+    V(box_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
+      "checkpoint.h5; 0: at the end"),
+    BW_CONFIG_END};
+const bw_config_field box_fields[] = {
+    BW_CONFIG_MAP(box_config, domain, domain_fields, "the box"),
+    BW_CONFIG_MAP(box_config, fluid, fluid_fields, "the fluid"),
+    BW_CONFIG_MAP(box_config, sides, sides_fields, "its six sides"),
+    BW_CONFIG_MAP_IF(box_config, forcing, has_forcing, forcing_fields, "what drives it"),
+    BW_CONFIG_MAP(box_config, start, start_fields, "the first velocity, made divergence-free"),
+    BW_CONFIG_MAP(box_config, time, time_fields, "the run"),
+    BW_CONFIG_MAP(box_config, output, output_fields, "files"),
+    BW_CONFIG_END};
+#undef V
+
+box_config box_config_default(void)
+{
+  const box_side side = {.kind = INT_MIN, .profile = BW_PROFILE_UNIFORM, .bulk_velocity = NAN};
+  const box_pair pair = {side, side};
+  return (box_config){.domain = {.length = {NAN, NAN, NAN}, .cells = {INT_MIN, INT_MIN, INT_MIN}},
+                      .fluid = {.viscosity = NAN, .viscous = BW_VISCOUS_EXPLICIT},
+                      .sides = {.x = pair, .y = pair, .z = pair},
+                      .forcing = {.kind = INT_MIN, .value = NAN},
+                      .start.vortices[0] = {.centre = {NAN, NAN}, .radius = NAN, .swirl = NAN},
+                      .time = {.end = NAN, .step = NAN, .limit_share = NAN},
+                      .output = {.sample_every = NAN}};
+}
+
+static const char *const direction_name[] = {"x", "y", "z"};
+static const char *const end_name[] = {"lower", "upper"};
+static const char *word_of(const bw_config_word *words, int value)
+{
+  while (words->word != NULL && words->value != value)
+    words++;
+  return words->word;
+}
+
+/* What is given has to have a meaning. */
+static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_ns_side *side)
+{
+  const char *dn = direction_name[d], *sn = end_name[s], *kind = word_of(kind_words, q->kind);
+  const bool moves = q->velocity[0] != 0.0 || q->velocity[1] != 0.0 || q->velocity[2] != 0.0;
+  const bool laminar = q->profile == BW_PROFILE_POISEUILLE;
+  BW_REQUIRE(q->kind == BW_SIDE_INFLOW || (!laminar && isnan(q->bulk_velocity)), BW_EINPUT,
+             "sides.%s.%s: profile and bulk_velocity belong to an inflow, but kind is %s; leave "
+             "them out",
+             dn, sn, kind);
+  BW_REQUIRE(laminar == isfinite(q->bulk_velocity) || q->kind != BW_SIDE_INFLOW, BW_EINPUT,
+             "sides.%s.%s: bulk_velocity is %s the profile %s; give it with poiseuille, and "
+             "velocity with uniform",
+             dn, sn, laminar ? "missing for" : "given with", word_of(profile_words, q->profile));
+  BW_REQUIRE(
+      !moves || q->kind == BW_SIDE_WALL || (q->kind == BW_SIDE_INFLOW && !laminar), BW_EINPUT,
+      "sides.%s.%s.velocity: [%g, %g, %g] belongs to a wall or a uniform inflow, this is %s "
+      "%s; leave it out",
+      dn, sn, q->velocity[0], q->velocity[1], q->velocity[2], laminar ? "a poiseuille " : "", kind);
+  BW_REQUIRE(!planar || q->velocity[2] == 0.0, BW_EINPUT,
+             "sides.%s.%s.velocity: %g along z, but domain.cells has one cell there; give 0", dn,
+             sn, q->velocity[2]);
+  *side = (bw_ns_side){.kind = (bw_ns_side_kind)q->kind,
+                       .profile = (bw_ns_profile)q->profile,
+                       .bulk_velocity = q->bulk_velocity};
+  memcpy(side->velocity, q->velocity, sizeof side->velocity);
+  return BW_OK;
+}
+
+static bw_status sides_resolve(const box_config *c, bw_grid_config *grid,
+                               bw_ns_channel_config *fluid)
+{
+  const box_pair *pair[3] = {&c->sides.x, &c->sides.y, &c->sides.z};
+  const bool planar = c->domain.cells[2] == 1;
+  BW_REQUIRE(planar != c->sides.has_z, BW_EINPUT, "sides.z is %s, but domain.cells has %d in z; %s",
+             c->sides.has_z ? "given" : "missing", c->domain.cells[2],
+             planar ? "leave sides.z out in two dimensions"
+                    : "give sides.z.lower and sides.z.upper, or one cell for two dimensions");
+  for (int d = 0; d < (planar ? 2 : 3); d++) {
+    const box_side *side[2] = {&pair[d]->lower, &pair[d]->upper};
+    const bool lower = side[0]->kind == BW_SIDE_PERIODIC, upper = side[1]->kind == BW_SIDE_PERIODIC;
+    BW_REQUIRE(lower == upper, BW_EINPUT,
+               "sides.%s: lower is %s and upper is %s; make both periodic or neither",
+               direction_name[d], word_of(kind_words, side[0]->kind),
+               word_of(kind_words, side[1]->kind));
+    grid->periodic[d] = lower;
+    for (int s = 0; s < 2; s++)
+      BW_TRY(side_resolve(side[s], planar, d, s, &fluid->side[d][s]));
+  }
+  if (!planar) return BW_OK;
+  grid->periodic[2] = true;
+  fluid->side[2][0].kind = fluid->side[2][1].kind = BW_SIDE_PERIODIC;
+  return BW_OK;
+}
+
+/* Is a a whole number of times b? */
+static bool divides(double a, double b)
+{
+  return fabs(a / b - round(a / b)) < 1e-9 * fmax(1.0, a / b) && a / b > 0.5;
+}
+
+static bw_status times_check(const box_config *c)
+{
+  const box_time *t = &c->time;
+  const box_output *o = &c->output;
+  BW_REQUIRE(isnan(t->step) || isnan(t->limit_share), BW_EINPUT,
+             "time.step is %g and time.limit_share is %g; give one of them", t->step,
+             t->limit_share);
+  BW_REQUIRE(divides(t->end, o->sample_every), BW_EINPUT,
+             "time.end is %g, no whole number of output.sample_every, %g", t->end, o->sample_every);
+  BW_REQUIRE(isnan(t->step) || divides(o->sample_every, t->step), BW_EINPUT,
+             "output.sample_every is %g, no whole number of time.step, %g", o->sample_every,
+             t->step);
+  BW_REQUIRE(o->picture_every == 0.0 || divides(o->picture_every, o->sample_every), BW_EINPUT,
+             "output.picture_every is %g, no whole number of output.sample_every, %g",
+             o->picture_every, o->sample_every);
+  BW_REQUIRE(o->checkpoint_every == 0.0 || divides(o->checkpoint_every, o->sample_every), BW_EINPUT,
+             "output.checkpoint_every is %g, no whole number of output.sample_every, %g",
+             o->checkpoint_every, o->sample_every);
+  return BW_OK;
+}
+
+bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config *fluid)
+{
+  *grid = bw_grid_config_default();
+  *fluid = bw_ns_channel_config_default();
+  memcpy(grid->n, c->domain.cells, sizeof grid->n);
+  memcpy(grid->length, c->domain.length, sizeof grid->length);
+  if (c->domain.stretching > 0.0) {
+    grid->y_stretch = BW_STRETCH_TANH;
+    grid->y_stretch_strength = c->domain.stretching;
+  }
+  fluid->nu = c->fluid.viscosity;
+  fluid->viscous = (bw_ns_viscous)c->fluid.viscous;
+  if (c->has_forcing) {
+    fluid->forcing = (bw_ns_forcing)c->forcing.kind;
+    fluid->forcing_value = c->forcing.value;
+  }
+  BW_TRY(times_check(c));
+  if (isnan(c->time.step) && isnan(c->time.limit_share)) c->time.limit_share = 0.8;
+  BW_TRY(sides_resolve(c, grid, fluid));
+  BW_REQUIRE(!c->has_forcing || grid->periodic[0], BW_EINPUT,
+             "forcing is %s, but sides.x is not periodic: there the sides drive the flow; leave "
+             "forcing out or make x periodic",
+             word_of(forcing_words, c->forcing.kind));
+  return bw_ns_channel_config_check(grid, fluid);
+}

@@ -1,0 +1,84 @@
+/* Flow in a box: six sides by name, explicit or implicit viscosity, forcing, vortices to start
+ * from.
+ *
+ * Goes on after an interruption with --restart OUT/checkpoint.h5, to the last bit.
+ * Run:   mpirun -n 2 build/bin/box_flow cases/box_flow/lid_driven_cavity.yaml --out out/cavity
+ * BUILD modules=ns_channel,vtk,checkpoint */
+#include "box_case.h"
+#include "bw_stop.h"
+
+#include <math.h>
+
+/* Is it time for what happens `every` so often (0: at the end only)? */
+static bool due(const box_run *b, double every, bool last)
+{
+  if (every == 0.0) return last;
+  return last || b->intervals % llround(every / b->config->output.sample_every) == 0;
+}
+
+static bw_status after_interval(box_run *b, bool last)
+{
+  box_sample(b);
+  if (due(b, b->config->output.picture_every, last)) BW_TRY(box_picture(b));
+  if (due(b, b->config->output.checkpoint_every, last)) BW_TRY(box_checkpoint(b));
+  return BW_OK;
+}
+
+static bw_status run_to_end(box_run *b)
+{
+  const bw_comm *comm = bw_grid_comm(b->grid);
+  const int64_t end = box_intervals(b->config);
+  bw_progress *line = NULL;
+  bw_progress_config about = bw_progress_config_default();
+  about.time_unit = "T", about.step_start = b->steps;
+  about.time_start = bw_ns_channel_time(b->fluid), about.time_end = b->config->time.end;
+  bw_status st = bw_progress_create(bw_case_log(b->run), &about, &line);
+  for (bool stop = false; st == BW_OK && !stop && b->intervals < end;) {
+    st = box_advance(b);
+    stop = st == BW_OK && bw_stop_requested(comm);
+    BW_THEN(st, after_interval(b, stop || b->intervals == end));
+    bw_progress_update(line, b->steps, bw_ns_channel_time(b->fluid), "dt %.3g", b->dt);
+    if (stop) bw_log_warn(bw_case_log(b->run), "asked to stop: go on with --restart checkpoint.h5");
+  }
+  bw_progress_finish(&line);
+  return st;
+}
+
+static bw_status simulate(box_run *b, const bw_comm *comm, box_config *config)
+{
+  const bw_case_args *args = bw_case_args_of(b->run);
+  bw_grid_config grid;
+  bw_ns_channel_config fluid;
+  BW_TRY(box_resolve(config, &grid, &fluid));
+  BW_TRY(box_create(b, comm, &grid, &fluid));
+  BW_TRY(box_start_field(b));
+  box_describe(b);
+  if (args->check) return BW_OK;
+  if (args->restart != NULL) BW_TRY(box_restart(b, args->restart));
+  BW_TRY(box_open_history(b, args->restart != NULL ? bw_ns_channel_time(b->fluid) : (double)NAN));
+  if (args->restart == NULL) {
+    box_sample(b);
+    BW_TRY(box_picture(b));
+  }
+  bw_stop_install();
+  return run_to_end(b);
+}
+
+int main(int argc, char **argv)
+{
+  box_config config = box_config_default();
+  const bw_case_about about = {"box_flow", "incompressible flow in a box", box_fields,
+                               sizeof config};
+  bw_comm *world = NULL;
+  box_run b = {.config = &config};
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &b.run));
+  if (st == BW_OK && !bw_case_args_of(b.run)->stop) st = simulate(&b, world, &config);
+  if (b.history != NULL) {
+    const bw_status closed = bw_history_close(world, &b.history);
+    BW_THEN(st, closed);
+  }
+  box_destroy(&b);
+  st = bw_case_end(world, &b.run, st);
+  return bw_finish(&world, st);
+}

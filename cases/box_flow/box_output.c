@@ -1,0 +1,143 @@
+#include "box_case.h"
+#include "bw_memory.h"
+#include "bw_vtk.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char *const axis = "xyz";
+static const char *const end_name[] = {"lower", "upper"};
+
+/* ---- the set-up ---- */
+static void describe_side(const box_run *b, int d, int s)
+{
+  static const char *const words[] = {"periodic", "wall", "free slip", "inflow", "outflow"};
+  const box_pair *pair = d == 0   ? &b->config->sides.x
+                         : d == 1 ? &b->config->sides.y
+                                  : &b->config->sides.z;
+  const box_side *side = s == 0 ? &pair->lower : &pair->upper;
+  char more[96] = "";
+  if (side->profile == BW_PROFILE_POISEUILLE)
+    snprintf(more, sizeof more, ", laminar profile, bulk velocity %g", side->bulk_velocity);
+  else if (side->kind == BW_SIDE_INFLOW || side->kind == BW_SIDE_WALL)
+    snprintf(more, sizeof more, ", velocity [%g, %g, %g]", side->velocity[0], side->velocity[1],
+             side->velocity[2]);
+  bw_log_info(bw_case_log(b->run), "  %c %s: %s%s", axis[d], end_name[s], words[side->kind], more);
+}
+
+void box_describe(box_run *b)
+{
+  bw_log *log = bw_case_log(b->run);
+  const bw_grid_view *g = bw_grid_look(b->grid);
+  const double cells = (double)g->n[0] * g->n[1] * g->n[2];
+  const double limit = bw_ns_channel_dt_max(b->fluid);
+  const double dt =
+      isnan(b->config->time.step) ? b->config->time.limit_share * limit : b->config->time.step;
+  const double steps = b->config->time.end / dt;
+  bw_log_info(log, "%d x %d x %d cells of %g x %g x %g, %s", g->n[0], g->n[1], g->n[2],
+              g->spacing[0], g->spacing[1], g->spacing[2],
+              g->n[2] == 1 ? "two-dimensional" : "three-dimensional");
+  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++)
+    for (int s = 0; s < 2; s++)
+      describe_side(b, d, s);
+  /* velocity is prescribed or carried out at every side: the pressure enters by its gradient only
+   */
+  bw_log_info(log, "pressure: no side fixes its level; its mean over the box is kept at 0");
+  /* 30 ns per cell and sub-step: one core of a server, in between 2D and 3D */
+  bw_log_info(log,
+              "largest stable step at the start %.3g, this run's %.3g: about %.0f steps, %.2g s on "
+              "one core\nfields %.1f MB on this rank",
+              limit, dt, steps, steps * cells * 3.0 * 30e-9,
+              (double)bw_ns_channel_cost(b->fluid).bytes / 1e6);
+}
+
+/* ---- history.csv: fixed columns, then those of the sides that have something to say ---- */
+enum { FIXED = 6, COLUMNS = FIXED + 18, NAME = 40 };
+
+/* Flux through inflow and outflow, stress of the tangential components on walls. */
+static bool has_flux(bw_ns_side_kind kind)
+{
+  return kind == BW_SIDE_INFLOW || kind == BW_SIDE_OUTFLOW;
+}
+
+typedef struct {
+  int d, s, component; /* component < 0: the flux */
+} side_column;
+
+static int side_columns(const box_run *b, side_column column[COLUMNS - FIXED])
+{
+  const box_sides *sides = &b->config->sides;
+  const box_pair *pair[3] = {&sides->x, &sides->y, &sides->z};
+  const int dimensions = b->config->domain.cells[2] == 1 ? 2 : 3;
+  int n = 0;
+  for (int d = 0; d < dimensions; d++)
+    for (int s = 0; s < 2; s++) {
+      const int kind = s == 0 ? pair[d]->lower.kind : pair[d]->upper.kind;
+      if (has_flux((bw_ns_side_kind)kind)) column[n++] = (side_column){d, s, -1};
+      for (int c = 0; c < dimensions && kind == BW_SIDE_WALL; c++)
+        if (c != d) column[n++] = (side_column){d, s, c};
+    }
+  return n;
+}
+
+bw_status box_open_history(box_run *b, double restart_time)
+{
+  static const char *const fixed[FIXED] = {
+      "time[T]",       "bulk_velocity[L/T]", "kinetic_energy[L5/T2]",
+      "divergence[-]", "forcing[L/T2]",      "dt[T]"};
+  const char *names[COLUMNS];
+  char text[COLUMNS][NAME];
+  side_column column[COLUMNS - FIXED];
+  const int n = side_columns(b, column);
+  for (int q = 0; q < FIXED; q++)
+    names[q] = fixed[q];
+  for (int q = 0; q < n; q++) {
+    const side_column *c = &column[q];
+    if (c->component < 0)
+      snprintf(text[q], NAME, "flux_%c_%s[L3/T]", axis[c->d], end_name[c->s]);
+    else
+      snprintf(text[q], NAME, "stress_%c_%s_%c[L2/T2]", axis[c->d], end_name[c->s],
+               axis[c->component]);
+    names[FIXED + q] = text[q];
+  }
+  char *path = NULL;
+  bw_status st = bw_case_path(b->run, "history.csv", &path);
+  BW_THEN(st, bw_history_create(bw_grid_comm(b->grid), path, FIXED + n, names, restart_time,
+                                &b->history));
+  bw_release(&path);
+  return st;
+}
+
+void box_sample(box_run *b)
+{
+  const bw_ns_summary now = bw_ns_channel_summary(b->fluid);
+  side_column column[COLUMNS - FIXED];
+  const int n = side_columns(b, column);
+  double row[COLUMNS] = {bw_ns_channel_time(b->fluid), now.bulk_velocity,
+                         now.kinetic_energy,           bw_ns_channel_divergence(b->fluid),
+                         now.pressure_gradient,        b->dt};
+  for (int q = 0; q < n; q++) {
+    const bw_ns_side_report side = bw_ns_channel_side(b->fluid, column[q].d, column[q].s);
+    row[FIXED + q] = column[q].component < 0 ? side.flux : side.stress[column[q].component];
+  }
+  bw_history_append(b->history, row);
+}
+
+/* ---- pictures ---- */
+bw_status box_picture(box_run *b)
+{
+  bw_real *const *u = bw_ns_channel_velocity(b->fluid);
+  const bw_vtk_field fields[] = {
+      {.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
+      {.name = "pressure", .data = {bw_ns_channel_pressure(b->fluid)}}};
+  char name[64], *path = NULL, *series = NULL;
+  snprintf(name, sizeof name, "fluid-%08lld%s", (long long)b->steps,
+           bw_vtk_grid_extension(b->grid));
+  bw_status st = bw_case_path(b->run, name, &path);
+  BW_THEN(st, bw_case_path(b->run, "fluid.pvd", &series));
+  BW_THEN(st, bw_vtk_write_grid(b->grid, path, 2, fields));
+  BW_THEN(st, bw_vtk_series_add(bw_grid_comm(b->grid), series, bw_ns_channel_time(b->fluid), name));
+  bw_release(&path);
+  bw_release(&series);
+  return st;
+}

@@ -100,6 +100,7 @@ START_TEST(downwards_is_the_mirror_image_of_upwards)
   for (int d = 0; d < 3; d++) {
     run_both_ways(self, d, 6, BW_VISCOUS_EXPLICIT);
     run_both_ways(self, d, 6, BW_VISCOUS_IMPLICIT_Y);
+    run_both_ways(self, d, 6, BW_VISCOUS_IMPLICIT);
     if (d < 2) run_both_ways(self, d, 1, BW_VISCOUS_EXPLICIT);
   }
   bw_comm_destroy(&self);

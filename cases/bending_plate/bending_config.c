@@ -1,5 +1,6 @@
 #include "bending_case.h"
 #include "bw_coupler_fields.h"
+#include "bw_pd_bond_words.h"
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field channel_fields[] = {
@@ -13,10 +14,6 @@ static const bw_config_field fluid_fields[] = {
     V(bending_fluid, bulk_velocity, BW_REQUIRED, BW_ABOVE(0), "m/s",
       "mean of the Poiseuille inflow"),
     BW_CONFIG_END};
-static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
-                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
-                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
-                                                  {NULL, 0, NULL}};
 static const bw_config_field plate_fields[] = {
     V(bending_plate, front, BW_REQUIRED, BW_ABOVE(0), "m", "inflow to the upstream face"),
     V(bending_plate, thickness, BW_REQUIRED, BW_ABOVE(0), "m", "of the plate"),
@@ -32,7 +29,7 @@ static const bw_config_field plate_fields[] = {
     V(bending_plate, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "k_d of POROUS 3.41"),
     V(bending_plate, damping_absolute, BW_OPTIONAL, BW_AT_LEAST(0), "kg/(m3 s)",
       "to bring it to rest"),
-    BW_CONFIG_WORD(bending_plate, surface_correction, BW_OPTIONAL, correction_words,
+    BW_CONFIG_WORD(bending_plate, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
                    "stiffness of bonds near surfaces"),
     BW_CONFIG_END};
 

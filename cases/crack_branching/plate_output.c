@@ -1,5 +1,6 @@
 #include "plate_output.h"
 #include "bw_memory.h"
+#include "bw_pd_bond_words.h"
 #include "bw_vtk.h"
 #include <limits.h>
 #include <math.h>
@@ -12,31 +13,18 @@ static const bw_config_field shape_fields[] = {
     V(plate_shape, notch, BW_REQUIRED, BW_AT_LEAST(0), "m", "from the left edge, at mid height"),
     V(plate_shape, particles, BW_REQUIRED, BW_AT_LEAST(10), "", "along the length"), BW_CONFIG_END};
 
-static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
-                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
-                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
-                                                  {NULL, 0, NULL}};
-static const bw_config_word fraction_words[] = {
-    {"linear", BW_PD_FRACTION_LINEAR, "POROUS 3.33"},
-    {"exact", BW_PD_FRACTION_EXACT, "area of the cell within the horizon"},
-    {"none", BW_PD_FRACTION_NONE, NULL},
-    {NULL, 0, NULL}};
-static const bw_config_word reach_words[] = {{"half_cell", BW_PD_REACH_HALF_CELL, "horizon + ds/2"},
-                                             {"horizon", BW_PD_REACH_HORIZON, NULL},
-                                             {NULL, 0, NULL}};
-static const bw_config_word integrator_words[] = {
-    {"verlet", BW_PD_VERLET, NULL}, {"rk3", BW_PD_RK3, NULL}, {NULL, 0, NULL}};
 static const bw_config_field solid_fields[] = {
     V(plate_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
     V(plate_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
     V(plate_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "G0"),
     V(plate_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
-    BW_CONFIG_WORD(plate_solid, surface_correction, BW_OPTIONAL, correction_words,
+    BW_CONFIG_WORD(plate_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
                    "stiffness of bonds near edges"),
-    BW_CONFIG_WORD(plate_solid, volume_fraction, BW_OPTIONAL, fraction_words,
+    BW_CONFIG_WORD(plate_solid, volume_fraction, BW_OPTIONAL, bw_pd_bond_fraction_words,
                    "part of a partner within the horizon"),
-    BW_CONFIG_WORD(plate_solid, family_reach, BW_OPTIONAL, reach_words, "who is a partner"),
-    BW_CONFIG_WORD(plate_solid, integrator, BW_OPTIONAL, integrator_words, "in time"),
+    BW_CONFIG_WORD(plate_solid, family_reach, BW_OPTIONAL, bw_pd_bond_reach_words,
+                   "who is a partner"),
+    BW_CONFIG_WORD(plate_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words, "in time"),
     V(plate_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "pairwise damping k_d"),
     BW_CONFIG_END};
 

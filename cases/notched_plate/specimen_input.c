@@ -1,4 +1,5 @@
 /* The case file. */
+#include "bw_pd_bond_words.h"
 #include "specimen.h"
 #include <limits.h>
 #include <math.h>
@@ -26,33 +27,19 @@ static const bw_config_word geometry_words[] = {
     {"plane_strain", BW_PD_PLANE_STRAIN, "1/4"},
     {"solid", BW_PD_3D, "three dimensions, 1/4"},
     {NULL, 0, NULL}};
-static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
-                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
-                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
-                                                  {NULL, 0, NULL}};
-static const bw_config_word fraction_words[] = {
-    {"default", BW_PD_FRACTION_DEFAULT, "exact in 3D, linear in 2D"},
-    {"linear", BW_PD_FRACTION_LINEAR, "POROUS 3.33"},
-    {"exact", BW_PD_FRACTION_EXACT, "part of the cell within the horizon"},
-    {"none", BW_PD_FRACTION_NONE, NULL},
-    {NULL, 0, NULL}};
-static const bw_config_word reach_words[] = {{"half_cell", BW_PD_REACH_HALF_CELL, "horizon + ds/2"},
-                                             {"horizon", BW_PD_REACH_HORIZON, NULL},
-                                             {NULL, 0, NULL}};
-static const bw_config_word integrator_words[] = {
-    {"verlet", BW_PD_VERLET, NULL}, {"rk3", BW_PD_RK3, NULL}, {NULL, 0, NULL}};
 static const bw_config_field solid_fields[] = {
     BW_CONFIG_WORD(specimen_solid, geometry, BW_OPTIONAL, geometry_words, "which mechanics"),
     V(specimen_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
     V(specimen_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
     V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "G0"),
     V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
-    BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, correction_words,
+    BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
                    "stiffness of bonds near edges"),
-    BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, fraction_words,
+    BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, bw_pd_bond_fraction_words,
                    "part of a partner within the horizon"),
-    BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, reach_words, "who is a partner"),
-    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, integrator_words, "in time"),
+    BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, bw_pd_bond_reach_words,
+                   "who is a partner"),
+    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words, "in time"),
     V(specimen_solid, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "spacings",
       "particles off their sites by up to this; 0: a lattice"),
     V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another one: another cloud"),

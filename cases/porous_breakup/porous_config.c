@@ -1,4 +1,5 @@
 #include "bw_coupler_fields.h"
+#include "bw_pd_bond_words.h"
 #include "porous_case.h"
 
 #include <limits.h>
@@ -17,21 +18,16 @@ static const bw_config_field fluid_fields[] = {
       "mean of the Poiseuille inflow"),
     BW_CONFIG_END};
 
-static const bw_config_word correction_words[] = {{"none", BW_PD_SURFACE_NONE, NULL},
-                                                  {"volume", BW_PD_SURFACE_VOLUME, NULL},
-                                                  {"energy", BW_PD_SURFACE_ENERGY, NULL},
-                                                  {NULL, 0, NULL}};
-static const bw_config_word integrator_words[] = {
-    {"verlet", BW_PD_VERLET, NULL}, {"rk3", BW_PD_RK3, NULL}, {NULL, 0, NULL}};
 static const bw_config_field solid_fields[] = {
     V(porous_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
     V(porous_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
     V(porous_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
     V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
     V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "pairwise damping k_d"),
-    BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, correction_words,
+    BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
                    "stiffness of bonds near surfaces"),
-    BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, integrator_words, "of the solid"),
+    BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words,
+                   "of the solid"),
     V(porous_solid, contact, BW_OPTIONAL, BW_ANY, "", "repulsion between fragments"),
     BW_CONFIG_END};
 

@@ -29,7 +29,8 @@ typedef enum { BW_PD_3D, BW_PD_PLANE_STRESS, BW_PD_PLANE_STRAIN } bw_pd_geometry
 typedef enum {
   BW_PD_SURFACE_NONE,
   BW_PD_SURFACE_VOLUME,
-  BW_PD_SURFACE_ENERGY
+  BW_PD_SURFACE_ENERGY,
+  BW_PD_SURFACE_TENSOR /* by direction: every family has the tensor of elasticity (README) */
 } bw_pd_surface_correction;
 typedef enum {
   BW_PD_FRACTION_LINEAR, /* 3.33 with ERRATA 2; refused in 3D */

@@ -23,7 +23,7 @@ void bw_pd_bond__break(bw_pd_bond *pd, bw_pd_block *block, bw_pd_slot *slot, int
   const int32_t h = block->first + lane;
   const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, slot->base + lane);
   const double s = length(pd, h, slot, lane, rest.xi) / rest.r0 - 1;
-  const double alpha = bw_pd_bond__alpha(pd, h, slot->base + lane);
+  const double alpha = bw_pd_bond__alpha(pd, block, slot, lane);
   pd->done_fracture += 0.25 * pd->c0 * alpha * s * s * rest.r0 * rest.fraction * pd->dv * pd->dv;
   slot->mask = (uint8_t)(slot->mask ^ (1u << lane));
   block->broken = true;

@@ -4,11 +4,13 @@
  * is that of elasticity. Fracture: every direction xi holds xi.n Gamma dV/2 of its bonds' energy
  * c0 s^2 |xi| per area of a plane normal to the lattice direction n, so
  *   G0 = 1/2 c0 s0^2 sum_{xi.n > 0} |xi| xi.n Gamma dV.
+ * alpha = 1 but with the correction by tensor, whose factors refer to that c0 always.
  * V0 of the volume method is the full family's own volume: alpha = 1 in the bulk.
  * In a cloud every family differs: the sums are means over many, and of all directions n. */
 #include "pd_bond_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -22,11 +24,12 @@ double bw_pd_bond__classical_dilation(const bw_pd_bond_config *c)
 static void lattice_sums(bw_pd_bond *pd)
 {
   const bw_pd_stencil *s = &pd->stencil;
+  memset(&pd->full, 0, sizeof pd->full);
   for (int q = 0; q < s->n; q++) {
     const double w = s->fraction[q] * pd->dv, along = pd->config.ds * s->offset[3 * q];
     pd->full.volume += w;
     pd->full.moment += w * s->r0[q];
-    pd->full.crossing += along > 0 ? w * s->r0[q] * along : 0;
+    pd->full.crossing += along > 0 ? s->bulk[q] * w * s->r0[q] * along : 0;
   }
 }
 
@@ -44,8 +47,10 @@ static bw_status cloud_sums(bw_pd_bond *pd)
 
 bw_status bw_pd_bond__full_family(bw_pd_bond *pd)
 {
-  if (pd->config.calibration == BW_PD_CALIBRATION_NONE) return BW_OK;
-  if (pd->config.disorder > 0) return cloud_sums(pd);
+  const bw_pd_bond_config *c = &pd->config;
+  if (c->calibration == BW_PD_CALIBRATION_NONE && c->surface_correction != BW_PD_SURFACE_TENSOR)
+    return BW_OK;
+  if (c->disorder > 0) return cloud_sums(pd);
   lattice_sums(pd);
   return BW_OK;
 }
@@ -55,9 +60,11 @@ void bw_pd_bond__calibrate(bw_pd_bond *pd)
 {
   const bw_pd_bond_config *c = &pd->config;
   const double d = pd->horizon;
+  const bool lattice = c->calibration == BW_PD_CALIBRATION_LATTICE;
   pd->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
-  if (c->calibration == BW_PD_CALIBRATION_NONE) return;
+  if (lattice || c->surface_correction == BW_PD_SURFACE_TENSOR)
+    pd->c0 = 4 * bw_pd_bond__classical_dilation(c) / pd->full.moment;
+  if (!lattice) return;
   pd->full_volume = pd->full.volume;
-  pd->c0 = 4 * bw_pd_bond__classical_dilation(c) / pd->full.moment;
   pd->s0 = sqrt(2 * c->G0 / (pd->c0 * pd->full.crossing));
 }

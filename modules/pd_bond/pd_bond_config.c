@@ -122,8 +122,11 @@ bw_status bw_pd_bond__check_config(const bw_pd_bond_config *c)
       "set it to that",
       c->nu, c->geometry == BW_PD_PLANE_STRESS ? "1/3" : "1/4");
   BW_TRY(check_fraction(c));
-  BW_REQUIRE((unsigned)c->surface_correction <= BW_PD_SURFACE_ENERGY, BW_EINPUT,
+  BW_REQUIRE((unsigned)c->surface_correction <= BW_PD_SURFACE_TENSOR, BW_EINPUT,
              "pd_bond: surface_correction = %d is unknown", (int)c->surface_correction);
+  BW_REQUIRE(c->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
+             "pd_bond: surface_correction = tensor is of lattices; with disorder = %g use energy",
+             c->disorder);
   BW_REQUIRE((unsigned)c->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
              "pd_bond: calibration = %d is unknown", (int)c->calibration);
   BW_REQUIRE((unsigned)c->integrator <= BW_PD_RK3, BW_EINPUT, "pd_bond: integrator = %d is unknown",
@@ -155,7 +158,8 @@ void bw_pd_bond__material(bw_pd_bond *pd)
 /* The kernels' constants, once s0 is known. */
 void bw_pd_bond__constants(bw_pd_bond *pd)
 {
-  static const double factor[] = {1, 2, 0.5}; /* none; volume: 2/(w+w); energy: (g+g)/2 */
+  static const double factor[] = {1, 2, 0.5, BW_PD_ALPHA_UNIT}; /* none; volume: 2/(w+w); energy:
+                                                             (g+g)/2; tensor: whole numbers */
   const bw_pd_stencil *s = &pd->stencil;
   const bool cloud = pd->config.disorder > 0;
   for (int q = 0; q < s->n; q++) {

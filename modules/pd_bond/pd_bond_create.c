@@ -13,7 +13,7 @@ bw_status bw_pd_bond__storage_array(size_t n, bw_real **out)
   return BW_OK;
 }
 
-static void release_storage_array(bw_real **array)
+void bw_pd_bond__release_storage_array(bw_real **array)
 {
   if (*array == NULL) return;
   bw_real *base = *array - BW_PD_PAD;
@@ -88,6 +88,7 @@ static bw_status build(bw_pd_bond *pd, int64_t n, const int32_t site[], const ui
   bw_pd_map_destroy(&near);
   BW_TRY(st);
   BW_TRY(bw_pd_bond__surface_factors(pd));
+  if (pd->config.surface_correction == BW_PD_SURFACE_TENSOR) BW_TRY(bw_pd_bond__tensor(pd));
   bw_pd_bond__constants(pd);
   bw_pd_bond__bounds(pd);
   return BW_OK;
@@ -123,6 +124,7 @@ static void release_stencil(bw_pd_stencil *s)
   bw_release(&s->r0);
   bw_release(&s->fraction);
   bw_release(&s->sure);
+  bw_release(&s->bulk);
   bw_release(&s->row);
   bw_release(&s->number);
 }
@@ -134,17 +136,17 @@ void bw_pd_bond_destroy(bw_pd_bond **pd_)
   bw_pd_bond__contact_destroy(pd);
   release_stencil(&pd->stencil);
   bw_exchange_destroy(&pd->halo);
-  void *plain[] = {&pd->site,         &pd->id,     &pd->kind,   &pd->place,      &pd->occupant,
-                   &pd->asked,        &pd->reply,  &pd->answer, &pd->extended_X, &pd->block,
-                   &pd->slot,         &pd->run,    &pd->hit,    &pd->mobile,     &pd->prescribed,
-                   &pd->prescribed_v, &pd->retired};
+  void *plain[] = {&pd->site,         &pd->id,      &pd->kind,   &pd->place,      &pd->occupant,
+                   &pd->asked,        &pd->reply,   &pd->answer, &pd->extended_X, &pd->block,
+                   &pd->slot,         &pd->run,     &pd->hit,    &pd->mobile,     &pd->prescribed,
+                   &pd->prescribed_v, &pd->retired, &pd->alpha};
   for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
     bw_release(plain[q]);
-  release_storage_array(&pd->w);
+  bw_pd_bond__release_storage_array(&pd->w);
   for (int k = 0; k < 3; k++) {
-    release_storage_array(&pd->u[k]);
-    release_storage_array(&pd->vs[k]);
-    release_storage_array(&pd->shift[k]);
+    bw_pd_bond__release_storage_array(&pd->u[k]);
+    bw_pd_bond__release_storage_array(&pd->vs[k]);
+    bw_pd_bond__release_storage_array(&pd->shift[k]);
     void *vector[] = {&pd->v[k],    &pd->a[k],        &pd->f[k],       &pd->extra[k],
                       &pd->damp[k], &pd->v_before[k], &pd->a_before[k]};
     for (size_t q = 0; q < sizeof vector / sizeof *vector; q++)

@@ -16,6 +16,12 @@ typedef struct {
   vec force, inverse2;
 } coefficients;
 
+/* The bonds' own factors in units of the row's stiffness. */
+INLINE vec stored(const sweep *s, const bw_pd_slot *slot)
+{
+  return vec_whole(s->alpha + (slot - s->slot) * BW_PD_LANES);
+}
+
 INLINE coefficients cloud_coefficient(const sweep *s, const bw_pd_slot *slot, const bw_real *row,
                                       const bond *x, vec wh, bw_pd_surface_correction surface)
 {
@@ -43,8 +49,9 @@ INLINE coefficients coefficient(const sweep *s, const bw_pd_slot *slot, const bw
     return (coefficients){k * q * vec_fma(q, t, minus_r0), qs * qs};
   }
   const vec q = vec_rsqrt(r2), c = k * vec_fma(minus_r0, q, vec_all(1));
-  return (coefficients){surface == BW_PD_SURFACE_NONE ? c : c * (wh + vec_load(s->w + slot->base)),
-                        q * q};
+  if (surface == BW_PD_SURFACE_NONE) return (coefficients){c, q * q};
+  if (surface == BW_PD_SURFACE_TENSOR) return (coefficients){c * stored(s, slot), q * q};
+  return (coefficients){c * (wh + vec_load(s->w + slot->base)), q * q};
 }
 
 /* Adds the pair damping of a slot (3.41, ERRATA 4): along the bond, like the force. */
@@ -123,6 +130,8 @@ typedef size_t (*sweep_function)(const sweep *, size_t, uint32_t[]);
 ALL(plain, BW_PD_SURFACE_NONE)
 ALL(volume, BW_PD_SURFACE_VOLUME)
 ALL(energy, BW_PD_SURFACE_ENERGY)
+FOUR(tensor_2, 2, false, BW_PD_SURFACE_TENSOR)
+FOUR(tensor_3, 3, false, BW_PD_SURFACE_TENSOR)
 
 #define ROW(name)                                                                                  \
   {                                                                                                \
@@ -138,7 +147,8 @@ ALL(energy, BW_PD_SURFACE_ENERGY)
       ROW(name##_cloud_2), ROW(name##_cloud_3)                                                     \
     }                                                                                              \
   }
-static const sweep_function function[3][2][2][2][2] = {ROWS(plain), ROWS(volume), ROWS(energy)};
+static const sweep_function function[4][2][2][2][2] = {
+    ROWS(plain), ROWS(volume), ROWS(energy), {{ROW(tensor_2), ROW(tensor_3)}}};
 
 void bw_pd_bond__force(bw_pd_bond *pd, bool check, bool damping)
 {
@@ -226,7 +236,9 @@ double bw_pd_bond__elastic_of(const bw_pd_bond *pd, const bw_pd_block *block, ui
     const vec both = wh + vec_load(s.w + s.slot[q].base);
     const vec alpha = pd->config.surface_correction == BW_PD_SURFACE_VOLUME   ? 1 / both
                       : pd->config.surface_correction == BW_PD_SURFACE_ENERGY ? both
-                                                                              : vec_all(1);
+                      : pd->config.surface_correction == BW_PD_SURFACE_TENSOR
+                          ? stored(&s, &s.slot[q])
+                          : vec_all(1);
     const vec stretch = x.r2 * vec_rsqrt(x.r2) - r0;
     sum += vec_keep(lanes_of(s.slot[q].mask & lanes_asked), k * alpha * stretch * stretch);
   }

@@ -29,6 +29,9 @@
 #define BW_PD_LANES BW_PD_NARROW
 #endif
 
+/* Unit of the stored factors of bonds (surface correction `tensor`): 2^-14, 0 .. 4. */
+#define BW_PD_ALPHA_UNIT (1.0 / 16384)
+
 enum {
   BW_PD_PAD = 16, /* unused places before and after a storage array: loads may overrun */
   BW_PD_ROW = 8   /* constants of one direction in the kernels, see bw_pd_bond__constants */
@@ -38,7 +41,8 @@ enum {
 enum {
   BW_PD_XI = 0,        /* 0..2: xi */
   BW_PD_R0 = 3,        /* |xi| */
-  BW_PD_STIFFNESS = 4, /* c0 Gamma dV / (rho |xi|), times 2 (volume) or 1/2 (energy correction) */
+  BW_PD_STIFFNESS = 4, /* c0 Gamma dV / (rho |xi|), times 2 (volume), 1/2 (energy correction)
+                          or BW_PD_ALPHA_UNIT (tensor) */
   BW_PD_LIMIT2 = 5,    /* (|xi| (1 + s0))^2 */
   BW_PD_WEIGHT = 6,    /* Gamma dV; in a cloud the last three are without Gamma and |xi| */
   BW_PD_MINUS_R0 = 7   /* -|xi| */
@@ -59,6 +63,7 @@ typedef struct {
   double *r0;       /* (n) |xi| [L] */
   double *fraction; /* (n) Gamma */
   bool *sure;       /* (n) */
+  double *bulk;     /* (n) alpha of a full family: 1, unless the correction is by tensor */
   bw_real *row;     /* (n, BW_PD_ROW) */
   int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
 } bw_pd_stencil;
@@ -128,6 +133,7 @@ struct bw_pd_bond {
   size_t n_block, n_slot, n_run;
   bw_pd_block *block; /* (n_block + 1) */
   bw_pd_slot *slot;   /* (n_slot) */
+  uint16_t *alpha;    /* (n_slot, BW_PD_LANES) factors of bonds, correction by tensor only */
   bw_pd_run *run;     /* (n_run) */
   uint32_t *hit;      /* (n_block) blocks where a bond is beyond s0 */
   size_t n_hit;
@@ -159,6 +165,7 @@ struct bw_pd_bond {
 
 /* pd_bond_create.c: zeros, with BW_PD_PAD more before and after */
 bw_status bw_pd_bond__storage_array(size_t n, bw_real **out);
+void bw_pd_bond__release_storage_array(bw_real **array);
 
 /* pd_bond_config.c */
 bw_status bw_pd_bond__check_config(const bw_pd_bond_config *config);
@@ -212,7 +219,11 @@ void bw_pd_bond__fill_places(bw_pd_bond *pd, bw_real *places);
 bw_status bw_pd_bond__slots(bw_pd_bond *pd, const bw_pd_map *near);
 void bw_pd_bond__bounds(bw_pd_bond *pd);
 bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd);
-double bw_pd_bond__alpha(const bw_pd_bond *pd, int32_t h, int32_t l);
+double bw_pd_bond__alpha(const bw_pd_bond *pd, const bw_pd_block *block, const bw_pd_slot *slot,
+                         int lane);
+
+/* pd_bond_tensor.c: pd->alpha, stencil.bulk. Collective. */
+bw_status bw_pd_bond__tensor(bw_pd_bond *pd);
 
 /* pd_bond_force.c: a = L/rho; with check notes the blocks with a bond beyond s0; with damping fills
  * damp with the pair damping */

@@ -194,15 +194,18 @@ bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd)
   return st;
 }
 
-/* alpha of the bond between the storage places h and l (3.43). */
-double bw_pd_bond__alpha(const bw_pd_bond *pd, int32_t h, int32_t l)
+/* alpha of the bond of a lane of a slot (3.43). */
+double bw_pd_bond__alpha(const bw_pd_bond *pd, const bw_pd_block *block, const bw_pd_slot *slot,
+                         int lane)
 {
-  const double sum = (double)pd->w[h] + (double)pd->w[l];
+  const double sum = (double)pd->w[block->first + lane] + (double)pd->w[slot->base + lane];
   switch (pd->config.surface_correction) {
   case BW_PD_SURFACE_VOLUME:
     return 2 / sum;
   case BW_PD_SURFACE_ENERGY:
     return sum / 2;
+  case BW_PD_SURFACE_TENSOR:
+    return BW_PD_ALPHA_UNIT * pd->alpha[(slot - pd->slot) * BW_PD_LANES + lane];
   default:
     return 1;
   }
@@ -221,7 +224,7 @@ void bw_pd_bond__bounds(bw_pd_bond *pd)
         const int32_t h = pd->block[b].first + lane, l = slot->base + lane;
         const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
         const double w = rest.fraction * pd->dv;
-        stiffness += pd->c0 * bw_pd_bond__alpha(pd, h, l) * w / rest.r0;
+        stiffness += pd->c0 * bw_pd_bond__alpha(pd, &pd->block[b], slot, lane) * w / rest.r0;
         weight += w;
       }
       most[0] = fmax(most[0], stiffness);

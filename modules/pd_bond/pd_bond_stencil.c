@@ -109,6 +109,7 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
   BW_TRY(BW_ALLOCATE(&s->r0, n));
   BW_TRY(BW_ALLOCATE(&s->fraction, n));
   BW_TRY(BW_ALLOCATE(&s->sure, n));
+  BW_TRY(BW_ALLOCATE(&s->bulk, n));
   BW_TRY(BW_ALLOCATE(&s->row, n * BW_PD_ROW));
   BW_TRY(BW_ALLOCATE(&s->number, cells));
   list_offsets(pd, s);
@@ -125,6 +126,7 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
     s->r0[q] = c->ds * sqrt(r2);
     s->sure[q] = in_reach(c, o, -2 * c->disorder);
     s->n_sure += s->sure[q];
+    s->bulk[q] = 1;
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
         (int16_t)q;
   }

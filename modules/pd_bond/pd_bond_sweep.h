@@ -12,6 +12,7 @@
 typedef struct {
   const bw_pd_block *block;
   const bw_pd_slot *slot;
+  const uint16_t *alpha;                           /* (slots, BW_PD_LANES) or NULL */
   const bw_real *row, *u[3], *shift[3], *w, *v[3]; /* storage */
   bw_real *a[3], *damp[3];                         /* own */
   bw_real pair;                                    /* k_d/rho */
@@ -27,6 +28,7 @@ INLINE sweep sweep_of(const bw_pd_bond *pd)
                  .u = {pd->u[0], pd->u[1], pd->u[2]},
                  .shift = {pd->shift[0], pd->shift[1], pd->shift[2]},
                  .w = pd->w,
+                 .alpha = pd->alpha,
                  .v = {pd->vs[0], pd->vs[1], pd->vs[2]},
                  .a = {pd->a[0], pd->a[1], pd->a[2]},
                  .damp = {pd->damp[0], pd->damp[1], pd->damp[2]},

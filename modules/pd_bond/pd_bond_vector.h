@@ -37,6 +37,21 @@ static inline vec vec_all(bw_real x)
 #endif
 }
 
+/* Whole numbers. */
+static inline vec vec_whole(const uint16_t *from)
+{
+#if defined(__AVX512VL__) && defined(BW_SINGLE)
+  return (vec)_mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)from)));
+#elif defined(__AVX512VL__)
+  return (vec)_mm512_cvtepi32_pd(_mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)from)));
+#else
+  vec x;
+  for (int k = 0; k < BW_PD_LANES; k++)
+    x[k] = from[k];
+  return x;
+#endif
+}
+
 static inline double vec_sum(vec x)
 {
   double sum = 0;

@@ -40,7 +40,8 @@ void bw_pd_bond_set_prescribed(bw_pd_bond *pd, const double V[])
 
 size_t bw_pd_bond_list_bytes(const bw_pd_bond *pd)
 {
-  return pd->n_slot * sizeof *pd->slot + (pd->n_block + 1) * sizeof *pd->block;
+  const size_t factors = pd->alpha != NULL ? BW_PD_LANES * sizeof *pd->alpha : 0;
+  return pd->n_slot * (sizeof *pd->slot + factors) + (pd->n_block + 1) * sizeof *pd->block;
 }
 
 size_t bw_pd_bond_count(const bw_pd_bond *pd)

@@ -25,7 +25,7 @@ static void block_product(const bw_pd_bond *pd, const solver *s, const bw_pd_blo
       for (int k = 0; k < 3; k++)
         along += rest.xi[k] * ((double)s->copy[k][h] - (double)s->copy[k][l]);
       along *= pd->c0 * rest.fraction * pd->dv / (rest.r0 * rest.r0 * rest.r0) *
-               bw_pd_bond__alpha(pd, h, l);
+               bw_pd_bond__alpha(pd, block, slot, lane);
       for (int k = 0; k < 3; k++)
         sum[lane][k] += along * rest.xi[k];
     }

@@ -34,7 +34,7 @@ void bw_pd_static__masses(const bw_pd_bond *pd, double mass[])
         if (!(slot->mask >> lane & 1)) continue;
         const int32_t h = block->first + lane, l = slot->base + lane;
         const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
-        sum += bw_pd_bond__alpha(pd, h, l) * rest.fraction / rest.r0;
+        sum += bw_pd_bond__alpha(pd, block, slot, lane) * rest.fraction / rest.r0;
       }
       sum *= 0.5 * pd->c0 * pd->dv;
       mass[bw_pd_bond__owner(block, lane)] = sum > 0 ? sum : 0.5 * pd->sum_stiffness + 1e-300;

@@ -40,7 +40,8 @@ static void block_sums(const bw_pd_bond *pd, const bw_pd_block *block, int lane,
     double y[3];
     for (int k = 0; k < 3; k++)
       y[k] = rest.xi[k] + ((double)pd->u[k][l] - (double)pd->u[k][h]);
-    add_bond(sum, &rest, y, rest.fraction * pd->dv, pd->c0 * bw_pd_bond__alpha(pd, h, l));
+    add_bond(sum, &rest, y, rest.fraction * pd->dv,
+             pd->c0 * bw_pd_bond__alpha(pd, block, slot, lane));
   }
 }
 

@@ -49,6 +49,7 @@ static bw_pd_bond_config breaking(int way)
   c.G0 = 0.003;
   c.damping_pair = damped ? 0.02 : 0;
   c.damping_mean = damped ? 0.01 : 0;
+  c.surface_correction = way == 1 ? BW_PD_SURFACE_TENSOR : BW_PD_SURFACE_VOLUME;
   c.integrator = damped ? BW_PD_VERLET : BW_PD_RK3;
   c.disorder = way < 2 ? 0 : 0.3;
   return c;

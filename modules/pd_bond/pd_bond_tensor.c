@@ -1,0 +1,271 @@
+/* The surface correction `tensor`: one factor per bond, from linear algebra on the families.
+ *
+ * A family under a homogeneous strain eps stores 1/2 eps:M:eps and pulls its particle by A:eps,
+ *   M = 1/2 c0 sum_l alpha e e e e |xi| Gamma dV,   A = c0 sum_l alpha e e e Gamma dV.
+ * M ought to be the tensor of elasticity. A ought to be what a traction needs: sigma.a for some
+ * vector a, a particle's share of the body's face; as the tensor of bonds is symmetric in all
+ * indices that says that the part of A without trace (spherical harmonics of order 3) vanishes.
+ * Then a homogeneous strain with sigma.n = 0 on the faces is a state of rest with the energy
+ * of elasticity, whatever the thickness. So: the smallest change
+ *   sum_bonds Gamma (alpha - 1)^2 -> min   with   LOW <= alpha <= HIGH,
+ *   sum_l alpha_hl phi_k(xi) Gamma = T_k at every particle h, k = 1 .. K,
+ * phi: the 15 monomials of degree 4 (2D: 5) and the 7 harmonics of degree 3 (2D: 2) of the
+ * direction, made orthonormal over the full family. With multipliers lambda(h)
+ *   alpha_hl = clip(1 + 1/2 (lambda(h).phi(xi) + lambda(l).phi(-xi))),
+ * the same from both ends; lambda follows by ascent of the dual problem with Nesterov's momentum,
+ *   lambda += T - sum alpha phi Gamma:
+ * orthonormal phi bound the step by 1. What corners, single sheets and rods cannot meet stays a
+ * residual there, between the bounds. The number of sweeps is fixed and nothing is summed over
+ * particles: the factors are the same to the last bit on any number of ranks. */
+#include "bw_memory.h"
+#include "pd_bond_sweep.h"
+
+enum { EVEN = 15, MOST = 22, SWEEPS = 60 };
+static const double LOW = 0.25, HIGH = 65535 * BW_PD_ALPHA_UNIT;
+
+typedef struct {
+  int n;               /* conditions K */
+  bw_real *phi;        /* (directions, K) */
+  double target[MOST]; /* T */
+  double full[MOST];   /* lambda of a full family */
+  bw_real *at[MOST];   /* storage: lambda with momentum */
+  bw_real *last[MOST]; /* own: lambda of the sweep before */
+} solver;
+
+/* Mean of x^a y^b z^c over the directions: (a-1)!! (b-1)!! (c-1)!!/(d (d + 2)), degree 4. */
+static double isotropic(const int power[3], int dimension)
+{
+  static const double odd_factorial[] = {1, 0, 1, 0, 3};
+  double mean = 1.0 / (dimension * (dimension + 2));
+  for (int k = 0; k < 3; k++)
+    mean *= odd_factorial[power[k]];
+  return mean;
+}
+
+/* Exponents of the monomials of degree 4; returns how many. */
+static int monomials(int dimension, int power[EVEN][3])
+{
+  int n = 0;
+  for (int a = 0; a <= 4; a++)
+    for (int b = 0; a + b <= 4; b++) {
+      const int c = 4 - a - b;
+      if (dimension == 2 && c > 0) continue;
+      power[n][0] = a, power[n][1] = b, power[n][2] = c;
+      n++;
+    }
+  return n;
+}
+
+/* Harmonics of degree 3 of the unit vector e; returns how many. */
+static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
+{
+  const double x = e[0], y = e[1], z = e[2];
+  if (dimension == 2) {
+    out[0] = x * (x * x - 3 * y * y);
+    out[1] = y * (y * y - 3 * x * x);
+    return 2;
+  }
+  out[0] = x * y * z;
+  for (int k = 0; k < 3; k++) {
+    const double p = e[k], q = e[(k + 1) % 3], r = e[(k + 2) % 3];
+    out[1 + k] = p * (q * q - r * r);
+    out[4 + k] = p * (5 * p * p - 3);
+  }
+  return MOST - EVEN;
+}
+
+/* The conditions of direction q, not yet orthonormal; returns K. Distances in ds. */
+static int conditions(const bw_pd_bond *pd, int q, double f[MOST])
+{
+  const bw_pd_stencil *s = &pd->stencil;
+  const double r = s->r0[q] / pd->config.ds;
+  int power[EVEN][3];
+  double e[3];
+  for (int k = 0; k < 3; k++)
+    e[k] = s->offset[3 * q + k] / r;
+  const int n = monomials(pd->dimension, power);
+  for (int k = 0; k < n; k++)
+    f[k] = r * pow(e[0], power[k][0]) * pow(e[1], power[k][1]) * pow(e[2], power[k][2]);
+  return n + harmonics(pd->dimension, e, f + n);
+}
+
+/* One vector of the basis: f (directions) and its target less their parts along the `n` ones
+ * there are, normalised. False: nothing is left, the condition follows from the others. */
+static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, const double target[],
+                        double f[], double *t)
+{
+  double before = 0, norm = 0;
+  for (int q = 0; q < s->n; q++)
+    before += s->fraction[q] * f[q] * f[q];
+  for (int k = 0; k < n; k++) {
+    const double *b = basis + (size_t)k * (size_t)s->n;
+    double along = 0;
+    for (int q = 0; q < s->n; q++)
+      along += s->fraction[q] * b[q] * f[q];
+    for (int q = 0; q < s->n; q++)
+      f[q] -= along * b[q];
+    *t -= along * target[k];
+  }
+  for (int q = 0; q < s->n; q++)
+    norm += s->fraction[q] * f[q] * f[q];
+  if (!(norm > 1e-9 * before)) return false;
+  for (int q = 0; q < s->n; q++)
+    f[q] /= sqrt(norm);
+  *t /= sqrt(norm);
+  return true;
+}
+
+/* phi, T and the multipliers of a full family, whose factors 1 + full.phi go to stencil.bulk. */
+static bw_status basis(bw_pd_bond *pd, solver *v)
+{
+  bw_pd_stencil *s = &pd->stencil;
+  const size_t n = (size_t)s->n;
+  double *rows = NULL, total = 0;
+  int power[EVEN][3], all = MOST;
+  const int even = monomials(pd->dimension, power);
+  BW_TRY(BW_ALLOCATE(&rows, MOST * n));
+  for (int q = 0; q < s->n; q++) {
+    double f[MOST];
+    all = conditions(pd, q, f);
+    for (int k = 0; k < all; k++)
+      rows[(size_t)k * n + (size_t)q] = f[k];
+    total += s->fraction[q] * s->r0[q] / pd->config.ds;
+  }
+  for (int k = 0; k < all; k++) {
+    double *f = rows + (size_t)v->n * n,
+           t = k < even ? total * isotropic(power[k], pd->dimension) : 0;
+    memmove(f, rows + (size_t)k * n, n * sizeof *f);
+    if (!orthonormal(s, rows, v->n, v->target, f, &t)) continue;
+    v->target[v->n] = v->full[v->n] = t;
+    for (int q = 0; q < s->n; q++)
+      v->full[v->n] -= s->fraction[q] * f[q];
+    v->n++;
+  }
+  const bw_status st = BW_ALLOCATE(&v->phi, n * (size_t)v->n);
+  for (int k = 0; k < v->n && st == BW_OK; k++)
+    for (size_t q = 0; q < n; q++) {
+      v->phi[q * (size_t)v->n + (size_t)k] = (bw_real)rows[(size_t)k * n + q];
+      s->bulk[q] += v->full[k] * rows[(size_t)k * n + q];
+    }
+  bw_release(&rows);
+  return st;
+}
+
+static vec clipped(vec x)
+{
+  const vec low = vec_all((bw_real)LOW), high = vec_all((bw_real)HIGH);
+  const lanes above = vec_above(x, high), below = vec_above(low, x);
+  return vec_keep(above, high) + vec_keep(below, low) + vec_keep((lanes) ~(above | below), x);
+}
+
+/* The factors of a slot. Both ends do the same operations on the same numbers. */
+INLINE vec factors(const bw_pd_bond *pd, const solver *v, const bw_pd_block *block,
+                   const bw_pd_slot *slot, int n)
+{
+  const bw_real *phi = v->phi + slot->direction * n;
+  const bw_real *back = v->phi + (pd->stencil.n - 1 - slot->direction) * n;
+  vec mine = vec_all(0), other = vec_all(0);
+  for (int k = 0; k < n; k++) {
+    mine = vec_fma(vec_all(phi[k]), vec_load(v->at[k] + block->first), mine);
+    other = vec_fma(vec_all(back[k]), vec_load(v->at[k] + slot->base), other);
+  }
+  return clipped(vec_all(1) + (mine + other) * (bw_real)0.5);
+}
+
+/* Ascent of one block's multipliers, to `next` (own): copies and neighbours still read the old. */
+INLINE void ascend(const bw_pd_bond *pd, const solver *v, const bw_pd_block *block,
+                   bw_real *const next[], int n)
+{
+  vec rest[MOST];
+  for (int k = 0; k < n; k++)
+    rest[k] = vec_all((bw_real)v->target[k]);
+  for (uint32_t q = block->slot; q < block[1].slot; q++) {
+    const bw_pd_slot *slot = &pd->slot[q];
+    const bw_real *phi = v->phi + slot->direction * n;
+    const vec alpha = vec_keep(lanes_of(slot->family), factors(pd, v, block, slot, n)) *
+                      (bw_real)pd->stencil.fraction[slot->direction];
+    for (int k = 0; k < n; k++)
+      rest[k] = vec_fnma(vec_all(phi[k]), alpha, rest[k]);
+  }
+  for (int k = 0; k < n; k++)
+    vec_put_owners(block, vec_load(v->at[k] + block->first) + rest[k], next[k]);
+}
+
+/* All blocks; K is known when this is compiled. */
+static void ascend_all(const bw_pd_bond *pd, const solver *v, bw_real *const next[])
+{
+  for (size_t b = 0; b < pd->n_block; b++)
+    if (v->n == MOST)
+      ascend(pd, v, &pd->block[b], next, MOST);
+    else
+      ascend(pd, v, &pd->block[b], next, v->n);
+}
+
+/* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
+static void solve(bw_pd_bond *pd, solver *v, bw_real *const next[])
+{
+  double t = 1;
+  for (int pass = 0; pass < SWEEPS; pass++) {
+    const double after = (1 + sqrt(1 + 4 * t * t)) / 2;
+    const bw_real momentum = (bw_real)((t - 1) / after);
+    t = after;
+    ascend_all(pd, v, next);
+    for (int k = 0; k < v->n; k++) {
+      for (size_t i = 0; i < pd->n; i++) {
+        if (pd->kind[i] & BW_PD_PRESCRIBED) continue;
+        v->at[k][pd->place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
+        v->last[k][i] = next[k][i];
+      }
+      bw_pd_bond__fill_places(pd, v->at[k]);
+    }
+  }
+}
+
+/* The factors of all slots, in units of BW_PD_ALPHA_UNIT. */
+static void store(bw_pd_bond *pd, const solver *v)
+{
+  for (size_t b = 0; b < pd->n_block; b++)
+    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
+      const vec alpha = factors(pd, v, &pd->block[b], &pd->slot[q], v->n);
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        pd->alpha[(size_t)q * BW_PD_LANES + (size_t)lane] =
+            (uint16_t)lround((double)alpha[lane] / BW_PD_ALPHA_UNIT);
+    }
+}
+
+static bw_status solver_arrays(const bw_pd_bond *pd, solver *v, bw_real *next[])
+{
+  for (int k = 0; k < v->n; k++) {
+    BW_TRY(bw_pd_bond__storage_array(pd->n_storage, &v->at[k]));
+    BW_TRY(BW_ALLOCATE(&v->last[k], pd->n));
+    BW_TRY(BW_ALLOCATE(&next[k], pd->n));
+    for (size_t p = 0; p < pd->n_storage; p++)
+      v->at[k][p] = (bw_real)v->full[k];
+    for (size_t i = 0; i < pd->n; i++)
+      v->last[k][i] = (bw_real)v->full[k];
+  }
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__tensor(bw_pd_bond *pd)
+{
+  solver v = {0};
+  bw_real *next[MOST] = {NULL};
+  bw_status st = basis(pd, &v);
+  BW_THEN(st, solver_arrays(pd, &v, next));
+  BW_THEN(st, BW_ALLOCATE(&pd->alpha, pd->n_slot * BW_PD_LANES));
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) {
+    solve(pd, &v, next);
+    store(pd, &v);
+    st = bw_pd_bond__full_family(pd); /* the energy of a crack holds the factors */
+    bw_pd_bond__calibrate(pd);
+  }
+  for (int k = 0; k < MOST; k++) {
+    bw_pd_bond__release_storage_array(&v.at[k]);
+    bw_release(&v.last[k]);
+    bw_release(&next[k]);
+  }
+  bw_release(&v.phi);
+  return st;
+}

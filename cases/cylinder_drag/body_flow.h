@@ -15,12 +15,15 @@ typedef struct {
   bw_ns_channel *fluid;
   bw_ibm_mdf *body;
   bw_real *pressure; /* that acted over the last step, see body_flow_step */
+  bw_real *drive[3]; /* acceleration of the fluid at the points of u [L/T^2]; NULL: none */
   double dt;
 } body_flow;
 
 static inline void body_flow_destroy(body_flow *f)
 {
   bw_release(&f->pressure);
+  for (int d = 0; d < 3; d++)
+    bw_release(&f->drive[d]);
   bw_ibm_mdf_destroy(&f->body);
   bw_ns_channel_destroy(&f->fluid);
   bw_grid_destroy(&f->grid);
@@ -75,12 +78,16 @@ static inline bw_status body_flow_step(body_flow *f)
 {
   static const double gamma[3] = {8.0 / 15.0, 2.0 / 15.0, 1.0 / 3.0}; /* bw_ns_channel.h */
   const bw_real *p = bw_ns_channel_pressure(f->fluid);
+  bw_real *const *u = bw_ns_channel_velocity(f->fluid);
   const size_t size = bw_grid_look(f->grid)->size;
   BW_TRY(bw_ns_channel_check(f->fluid, f->dt));
   bw_ibm_mdf_begin_step(f->body);
   for (int r = 0; r < 3; r++) {
     bw_ns_channel_predict(f->fluid, r, f->dt);
-    bw_ibm_mdf_force(f->body, bw_ns_channel_velocity(f->fluid), f->dt);
+    for (int d = 0; d < 3; d++) /* halos too: predict leaves them valid */
+      for (size_t q = 0; f->drive[d] != NULL && q < size; q++)
+        u[d][q] += (bw_real)(gamma[r] * f->dt) * f->drive[d][q];
+    bw_ibm_mdf_force(f->body, u, f->dt);
     bw_ns_channel_project(f->fluid, r, f->dt);
     for (size_t q = 0; q < size; q++)
       f->pressure[q] = (r == 0 ? 0 : f->pressure[q]) + (bw_real)gamma[r] * p[q];

@@ -8,7 +8,7 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
 {
   count[0] = count[1] = 0;
   for (size_t q = 0; q < c->n_surface; q++) {
-    count[0] += c->flag[q] == BW_PROBE_SHORTENED;
+    count[0] += c->flag[q] == BW_PROBE_SHORTENED || c->flag[q] == BW_PROBE_CROWDED;
     count[1] += c->flag[q] == BW_PROBE_BLOCKED;
   }
 }

@@ -13,9 +13,10 @@
  *                       surface, which turns with a given spin; values at the tip are those of
  *                       the parabola through the nearest nodes. Exact for parabolas, second
  *                       order in dl on curved walls too.
- * A probe whose stencil leaves the box through a side that is not periodic, or whose tip lies in
- * another solid (bw_probe_set_obstacles), is shortened once to dl = h and flagged; when that does
- * not help either its traction is zero and it is flagged blocked. Never silently wrong.
+ * What is in the way is noticed between h and one h ahead of the tip, also a wall thinner than
+ * the probe is long (bw_probe_set_obstacles), and flagged (bw_probe_flag): a probe is shortened
+ * until h is free ahead of its tip. A tip whose stencil leaves the box through a side that is not
+ * periodic is tried at dl = h. Never silently wrong: error in gaps in README.
  * h is the largest spacing. Grid: uniform, halo 2. Kernels whose differences reach beyond the
  * halo (more than three nodes) are refused.
  * Shapes: vectors (n,3) row-major. Points are sent to the ranks that own their tips' cells. */
@@ -40,12 +41,17 @@ bw_status bw_probe_create(bw_grid *grid, const bw_probe_config *config,
                           bw_probe **out) BW_MUST_CHECK;
 void bw_probe_destroy(bw_probe **probe); /* NULL is fine. Collective. */
 
-typedef enum { BW_PROBE_FREE, BW_PROBE_SHORTENED, BW_PROBE_BLOCKED } bw_probe_flag;
+typedef enum {
+  BW_PROBE_FREE,
+  BW_PROBE_SHORTENED, /* h <= dl < full: something is within full + h of the surface */
+  BW_PROBE_BLOCKED,   /* something is within h: no traction (zero) */
+  BW_PROBE_CROWDED    /* dl = h and something is within 1.75 h: the traction may be too small */
+} bw_probe_flag;
 
-/* Where the next bw_probe_set_points may not put a tip: a cell-centred field with valid halos,
- * 1 in cells of a solid and 0 in the fluid; a tip where its interpolated value exceeds 1/2 is in
- * the way. NULL: nothing is in the way. Borrowed until replaced; read by bw_probe_set_points
- * only. All ranks give a field or none does. Local. */
+/* What the next bw_probe_set_points has to avoid: a cell-centred field with valid halos, 1 in
+ * cells of a solid and 0 in the fluid (above 1/2 counts). Looked at from h off the surface on.
+ * NULL: nothing is in the way. Borrowed until replaced; read by bw_probe_set_points only. All
+ * ranks give a field or none does. Local. */
 void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid);
 
 /* Replace the surface points: position X [L], unit normal N into the fluid (n,3); copied.

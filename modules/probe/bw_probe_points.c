@@ -104,10 +104,50 @@ static void fit_into_box(bw_probe *b, const double X[])
     const bool full = place_tip(b->g, x, n, b->full, tip);
     const bool some = full || place_tip(b->g, x, n, b->h, tip);
     b->length[i] = full ? b->full : some ? b->h : 0.0;
+    b->flag[i] = full ? BW_PROBE_FREE : some ? BW_PROBE_SHORTENED : BW_PROBE_BLOCKED;
   }
 }
 
-/* Try both lengths of every probe against the obstacles. */
+/* Is there an obstacle `along` the normal from a tip of this rank, at most 1.5 h away? */
+static bool obstructed(const bw_probe *b, const bw_probe__item *item, double along)
+{
+  const bw_grid_view *g = b->g;
+  int cell[3] = {1, 1, 1};
+  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++) {
+    const double x = item->tip[d] + along * item->normal[d];
+    const int i = (int)floor(x / g->spacing[d]) + 1 - g->lo[d], most = g->m[d] + g->halo[d];
+    if (!g->periodic[d] && (x < 0.0 || x > g->length[d])) return false;
+    cell[d] = i < 1 - g->halo[d] ? 1 - g->halo[d] : i > most ? most : i;
+  }
+  return (double)b->obstacles[bw_at(g, cell[0], cell[1], cell[2])] > 0.5;
+}
+
+/* From a tip, the nearest obstacle ahead (at most 1.5 h) and behind, in steps of h/4 [L]. */
+static void look_around(const bw_probe *b, const bw_probe__item *item, double *ahead,
+                        double *behind)
+{
+  enum { LOOKS = 6 };
+  *ahead = *behind = HUGE_VAL;
+  for (int q = LOOKS; q >= 0; q--) {
+    const double s = 0.25 * q * b->h;
+    if (obstructed(b, item, s)) *ahead = s;
+    if (obstructed(b, item, -s)) *behind = s;
+  }
+}
+
+/* A probe reads what is up to 1.5 h around its tip, most of it within h: its length is such that
+ * nothing is within h ahead of the tip. `wall`: where the first obstacle was seen, from the root;
+ * known to h/4, and cells tell where a solid is to half of them. */
+static void shorten(bw_probe *b, size_t i, double wall)
+{
+  if (wall >= b->length[i] + b->h) return;
+  b->length[i] = wall > b->h ? fmax(b->h, wall - 1.25 * b->h) : 0.0;
+  b->flag[i] = wall > 1.75 * b->h ? BW_PROBE_SHORTENED
+               : wall > b->h      ? BW_PROBE_CROWDED
+                                  : BW_PROBE_BLOCKED;
+}
+
+/* Look for obstacles between h and one h ahead of every tip, from the tip and from a distance h. */
 static bw_status avoid_obstacles(bw_probe *b, const double X[])
 {
   b->n_sent = 0;
@@ -116,22 +156,18 @@ static bw_status avoid_obstacles(bw_probe *b, const double X[])
     if (b->length[i] > 0.0) send_tip(b, i, X + 3 * i, b->h);
   }
   BW_TRY(route(b));
-  for (size_t q = 0; q < b->held; q++) {
-    bw_probe__tip tip;
-    bw_probe__weigh(b, b->received[q].tip, &tip);
-    b->reply[q].p.value = bw_probe__evaluate(b, b->obstacles, 3, &tip).value;
-  }
+  for (size_t q = 0; q < b->held; q++)
+    look_around(b, &b->received[q], &b->reply[q].p.value, &b->reply[q].p.slope);
   bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
-  /* the first free tip of a point, the long one coming first */
-  for (size_t i = 0, s = 0; i < b->n; i++) {
-    const double longest = b->length[i];
-    bool free = false;
-    for (double dl = longest; s < b->n_sent && b->sent_from[s] == i; s++, dl = b->h)
-      if (!free && b->answer[s].p.value <= 0.5) {
-        free = true;
-        b->length[i] = dl;
-      }
-    if (!free) b->length[i] = 0.0;
+  for (size_t s = 0; s < b->n_sent;) {
+    const size_t i = b->sent_from[s];
+    const double dl = b->length[i], seen = 2.5 * b->h;
+    double wall = HUGE_VAL;
+    if (dl > b->h) { /* the long one first; what it sees behind it, if the short one does not */
+      const bw_probe__along *far = &b->answer[s++].p;
+      wall = dl - far->slope > seen ? seen : dl + far->value;
+    }
+    shorten(b, i, fmin(wall, b->h + b->answer[s++].p.value));
   }
   return BW_OK;
 }
@@ -150,9 +186,7 @@ bw_status bw_probe_set_points(bw_probe *b, size_t n, const double X[], const dou
   if (b->obstacles != NULL) BW_TRY(avoid_obstacles(b, X));
   b->n_sent = 0;
   for (size_t i = 0; i < n; i++) {
-    const double dl = b->length[i];
-    b->flag[i] = dl >= b->full ? BW_PROBE_FREE : dl > 0.0 ? BW_PROBE_SHORTENED : BW_PROBE_BLOCKED;
-    if (dl > 0.0) send_tip(b, i, X + 3 * i, dl);
+    if (b->length[i] > 0.0) send_tip(b, i, X + 3 * i, b->length[i]);
   }
   return route(b);
 }

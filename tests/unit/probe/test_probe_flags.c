@@ -37,42 +37,69 @@ START_TEST(box_sides_shorten_and_block)
 }
 END_TEST
 
-/* Another solid fills x > 1.8; a point looks at it across a gap. */
-START_TEST(obstacles_shorten_and_block)
+typedef struct {
+  double gap; /* in cells */
+  unsigned char flag;
+} look;
+
+/* Flags of five points that look along +x at x = 1.8 (cell 7) from afar. */
+static void expect_flags(const fixture *f, bw_probe *probe, const look row[5])
 {
-  static const int n[3] = {12, 12, 8};
-  static const struct {
-    double gap;
-    unsigned char flag;
-  } row[] = {{3.0, BW_PROBE_FREE},
-             {2.2, BW_PROBE_FREE},
-             {1.8, BW_PROBE_SHORTENED},
-             {1.2, BW_PROBE_SHORTENED},
-             {0.8, BW_PROBE_BLOCKED}};
-  fixture f;
-  bw_real *solid = NULL;
-  make(&f, bw_check_world(), n, 0.3, true, BW_PROBE_LINEAR);
-  bw_check_ok(bw_field_create(f.grid, &solid));
-  for (int k = 1; k <= f.g->m[2]; k++)
-    for (int j = 1; j <= f.g->m[1]; j++)
-      for (int i = 7; i <= 10; i++)
-        solid[bw_at(f.g, i, j, k)] = 1;
-  bw_halo_update(f.grid, 1, &solid);
   double X[5][3], N[5][3], t[5][3];
   unsigned char flag[5];
   for (int q = 0; q < 5; q++) {
     memcpy(X[q], (double[3]){1.8 - 0.3 * row[q].gap, 0.7 * q, 0.5 * q}, sizeof X[q]);
     memcpy(N[q], (double[3]){1.0, 0.0, 0.0}, sizeof N[q]);
   }
-  for (int there = 1; there >= 0; there--) {
-    bw_probe_set_obstacles(f.probe, there ? solid : NULL);
-    bw_check_ok(bw_probe_set_points(f.probe, 5, X[0], N[0]));
-    bw_probe_traction(f.probe, f.u, f.p, NULL, t[0], flag);
-    for (int q = 0; q < 5; q++)
-      ck_assert_int_eq(flag[q], there ? row[q].flag : BW_PROBE_FREE);
+  bw_check_ok(bw_probe_set_points(probe, 5, X[0], N[0]));
+  bw_probe_traction(probe, f->u, f->p, NULL, t[0], flag);
+  for (int q = 0; q < 5; q++)
+    ck_assert_int_eq(flag[q], row[q].flag);
+}
+
+/* Another solid, thick or one cell thin, begins at x = 1.8; probes of 2 and of 4 h look at it. */
+START_TEST(obstacles_shorten_and_block)
+{
+  static const int n[3] = {12, 12, 8};
+  static const look two[5] = {{3.1, BW_PROBE_FREE},
+                              {2.6, BW_PROBE_SHORTENED},
+                              {1.8, BW_PROBE_SHORTENED},
+                              {1.2, BW_PROBE_CROWDED},
+                              {0.8, BW_PROBE_BLOCKED}};
+  static const look four[5] = {{5.1, BW_PROBE_FREE},
+                               {4.4, BW_PROBE_SHORTENED},
+                               {2.7, BW_PROBE_SHORTENED}, /* seen behind the tip when thin */
+                               {1.2, BW_PROBE_CROWDED},
+                               {0.8, BW_PROBE_BLOCKED}};
+  static const look none[5] = {{3.1, BW_PROBE_FREE},
+                               {2.6, BW_PROBE_FREE},
+                               {1.8, BW_PROBE_FREE},
+                               {1.2, BW_PROBE_FREE},
+                               {0.8, BW_PROBE_FREE}};
+  for (int last = 7; last <= 10; last += 3) {
+    fixture f;
+    bw_real *solid = NULL;
+    bw_probe *longer = NULL;
+    bw_probe_config c = bw_probe_config_default();
+    c.rho = RHO, c.nu = NU, c.length = 4.0;
+    make(&f, bw_check_world(), n, 0.3, true, BW_PROBE_LINEAR);
+    bw_check_ok(bw_probe_create(f.grid, &c, &longer));
+    bw_check_ok(bw_field_create(f.grid, &solid));
+    for (int k = 1; k <= f.g->m[2]; k++)
+      for (int j = 1; j <= f.g->m[1]; j++)
+        for (int i = 7; i <= last; i++)
+          solid[bw_at(f.g, i, j, k)] = 1;
+    bw_halo_update(f.grid, 1, &solid);
+    bw_probe_set_obstacles(f.probe, solid);
+    bw_probe_set_obstacles(longer, solid);
+    expect_flags(&f, f.probe, two);
+    expect_flags(&f, longer, four);
+    bw_probe_set_obstacles(f.probe, NULL);
+    expect_flags(&f, f.probe, none);
+    bw_probe_destroy(&longer);
+    bw_release(&solid);
+    drop(&f);
   }
-  bw_release(&solid);
-  drop(&f);
 }
 END_TEST
 

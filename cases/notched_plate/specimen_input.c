@@ -41,7 +41,7 @@ static const bw_config_field solid_fields[] = {
                    "who is a partner"),
     BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words, "in time"),
     V(specimen_solid, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "spacings",
-      "particles off their sites by up to this; 0: a lattice"),
+      "particles off their sites; 0: a lattice"),
     V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another one: another cloud"),
     BW_CONFIG_END};
 

@@ -1,9 +1,12 @@
 /* A disordered cloud: particles off their sites.
  *
- * The offset of a site is drawn by a hash of the site (of its home, where a direction is periodic)
- * and the seed, evenly from the ball or disc of radius disorder ds: it depends on nothing else, so
- * that it is the same on any number of ranks. Sites stay what blocks, slots and the stencil are
- * made of; the stencil holds all directions in which sites can be in each other's reach. */
+ * Every particle is `disorder` ds from its site, in a direction drawn by a hash of the site (of its
+ * home, where a direction is periodic) and the seed: it depends on nothing else, so that it is the
+ * same on any number of ranks. Of all laws with the same largest offset, which is what widens the
+ * stencil, this one spreads most: it takes a part J0(2 pi disorder) of the lattice's first Fourier
+ * peaks to be left in the plane, 0 at 0.3827, and sin(2 pi disorder)/(2 pi disorder) in space.
+ * Sites stay what blocks, slots and the stencil are made of; the stencil holds all directions in
+ * which sites can be in each other's reach. */
 #include "bw_memory.h"
 #include "pd_bond_internal.h"
 
@@ -42,11 +45,10 @@ static void offset(const bw_pd_bond_config *c, const int32_t site[3], double y[3
 {
   int32_t at[3];
   home(c, site, at);
-  const bool planar = c->geometry != BW_PD_3D;
-  const double angle = 2 * PI * uniform(c, at, 0), part = uniform(c, at, 1);
-  const double r = c->disorder * (planar ? sqrt(part) : cbrt(part));
-  const double z = planar ? 0 : 2 * uniform(c, at, 2) - 1, across = r * sqrt(1 - z * z);
-  y[0] = across * cos(angle), y[1] = across * sin(angle), y[2] = r * z;
+  const double angle = 2 * PI * uniform(c, at, 0);
+  const double z = c->geometry == BW_PD_3D ? 2 * uniform(c, at, 1) - 1 : 0;
+  const double across = c->disorder * sqrt(1 - z * z);
+  y[0] = across * cos(angle), y[1] = across * sin(angle), y[2] = c->disorder * z;
 }
 
 bw_status bw_pd_bond__scatter(bw_pd_bond *pd)

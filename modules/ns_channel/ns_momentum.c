@@ -305,6 +305,7 @@ void bw_ns__momentum_sweep(const bw_ns_sweep *s, int stage)
 int bw_ns__momentum_tile(const bw_grid_view *g)
 {
   enum { ALIVE_ROWS = 14, BUDGET = 512 * 1024 };
+  if (g->n[2] == 1) return 1; /* nothing is kept from plane to plane */
   const int tile = (int)(BUDGET / (ALIVE_ROWS * sizeof(bw_real) * (size_t)g->m[0]));
   return tile < 4 ? 4 : tile < g->m[1] ? tile : g->m[1];
 }

@@ -65,12 +65,13 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 14 };
+enum { N_VECTORS = 17 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {&c->F,        &c->V,     &c->V_before, &c->X,      &c->X_inside,
                                    &c->marker_X, &c->root,  &c->marker_V, &c->normal, &c->marker_dV,
-                                   &c->area,     &c->accel, &c->traction, &c->force};
+                                   &c->area,     &c->accel, &c->traction, &c->force,  &c->turn,
+                                   &c->spin,     &c->root_V};
   memcpy(vector, all, sizeof all);
 }
 
@@ -98,6 +99,7 @@ static bw_status create_arrays(bw_coupler *c)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
   BW_TRY(BW_ALLOCATE(&c->flag, n));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
+  BW_TRY(BW_ALLOCATE(&c->row, n));
   for (int q = 0; q < 3 && c->config.coupling_iterations > 1; q++)
     BW_TRY(BW_ALLOCATE(&c->iterate[q], 3 * n));
   if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__state_create(c, &c->start));
@@ -143,6 +145,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   for (int q = 0; q < N_VECTORS; q++)
     bw_release(vector[q]);
   bw_release(&c->particle);
+  bw_release(&c->row);
   bw_timer_destroy(&c->timer);
   bw_release(&c->flag);
   bw_release(&c->p_mean);

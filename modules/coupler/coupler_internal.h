@@ -39,15 +39,17 @@ struct bw_coupler {
   bw_ibm_mdf *ibm;
   bw_probe *probe;
   bool held;
-  size_t n;             /* particles of this rank */
-  double h;             /* grid spacing [L] */
-  double *F;            /* (n,3) fluid load on particles [M/(L^2 T^2)] */
-  double *V, *V_before; /* (n,3) velocity now and at the end of the step before */
-  size_t n_surface;     /* surface particles inside the box: rows used of the arrays below */
-  int32_t *particle;    /* which particle each is */
+  size_t n;                /* particles of this rank */
+  double h;                /* grid spacing [L] */
+  double *F;               /* (n,3) fluid load on particles [M/(L^2 T^2)] */
+  double *V, *V_before;    /* (n,3) velocity now and at the end of the step before */
+  size_t n_surface;        /* surface particles inside the box: rows used of the arrays below */
+  int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
   double *root, *normal, *area;            /* probe points (n,3), normals (n,3), areas (n) */
   double *accel, *traction, *force;        /* (n,3) each: of the surface points */
+  double *turn;                            /* (n,3) spin of the interface's rows */
+  double *spin, *root_V;                   /* (n,3) of the surface points */
   unsigned char *flag;                     /* (n) bw_probe_flag */
   double force_probe[3];                   /* of this rank, last probes */
   bw_real *p_mean;      /* field: pressure that acted over the last step (ns_channel's p/rho) */
@@ -77,6 +79,10 @@ struct bw_coupler {
 
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
+/* Velocity (n_surface,3) of points that far outside the surface particles' centres, and of the
+ * markers, by the solid's present velocities; c->spin and c->V are current after. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[]);
+void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
 /* Hand the markers over if the surface has moved. At the beginning of a step, so that the forces
  * of the last one can be asked for until then. Collective. */
 bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;

@@ -21,17 +21,15 @@ static void compare(bw_coupler *c, double sums[4])
   double *r = c->iterate[RESIDUAL], *r0 = c->iterate[BEFORE];
   const double *guess = c->iterate[GUESS];
   memset(sums, 0, 4 * sizeof *sums);
-  bw_pd_bond_get_velocity(c->solid, c->V);
-  for (size_t q = 0; q < c->n_surface; q++) {
-    const double *V = c->V + 3 * (size_t)c->particle[q];
-    for (size_t i = 3 * q; i < 3 * q + 3; i++) {
-      r0[i] = r[i];
-      r[i] = V[i - 3 * q] - guess[i];
-      sums[0] += r[i] * r[i];
-      sums[1] += V[i - 3 * q] * V[i - 3 * q];
-      sums[2] += r0[i] * (r[i] - r0[i]);
-      sums[3] += (r[i] - r0[i]) * (r[i] - r0[i]);
-    }
+  double *V = c->accel; /* scratch */
+  bw_coupler__marker_velocity(c, V);
+  for (size_t i = 0; i < 3 * c->n_surface; i++) {
+    r0[i] = r[i];
+    r[i] = V[i] - guess[i];
+    sums[0] += r[i] * r[i];
+    sums[1] += V[i] * V[i];
+    sums[2] += r0[i] * (r[i] - r0[i]);
+    sums[3] += (r[i] - r0[i]) * (r[i] - r0[i]);
   }
   bw_comm_sum(bw_pd_bond_comm(c->solid), 4, sums);
 }

@@ -17,29 +17,56 @@ static bool within_box(const bw_grid_view *g, const double x[3])
   return true;
 }
 
+/* How far outside the particles' centres markers sit (ERRATA 21). */
+static double marker_offset(const bw_coupler *c)
+{
+  return 0.5 * bw_pd_bond_settings(c->solid)->ds - c->config.retraction * c->h;
+}
+
+/* Points at a distance `out` from the surface particles, along their normals. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
+{
+  bw_pd_interface_turn(c->interface, c->turn);
+  bw_pd_bond_get_velocity(c->solid, c->V);
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      c->spin[3 * q + (size_t)d] = spin[d];
+      V[3 * q + (size_t)d] =
+          c->V[3 * (size_t)c->particle[q] + (size_t)d] + out * (spin[e] * N[f] - spin[f] * N[e]);
+    }
+  }
+}
+
+void bw_coupler__marker_velocity(bw_coupler *c, double V[])
+{
+  bw_coupler__surface_velocity(c, marker_offset(c), V);
+}
+
 /* Surface particles inside the box: probe roots on the nominal surface, half a particle outside
- * the centre; markers `retraction` grid spacings inside that (ERRATA 21). */
+ * the centre; markers `retraction` grid spacings inside that. */
 static void place(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_pd_surface s = bw_pd_interface_surface(c->interface);
-  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds;
-  const double in = out - c->config.retraction * c->h;
+  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds, in = marker_offset(c);
   size_t n = 0;
   for (size_t q = 0; q < s.n; q++) {
-    const double *X = s.X + 3 * q, *V = s.V + 3 * q, *N = s.N + 3 * q;
+    const double *X = s.X + 3 * q, *N = s.N + 3 * q;
     if (!within_box(g, X)) continue;
     for (int d = 0; d < 3; d++) {
       c->root[3 * n + d] = X[d] + out * N[d];
       c->marker_X[3 * n + d] = X[d] + in * N[d];
-      c->marker_V[3 * n + d] = V[d];
       c->normal[3 * n + d] = N[d];
     }
     c->area[n] = s.A[q];
     c->marker_dV[n] = s.A[q] * c->h; /* ERRATA 17 */
+    c->row[n] = (int32_t)q;
     c->particle[n++] = s.particle[q];
   }
   c->n_surface = n;
+  bw_coupler__marker_velocity(c, c->marker_V);
 }
 
 /* Does `inside` still describe where the solid is, to a tenth of a cell? The same on all ranks. */
@@ -121,11 +148,11 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
   return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
 }
 
-/* Acceleration of the surface over the last step: smoother than that of the last sub-step, which
- * carries the lattice's acoustics. */
-static void surface_acceleration(bw_coupler *c, double dt)
+/* Velocity and spin of the surface at the probes' roots; its acceleration over the last step, which
+ * is smoother than that of the last sub-step, with the lattice's acoustics. Collective. */
+static void surface_motion(bw_coupler *c, double dt)
 {
-  bw_pd_bond_get_velocity(c->solid, c->V);
+  bw_coupler__surface_velocity(c, 0.5 * bw_pd_bond_settings(c->solid)->ds, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (int d = 0; d < 3; d++)
@@ -141,8 +168,8 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
-  bw_probe_set_velocity(c->probe, c->marker_V, NULL);
-  surface_acceleration(c, dt);
+  surface_motion(c, dt);
+  bw_probe_set_velocity(c->probe, c->root_V, c->spin);
   bw_probe_traction(c->probe, u, p, c->accel, c->traction, c->flag);
   bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
   memset(c->force_probe, 0, sizeof c->force_probe);

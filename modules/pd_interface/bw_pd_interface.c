@@ -66,6 +66,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->own_normal, pi->config.smooth_normals ? 3 * n : 0));
   BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
+  BW_THEN(st, BW_ALLOCATE(&pi->extended_velocity, 3 * pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->near, slots));
@@ -161,17 +162,22 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,      (void **)&p->first,      (void **)&p->outside,
-                    (void **)&p->leans,        (void **)&p->broken,     (void **)&p->fresh,
-                    (void **)&p->undecided,    (void **)&p->gap,        (void **)&p->row,
-                    (void **)&p->row_n,        (void **)&p->row_room,   (void **)&p->stale,
-                    (void **)&p->near,         (void **)&p->present,    (void **)&p->pool,
-                    (void **)&p->leaning,      (void **)&p->list,       (void **)&p->X0,
-                    (void **)&p->normal,       (void **)&p->position,   (void **)&p->velocity,
-                    (void **)&p->all_velocity, (void **)&p->area,       (void **)&p->list_normal,
-                    (void **)&p->link,         (void **)&p->state,      (void **)&p->place,
-                    (void **)&p->off,          (void **)&p->area_first, (void **)&p->own_normal,
-                    (void **)&p->all_normal};
+  void **array[] = {(void **)&p->surface,    (void **)&p->first,
+                    (void **)&p->outside,    (void **)&p->leans,
+                    (void **)&p->broken,     (void **)&p->fresh,
+                    (void **)&p->undecided,  (void **)&p->gap,
+                    (void **)&p->row,        (void **)&p->row_n,
+                    (void **)&p->row_room,   (void **)&p->stale,
+                    (void **)&p->near,       (void **)&p->present,
+                    (void **)&p->pool,       (void **)&p->leaning,
+                    (void **)&p->list,       (void **)&p->X0,
+                    (void **)&p->normal,     (void **)&p->position,
+                    (void **)&p->velocity,   (void **)&p->all_velocity,
+                    (void **)&p->area,       (void **)&p->list_normal,
+                    (void **)&p->link,       (void **)&p->state,
+                    (void **)&p->place,      (void **)&p->off,
+                    (void **)&p->area_first, (void **)&p->own_normal,
+                    (void **)&p->all_normal, (void **)&p->extended_velocity};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   bw_release(pi);

@@ -59,6 +59,10 @@ typedef struct {
   const double *A;         /* (n) area [L^2] */
 } bw_pd_surface;
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
+/* spin (n,3) of that surface [1/T]: the rigid rotation that fits the present velocities of each
+ * particle's family best; 0 where none can be told. A point at X + a N moves with V + a spin x N.
+ * After an update. Collective. */
+void bw_pd_interface_turn(bw_pd_interface *pi, double spin[]);
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
 
 /* Area of the reference shape [L^2], all ranks: ds^2 sum over its open lattice faces f of

@@ -80,9 +80,10 @@ struct bw_pd_interface {
   int32_t *list; /* (n_list) the surface, and its rows: (.,3) but area */
   size_t n_list;
   double *position, *velocity, *list_normal, *area;
-  double *all_velocity; /* (n,3) */
-  double *own_normal;   /* (n,3) of the surface, 0 elsewhere; for smoothing */
-  double *all_normal;   /* (n_extended,3) */
+  double *all_velocity;      /* (n,3) */
+  double *own_normal;        /* (n,3) of the surface, 0 elsewhere; for smoothing */
+  double *all_normal;        /* (n_extended,3) */
+  double *extended_velocity; /* (n_extended,3) scratch of turn */
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };

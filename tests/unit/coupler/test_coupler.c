@@ -240,6 +240,10 @@ START_TEST(iterated_step_meets_its_residual)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   material.rho = 0.1 * RHO;
+  /* stiff against a step, its waves damped: the coupling is tested here, not the lattice */
+  const double c = 4.0 * BLOCK * H / 1.0e-3;
+  material.E = material.rho * c * c;
+  material.damping_mean = material.rho * c / (BLOCK * H);
   bw_check_ok(bw_pd_shape_fill(1, &cube, H, material.origin, false, &n, &site, &kind));
   bw_check_ok(bw_pd_bond_create(bw_check_world(), &material, n, site, kind, &s.solid));
   bw_coupler_config config = bw_coupler_config_default();
@@ -255,20 +259,19 @@ START_TEST(iterated_step_meets_its_residual)
     bw_check_ok(bw_coupler_measure(s.coupler, &r));
     ck_assert_int_gt(r.iterations, 1);
     ck_assert_double_le(r.residual, 1e-5);
-    double most = 0.0, apart = 0.0; /* the markers moved as the solid does now */
+    double moved[2] = {0.0, 0.0}; /* the markers moved as the solid does now: rms */
     for (size_t i = 0; i < 3 * s.coupler->n_surface; i++) {
-      most = fmax(most, fabs(s.coupler->marker_V[i]));
-      apart = fmax(apart, fabs(s.coupler->marker_V[i] - s.coupler->iterate[0][i]));
+      moved[0] += pow(s.coupler->marker_V[i], 2);
+      moved[1] += pow(s.coupler->marker_V[i] - s.coupler->iterate[0][i], 2);
     }
-    bw_comm_max(bw_check_world(), 1, &most);
-    bw_comm_max(bw_check_world(), 1, &apart);
-    ck_assert_double_gt(most, 0.0);
+    bw_comm_sum(bw_check_world(), 2, moved);
+    ck_assert_double_gt(moved[0], 0.0);
+    ck_assert_double_lt(sqrt(moved[1] / moved[0]), 1e-3); /* normals turn a little in the step */
     /* added mass carries it with the stream, whose fastest layer has 1.5 */
     const double mass = material.rho * pow(BLOCK * H, 3);
     const double mean = bw_pd_bond_account(s.solid).momentum[0] / mass;
     ck_assert_double_gt(mean, 0.0);
     ck_assert_double_lt(mean, 1.5);
-    ck_assert_double_lt(apart, 1e-3 * most); /* rms over the surface against the largest of it */
   }
   ck_assert_int_eq(r.unconverged, 0);
   bw_coupler_destroy(&s.coupler);

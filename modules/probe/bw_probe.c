@@ -54,11 +54,18 @@ void bw_probe_destroy(bw_probe **probe)
 {
   if (*probe == NULL) return;
   bw_probe *b = *probe;
-  bw_exchange_destroy(&b->plan);
-  void *const arrays[] = {&b->point, &b->length, &b->flag,     &b->sent_from, &b->destination,
-                          &b->item,  &b->answer, &b->received, &b->reply};
-  for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
-    bw_release(arrays[a]);
+  bw_release(&b->normal);
+  bw_release(&b->length);
+  bw_release(&b->flag);
+  for (int t = 0; t < PROBE_SETS; t++) {
+    bw_probe__tips *tips = &b->tips[t];
+    bw_exchange_destroy(&tips->plan);
+    void *const arrays[] = {&tips->from,     &tips->to,    &tips->item,
+                            &tips->answer,   &tips->seen,  &tips->read,
+                            &tips->received, &tips->reply, &tips->seen_here};
+    for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
+      bw_release(arrays[a]);
+  }
   bw_release(probe);
 }
 
@@ -142,18 +149,25 @@ typedef void (*profile_fn)(const bw_probe *b, const bw_probe__reply *r, const do
 static const profile_fn profile_of[BW_PROBE_PROFILES] = {
     [BW_PROBE_LINEAR] = linear_profile, [BW_PROBE_QUADRATIC] = quadratic_profile};
 
+/* Replies of one set of tips to their ranks; traction of the points whose probes these are. */
+static void probe_set(bw_probe *b, bw_probe__tips *t, bw_real *const u[3], const bw_real *p,
+                      const double A[], double traction[])
+{
+  bw_probe__at_tips(b, u, p, t->held, t->received, t->reply);
+  if (t->plan != NULL) bw_exchange_backward(t->plan, sizeof *t->reply, t->reply, t->answer);
+  for (size_t s = 0; s < t->n; s++) {
+    const size_t i = t->from[s];
+    if (!t->read[s]) continue;
+    const surface_motion m = {row_of(b->V, i), row_of(b->spin, i), row_of(A, i)};
+    profile_of[b->profile](b, &t->answer[s], b->normal + 3 * i, b->length[i], &m, traction + 3 * i);
+  }
+}
+
 void bw_probe_traction(bw_probe *b, bw_real *const u[3], const bw_real *p, const double A[],
                        double traction[], unsigned char flag[])
 {
-  for (size_t q = 0; q < b->held; q++)
-    b->reply[q] = bw_probe__at_tip(b, u, p, &b->received[q]);
-  if (b->plan != NULL) bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
   if (b->n > 0) memset(traction, 0, 3 * b->n * sizeof *traction);
-  for (size_t s = 0; s < b->n_sent; s++) {
-    const size_t i = b->sent_from[s];
-    const surface_motion m = {row_of(b->V, i), row_of(b->spin, i), row_of(A, i)};
-    profile_of[b->profile](b, &b->answer[s], b->point[i].normal, b->length[i], &m,
-                           traction + 3 * i);
-  }
+  for (int t = 0; t < PROBE_SETS; t++)
+    if (t != PROBE_NEAR) probe_set(b, &b->tips[t], u, p, A, traction);
   if (flag != NULL && b->n > 0) memcpy(flag, b->flag, b->n);
 }

@@ -5,35 +5,54 @@
 #include <math.h>
 #include <string.h>
 
-static bw_status reserve(bw_probe *b, size_t n, size_t held)
+static bw_status reserve_points(bw_probe *b, size_t n)
 {
-  if (n > b->room) {
-    b->room = 0; /* stays so if an allocation fails */
-    bw_release(&b->point);
-    bw_release(&b->length);
-    bw_release(&b->flag);
-    bw_release(&b->sent_from);
-    bw_release(&b->destination);
-    bw_release(&b->item);
-    bw_release(&b->answer);
-    BW_TRY(BW_ALLOCATE(&b->point, n));
-    BW_TRY(BW_ALLOCATE(&b->length, n));
-    BW_TRY(BW_ALLOCATE(&b->flag, n));
-    BW_TRY(BW_ALLOCATE(&b->sent_from, 2 * n));
-    BW_TRY(BW_ALLOCATE(&b->destination, 2 * n));
-    BW_TRY(BW_ALLOCATE(&b->item, 2 * n));
-    BW_TRY(BW_ALLOCATE(&b->answer, 2 * n));
-    b->room = n;
-  }
-  if (held > b->held_room) {
-    const size_t some = held + held / 8; /* points come and go */
-    b->held_room = 0;
-    bw_release(&b->received);
-    bw_release(&b->reply);
-    BW_TRY(BW_ALLOCATE(&b->received, some));
-    BW_TRY(BW_ALLOCATE(&b->reply, some));
-    b->held_room = some;
-  }
+  if (n <= b->room) return BW_OK;
+  b->room = 0; /* stays so if an allocation fails */
+  bw_release(&b->normal);
+  bw_release(&b->length);
+  bw_release(&b->flag);
+  BW_TRY(BW_ALLOCATE(&b->normal, 3 * n));
+  BW_TRY(BW_ALLOCATE(&b->length, n));
+  BW_TRY(BW_ALLOCATE(&b->flag, n));
+  b->room = n;
+  return BW_OK;
+}
+
+/* Room for n tips of this rank's points. */
+static bw_status reserve_sent(bw_probe__tips *t, size_t n)
+{
+  if (n <= t->room) return BW_OK;
+  t->n = t->room = 0;
+  bw_release(&t->from);
+  bw_release(&t->to);
+  bw_release(&t->item);
+  bw_release(&t->answer);
+  bw_release(&t->seen);
+  bw_release(&t->read);
+  BW_TRY(BW_ALLOCATE(&t->from, n));
+  BW_TRY(BW_ALLOCATE(&t->to, n));
+  BW_TRY(BW_ALLOCATE(&t->item, n));
+  BW_TRY(BW_ALLOCATE(&t->answer, n));
+  BW_TRY(BW_ALLOCATE(&t->seen, n));
+  BW_TRY(BW_ALLOCATE(&t->read, n));
+  t->room = n;
+  return BW_OK;
+}
+
+/* Room for n tips in this rank's cells. */
+static bw_status reserve_held(bw_probe__tips *t, size_t n)
+{
+  if (n <= t->held_room) return BW_OK;
+  const size_t some = n + n / 8; /* points come and go */
+  t->held_room = 0;
+  bw_release(&t->received);
+  bw_release(&t->reply);
+  bw_release(&t->seen_here);
+  BW_TRY(BW_ALLOCATE(&t->received, some));
+  BW_TRY(BW_ALLOCATE(&t->reply, some));
+  BW_TRY(BW_ALLOCATE(&t->seen_here, some));
+  t->held_room = some;
   return BW_OK;
 }
 
@@ -70,68 +89,104 @@ static bool place_tip(const bw_grid_view *g, const double x[3], const double n[3
   return true;
 }
 
-/* Add the tip of point i at distance dl to those to be sent; false when it leaves the box. */
-static bool send_tip(bw_probe *b, size_t i, const double x[3], double dl)
+static void start_list(bw_probe__tips *t)
 {
-  bw_probe__item *item = &b->item[b->n_sent];
-  memcpy(item->normal, b->point[i].normal, sizeof item->normal);
+  t->before = t->n;
+  t->changed = t->plan == NULL;
+  t->n = 0;
+}
+
+/* An empty set without a plan. */
+static void forget(bw_probe__tips *t)
+{
+  bw_exchange_destroy(&t->plan);
+  t->n = t->held = 0;
+}
+
+/* Add the tip of point i at distance dl; false when it leaves the box. */
+static bool add_tip(bw_probe *b, bw_probe__tips *t, size_t i, const double x[3], double dl)
+{
+  bw_probe__item *item = &t->item[t->n];
+  memcpy(item->normal, b->normal + 3 * i, sizeof item->normal);
   if (!place_tip(b->g, x, item->normal, dl, item->tip)) return false;
-  b->destination[b->n_sent] = bw_grid_owner(b->grid, item->tip);
-  b->sent_from[b->n_sent++] = i;
+  const int rank = bw_grid_owner(b->grid, item->tip);
+  t->changed |= t->n >= t->before || t->to[t->n] != rank;
+  t->to[t->n] = rank;
+  t->read[t->n] = 1;
+  t->from[t->n++] = i;
   return true;
 }
 
-/* Send the listed tips to their ranks. */
-static bw_status route(bw_probe *b)
+/* Send the listed tips to their ranks; where those are the same as last time, by the same plan. */
+static bw_status route(bw_probe *b, bw_probe__tips *t)
 {
   const bw_comm *comm = bw_grid_comm(b->grid);
-  b->held = 0;
-  bw_exchange_destroy(&b->plan);
-  BW_TRY(bw_exchange_create(comm, b->n_sent, b->destination, &b->plan));
-  const size_t held = bw_exchange_received(b->plan);
-  BW_TRY(bw_comm_agree(comm, reserve(b, 0, held)));
-  b->held = held;
-  bw_exchange_forward(b->plan, sizeof *b->item, b->item, b->received);
+  int64_t news = t->changed || t->n != t->before;
+  bw_comm_sum_int(comm, 1, &news);
+  if (news > 0) {
+    t->held = 0;
+    bw_exchange_destroy(&t->plan);
+    BW_TRY(bw_exchange_create(comm, t->n, t->to, &t->plan));
+    const size_t held = bw_exchange_received(t->plan);
+    BW_TRY(bw_comm_agree(comm, reserve_held(t, held)));
+    t->held = held;
+  }
+  bw_exchange_forward(t->plan, sizeof *t->item, t->item, t->received);
   return BW_OK;
 }
 
-/* Length of every probe when nothing but the box is in the way. */
-static void fit_into_box(bw_probe *b, const double X[])
-{
-  for (size_t i = 0; i < b->n; i++) {
-    double tip[3];
-    const double *x = X + 3 * i, *n = b->point[i].normal;
-    const bool full = place_tip(b->g, x, n, b->full, tip);
-    const bool some = full || place_tip(b->g, x, n, b->h, tip);
-    b->length[i] = full ? b->full : some ? b->h : 0.0;
-    b->flag[i] = full ? BW_PROBE_FREE : some ? BW_PROBE_SHORTENED : BW_PROBE_BLOCKED;
-  }
-}
+/* Whether there is an obstacle along the normal, at -LOOKS..LOOKS quarters of h from a tip of this
+ * rank: bits 0..2 LOOKS. Further than 1.5 h another rank would have to be asked. */
+enum { LOOKS = 6 };
 
-/* Is there an obstacle `along` the normal from a tip of this rank, at most 1.5 h away? */
-static bool obstructed(const bw_probe *b, const bw_probe__item *item, double along)
+static unsigned look_along(const bw_probe *b, const bw_probe__item *item)
 {
   const bw_grid_view *g = b->g;
-  int cell[3] = {1, 1, 1};
-  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++) {
-    const double x = item->tip[d] + along * item->normal[d];
-    const int i = (int)floor(x / g->spacing[d]) + 1 - g->lo[d], most = g->m[d] + g->halo[d];
-    if (!g->periodic[d] && (x < 0.0 || x > g->length[d])) return false;
-    cell[d] = i < 1 - g->halo[d] ? 1 - g->halo[d] : i > most ? most : i;
+  const int dims = g->n[2] == 1 ? 2 : 3;
+  unsigned seen = 0;
+  for (int q = -LOOKS; q <= LOOKS; q++) {
+    int cell[3] = {1, 1, 1};
+    bool inside = true;
+    for (int d = 0; d < dims; d++) {
+      const double x = item->tip[d] + 0.25 * q * b->h * item->normal[d];
+      const int i = (int)floor(x / g->spacing[d]) + 1 - g->lo[d], most = g->m[d] + g->halo[d];
+      inside &= g->periodic[d] || (x >= 0.0 && x <= g->length[d]);
+      cell[d] = i < 1 - g->halo[d] ? 1 - g->halo[d] : i > most ? most : i;
+    }
+    const double solid = (double)b->obstacles[bw_at(g, cell[0], cell[1], cell[2])];
+    seen |= (unsigned)(inside && solid > 0.5) << (q + LOOKS);
   }
-  return (double)b->obstacles[bw_at(g, cell[0], cell[1], cell[2])] > 0.5;
+  return seen;
 }
 
-/* From a tip, the nearest obstacle ahead (at most 1.5 h) and behind, in steps of h/4 [L]. */
-static void look_around(const bw_probe *b, const bw_probe__item *item, double *ahead,
-                        double *behind)
+/* What is to be seen from each tip. Collective. */
+static void look(bw_probe *b, bw_probe__tips *t)
 {
-  enum { LOOKS = 6 };
-  *ahead = *behind = HUGE_VAL;
-  for (int q = LOOKS; q >= 0; q--) {
-    const double s = 0.25 * q * b->h;
-    if (obstructed(b, item, s)) *ahead = s;
-    if (obstructed(b, item, -s)) *behind = s;
+  for (size_t q = 0; q < t->held; q++)
+    t->seen_here[q] = (uint16_t)look_along(b, &t->received[q]);
+  bw_exchange_backward(t->plan, sizeof *t->seen, t->seen_here, t->seen);
+}
+
+/* Distance from the root of the first obstacle that a tip at dl has seen from h on. */
+static double first_seen(const bw_probe *b, unsigned seen, double dl)
+{
+  for (int q = -LOOKS; q <= LOOKS; q++) {
+    const double at = dl + 0.25 * q * b->h;
+    if ((seen >> (q + LOOKS) & 1u) != 0 && at > b->h * (1.0 - 1.0e-9)) return at;
+  }
+  return HUGE_VAL;
+}
+
+/* The longest probe of every point when nothing but the box is in the way. */
+static void fit_into_box(bw_probe *b, const double X[])
+{
+  bw_probe__tips *t = &b->tips[PROBE_LONGEST];
+  start_list(t);
+  for (size_t i = 0; i < b->n; i++) {
+    const double *x = X + 3 * i;
+    const bool full = add_tip(b, t, i, x, b->full), some = full || add_tip(b, t, i, x, b->h);
+    b->length[i] = full ? b->full : some ? b->h : 0.0;
+    b->flag[i] = full ? BW_PROBE_FREE : some ? BW_PROBE_SHORTENED : BW_PROBE_BLOCKED;
   }
 }
 
@@ -147,46 +202,53 @@ static void shorten(bw_probe *b, size_t i, double wall)
                                   : BW_PROBE_BLOCKED;
 }
 
-/* Look for obstacles between h and one h ahead of every tip, from the tip and from a distance h. */
+/* A tip farther out than this does not see back to h. */
+static double nearsighted(const bw_probe *b)
+{
+  return b->h * (1.0 + 0.25 * LOOKS);
+}
+
+/* Look for obstacles between h and one h ahead of every tip, from the longest tip and where that
+ * is too far out also from h; then give new tips to the probes that became shorter. */
 static bw_status avoid_obstacles(bw_probe *b, const double X[])
 {
-  b->n_sent = 0;
-  for (size_t i = 0; i < b->n; i++) {
-    if (b->length[i] > b->h) send_tip(b, i, X + 3 * i, b->length[i]);
-    if (b->length[i] > 0.0) send_tip(b, i, X + 3 * i, b->h);
+  bw_probe__tips *longest = &b->tips[PROBE_LONGEST], *near = &b->tips[PROBE_NEAR];
+  bw_probe__tips *shorter = &b->tips[PROBE_SHORTER];
+  start_list(near);
+  for (size_t s = 0; s < longest->n && b->full > nearsighted(b); s++) {
+    const size_t i = longest->from[s];
+    if (b->length[i] > b->h) add_tip(b, near, i, X + 3 * i, b->h);
   }
-  BW_TRY(route(b));
-  for (size_t q = 0; q < b->held; q++)
-    look_around(b, &b->received[q], &b->reply[q].p.value, &b->reply[q].p.slope);
-  bw_exchange_backward(b->plan, sizeof *b->reply, b->reply, b->answer);
-  for (size_t s = 0; s < b->n_sent;) {
-    const size_t i = b->sent_from[s];
-    const double dl = b->length[i], seen = 2.5 * b->h;
-    double wall = HUGE_VAL;
-    if (dl > b->h) { /* the long one first; what it sees behind it, if the short one does not */
-      const bw_probe__along *far = &b->answer[s++].p;
-      wall = dl - far->slope > seen ? seen : dl + far->value;
-    }
-    shorten(b, i, fmin(wall, b->h + b->answer[s++].p.value));
+  BW_TRY(route(b, near));
+  look(b, longest);
+  look(b, near);
+  start_list(shorter);
+  for (size_t s = 0, q = 0; s < longest->n; s++) {
+    const size_t i = longest->from[s];
+    const double dl = b->length[i];
+    double wall = first_seen(b, longest->seen[s], dl);
+    if (q < near->n && near->from[q] == i) wall = fmin(wall, first_seen(b, near->seen[q++], b->h));
+    shorten(b, i, wall);
+    longest->read[s] = b->length[i] == dl;
+    if (!longest->read[s] && b->length[i] > 0.0) add_tip(b, shorter, i, X + 3 * i, b->length[i]);
   }
-  return BW_OK;
+  return route(b, shorter);
 }
 
 bw_status bw_probe_set_points(bw_probe *b, size_t n, const double X[], const double N[])
 {
-  const bw_comm *comm = bw_grid_comm(b->grid);
   bw_status st = check(n, X, N);
-  BW_THEN(st, reserve(b, n, 0));
-  BW_TRY(bw_comm_agree(comm, st));
+  BW_THEN(st, reserve_points(b, n));
+  for (int t = 0; t < PROBE_SETS; t++)
+    BW_THEN(st, reserve_sent(&b->tips[t], n));
+  BW_TRY(bw_comm_agree(bw_grid_comm(b->grid), st));
   b->n = n;
   b->V = b->spin = NULL;
-  for (size_t i = 0; i < n; i++)
-    memcpy(b->point[i].normal, N + 3 * i, sizeof b->point[i].normal);
+  if (n > 0) memcpy(b->normal, N, 3 * n * sizeof *N);
   fit_into_box(b, X);
-  if (b->obstacles != NULL) BW_TRY(avoid_obstacles(b, X));
-  b->n_sent = 0;
-  for (size_t i = 0; i < n; i++) {
-    if (b->length[i] > 0.0) send_tip(b, i, X + 3 * i, b->length[i]);
-  }
-  return route(b);
+  BW_TRY(route(b, &b->tips[PROBE_LONGEST]));
+  if (b->obstacles != NULL) return avoid_obstacles(b, X);
+  forget(&b->tips[PROBE_NEAR]);
+  forget(&b->tips[PROBE_SHORTER]);
+  return BW_OK;
 }

@@ -132,6 +132,12 @@ size_t bw_exchange_volume(const bw_exchange *e, size_t bytes)
   return (e->sent - e->self_count) * bytes;
 }
 
+/* Is the q-th item of the send buffer one that stays on this rank? */
+static bool stays(const bw_exchange *e, size_t q)
+{
+  return q - e->self_send < e->self_count; /* also false below: unsigned */
+}
+
 /* The packed side needs a buffer of all items sent; it only ever grows. */
 static unsigned char *packed(bw_exchange *e, size_t bytes)
 {
@@ -165,11 +171,11 @@ void bw_exchange_forward(bw_exchange *e, size_t bytes, const void *send, void *r
   post(e, true, e->n_from, e->from, e->from_start, e->from_offset, bytes, to, TAG_FORWARD,
        e->requests);
   for (size_t q = 0; q < e->sent; q++)
-    memcpy(buffer + q * bytes, from + e->order[q] * bytes, bytes);
+    if (!stays(e, q)) memcpy(buffer + q * bytes, from + e->order[q] * bytes, bytes);
   post(e, false, e->n_to, e->to, e->to_start, e->to_offset, bytes, buffer, TAG_FORWARD,
        e->requests + e->n_from);
-  if (e->self_count > 0)
-    memcpy(to + e->self_receive * bytes, buffer + e->self_send * bytes, e->self_count * bytes);
+  for (size_t q = 0; q < e->self_count; q++)
+    memcpy(to + (e->self_receive + q) * bytes, from + e->order[e->self_send + q] * bytes, bytes);
   MPI_Waitall(e->n_from + e->n_to, e->requests, MPI_STATUSES_IGNORE);
 }
 
@@ -181,9 +187,9 @@ void bw_exchange_backward(bw_exchange *e, size_t bytes, const void *reply, void 
        e->requests);
   post(e, false, e->n_from, e->from, e->from_start, e->from_offset, bytes, from, TAG_BACKWARD,
        e->requests + e->n_to);
-  if (e->self_count > 0)
-    memcpy(buffer + e->self_send * bytes, from + e->self_receive * bytes, e->self_count * bytes);
+  for (size_t q = 0; q < e->self_count; q++)
+    memcpy(to + e->order[e->self_send + q] * bytes, from + (e->self_receive + q) * bytes, bytes);
   MPI_Waitall(e->n_from + e->n_to, e->requests, MPI_STATUSES_IGNORE);
   for (size_t q = 0; q < e->sent; q++)
-    memcpy(to + e->order[q] * bytes, buffer + q * bytes, bytes);
+    if (!stays(e, q)) memcpy(to + e->order[q] * bytes, buffer + q * bytes, bytes);
 }

@@ -76,6 +76,7 @@ static bw_status build_coupler(scene *s, bw_coupler_load_kind load)
   c.walled[1][0] = c.walled[1][1] = true;
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
   bw_coupler_hold_solid(s->coupler, false);
+  bw_coupler_watch(s->coupler, false); /* as in most steps of a run */
   return BW_OK;
 }
 

@@ -29,6 +29,7 @@ static bw_status advance(bending_run *p)
   bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
   while (st == BW_OK && p->step < end && !bw_stop_requested(p->flow.comm)) {
     bw_coupler_hold_solid(p->flow.coupler, p->step < release);
+    bw_coupler_watch(p->flow.coupler, (p->step + 1) % p->config->output.sample_every == 0);
     st = bw_coupler_step(p->flow.coupler, time->step);
     p->step += st == BW_OK;
     BW_THEN(st, after_step(p, &m));

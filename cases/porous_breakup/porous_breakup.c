@@ -20,6 +20,7 @@ static bw_status run_phase(porous_run *p)
   porous_enter_phase(p);
   bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
   for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
+    bw_coupler_watch(p->coupler, porous_sample_due(p));
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
     if (st != BW_OK) break;
     p->step++, p->total_step++;

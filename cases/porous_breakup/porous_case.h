@@ -116,6 +116,8 @@ double porous_pressure_drop(porous_run *p); /* over rho U_b^2 [-]. Collective. *
 
 /* Has the pressure drop stopped changing? Asked every step, looks every tenth of h/U_b. Local. */
 bool porous_settled(porous_run *p, double drop);
+/* Will there be a sample after the step to come? Local. */
+bool porous_sample_due(const porous_run *p);
 
 /* ---- stress and strain of the medium (porous_stress.c) ---- */
 typedef struct {

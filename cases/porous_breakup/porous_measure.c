@@ -68,16 +68,28 @@ double porous_pressure_drop(porous_run *p)
 }
 
 /* Once per tenth of h/U_b: has the pressure drop stopped changing? */
+static const double SETTLED_AFTER = 0.1; /* t0 between two looks at whether a phase has settled */
+
 bool porous_settled(porous_run *p, double drop)
 {
   const porous_config *q = p->config;
   const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
   const double elapsed = bw_ns_channel_time(p->fluid) - p->last_drop_time;
-  if (elapsed < 0.1 * t0) return false;
+  if (elapsed < SETTLED_AFTER * t0) return false;
   const double change = fabs(drop - p->last_drop) / fabs(drop) * t0 / elapsed;
   p->last_drop = drop;
   p->last_drop_time = bw_ns_channel_time(p->fluid);
   return change < porous_phase_of(q, p->phase)->settled;
+}
+
+bool porous_sample_due(const porous_run *p)
+{
+  const porous_config *q = p->config;
+  const porous_phase *f = porous_phase_of(q, p->phase);
+  const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
+  const double elapsed = bw_ns_channel_time(p->fluid) + 1.5 * f->time_step - p->last_drop_time;
+  return (p->step + 1) % q->output.sample_every == 0 || p->step + 1 >= f->steps ||
+         elapsed >= SETTLED_AFTER * t0; /* the phase may end */
 }
 
 /* Void share of the medium's first box: its volume less the particles that are in it now. */

@@ -121,7 +121,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   c->config = *config;
   c->fluid = fluid;
   c->solid = solid;
-  c->held = true;
+  c->held = c->watched = true;
   c->h = g->spacing[0];
   c->bonds = 2.0 * (double)bw_pd_bond_account(solid).bonds / bw_comm_size(bw_grid_comm(grid));
   st = create_parts(c);
@@ -165,6 +165,11 @@ void bw_coupler_destroy(bw_coupler **coupler)
 void bw_coupler_hold_solid(bw_coupler *c, bool held)
 {
   c->held = held;
+}
+
+void bw_coupler_watch(bw_coupler *c, bool watched)
+{
+  c->watched = watched;
 }
 
 bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c)

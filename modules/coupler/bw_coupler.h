@@ -95,6 +95,12 @@ void bw_coupler_destroy(bw_coupler **c); /* NULL is fine */
 /* Hold the solid where it is (true) or let it move (false). Local. */
 void bw_coupler_hold_solid(bw_coupler *c, bool held);
 
+/* Will the next steps be measured (true, the default)? Where the load is the reaction or the solid
+ * is held, probes are there for bw_coupler_measure only, and what they cost during a step (the mean
+ * of the pressure) is saved by saying false before steps that nobody measures. Local, the same on
+ * all ranks. */
+void bw_coupler_watch(bw_coupler *c, bool watched);
+
 /* Advance both by dt [T]. BW_ECFL, BW_EDIVERGED from either phase. */
 bw_status bw_coupler_step(bw_coupler *c, double dt) BW_MUST_CHECK;
 
@@ -104,7 +110,8 @@ int bw_coupler_substeps(const bw_coupler *c, double dt);
 /* What was seen in the last step. */
 typedef struct {
   double force_reaction[3];       /* on the solid, from the markers, minus rho sum Q dV [M L/T^2] */
-  double force_probe[3];          /* on the solid, sum t A over unblocked probes */
+  double force_probe[3];          /* on the solid, sum t A over unblocked probes; NaN after a step
+                                     that was not watched */
   double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
                                      balance of a box around it; 0 when no box was watched */
   double work_given;              /* by the fluid through the markers since the start:

@@ -52,10 +52,12 @@ struct bw_coupler {
   double *spin, *root_V;                   /* (n,3) of the surface points */
   unsigned char *flag;                     /* (n) bw_probe_flag */
   double force_probe[3];                   /* of this rank, last probes */
-  bw_real *p_mean;      /* field: pressure that acted over the last step (ns_channel's p/rho) */
-  bool p_mean_known;    /* false before the first step and after a load */
-  bw_real *inside;      /* field: 1 in cells that hold a particle */
-  double *X, *X_inside; /* (n,3) positions now, and when `inside` was computed */
+  bw_real *p_mean;       /* field: pressure that acted over the last step (ns_channel's p/rho) */
+  bool p_mean_known;     /* false before the first step, after a load, after an unwatched step */
+  bool watched, stepped; /* bw_coupler_watch; has there been a step since create or load */
+  int reach[3][2];       /* local cells that probes can read, where p_mean is kept */
+  bw_real *inside;       /* field: 1 in cells that hold a particle */
+  double *X, *X_inside;  /* (n,3) positions now, and when `inside` was computed */
   bool inside_known, markers_moved;
   double checked_dt; /* step for which the present flow was found stable */
   bw_timer *timer;
@@ -89,6 +91,9 @@ bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
 /* Force of the fluid on each surface particle, c->force (n_surface,3) [M L/T^2], by probes (dt:
  * the step whose velocities give the acceleration) or by the markers' reaction. Collective. */
 bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;
+/* Will probes read the pressure of this step? */
+bool bw_coupler__probes_look(const bw_coupler *c);
+void bw_coupler__find_reach(bw_coupler *c); /* Collective */
 void bw_coupler__reaction_force(bw_coupler *c);
 /* Work of the fluid through the markers over a step of dt; c->force holds the reaction. Local. */
 void bw_coupler__count_work(bw_coupler *c, double dt);

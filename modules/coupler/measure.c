@@ -28,12 +28,13 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   double box[3], mass[3];
   int64_t count[2];
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
-  if (!probed) BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
+  const bool known = probed || c->p_mean_known || !c->stepped;
+  if (!probed && known) BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
   bw_ns_channel_control_volume(c->fluid, box);
   for (int d = 0; d < 3; d++) {
     r.force_reaction[d] = -c->config.rho * ibm.total_force[d];
     r.force_control_volume[d] = -c->config.rho * box[d];
-    r.force_probe[d] = c->force_probe[d];
+    r.force_probe[d] = known ? c->force_probe[d] : NAN;
   }
   for (size_t q = 0; q < c->n_surface; q++)
     r.surface_area += c->area[q];

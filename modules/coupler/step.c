@@ -9,17 +9,30 @@ int bw_coupler_substeps(const bw_coupler *c, double dt)
   return (int)ceil(dt / (c->config.solid_safety * bw_pd_bond_dt_max(c->solid)));
 }
 
-/* What p/rho acts with in sub-step r: u^{n+1} - u^n holds -dt sum_r gamma_r grad p_r. */
+bool bw_coupler__probes_look(const bw_coupler *c)
+{
+  return c->watched || (c->config.load == BW_LOAD_PROBES && !c->held);
+}
+
+/* What p/rho acts with in sub-step r: u^{n+1} - u^n holds -dt sum_r gamma_r grad p_r. Gathered
+ * where probes can read it, and only when they will. */
 static void add_pressure(bw_coupler *c, int r)
 {
   static const double gamma[3] = {8.0 / 15, 2.0 / 15, 1.0 / 3};
-  const size_t n = bw_grid_look(bw_ns_channel_grid(c->fluid))->size;
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_real *p = bw_ns_channel_pressure(c->fluid);
   const bw_real weight = (bw_real)gamma[r], keep = r > 0;
   bw_real *restrict mean = c->p_mean;
+  c->p_mean_known = false;
+  if (!bw_coupler__probes_look(c)) return;
+  if (r == 0) bw_coupler__find_reach(c);
+  for (int k = c->reach[2][0]; k <= c->reach[2][1]; k++)
+    for (int j = c->reach[1][0]; j <= c->reach[1][1]; j++) {
+      const ptrdiff_t begin = bw_at(g, c->reach[0][0], j, k), end = bw_at(g, c->reach[0][1], j, k);
 #pragma omp simd
-  for (size_t i = 0; i < n; i++)
-    mean[i] = keep * mean[i] + weight * p[i];
+      for (ptrdiff_t i = begin; i <= end; i++)
+        mean[i] = keep * mean[i] + weight * p[i];
+    }
   c->p_mean_known = r == 2;
 }
 
@@ -27,6 +40,7 @@ static void add_pressure(bw_coupler *c, int r)
 bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
+  c->stepped = true;
   bw_timer_start(c->timer, BW_PART_FORCING);
   const bw_status st = bw_coupler__place_markers(c);
   bw_ibm_mdf_begin_step(c->ibm);

@@ -148,6 +148,29 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
   return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
 }
 
+/* Cells (with halos) that probes on the surface, wherever it moves in a step, can read: its
+ * bounding box and a tip, half a stencil, a kernel and a cell on either side. */
+void bw_coupler__find_reach(bw_coupler *c)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  double far[6] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (int d = 0; d < 3; d++) {
+      far[d] = fmax(far[d], c->root[3 * q + d]);
+      far[3 + d] = fmax(far[3 + d], -c->root[3 * q + d]);
+    }
+  bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 6, far);
+  for (int d = 0; d < 3; d++) {
+    const double h = g->spacing[d], more = c->config.probe_length * c->h / h + 3.0;
+    const int lowest = 1 - g->halo[d], highest = g->m[d] + g->halo[d];
+    const double from = floor(-far[3 + d] / h - more), to = ceil(far[d] / h + more);
+    const bool around = g->periodic[d] && (from < 1.0 || to > g->n[d]); /* seen from both ends */
+    const bool none = !(from <= to);
+    c->reach[d][0] = none || around ? lowest : (int)fmax(lowest, from - g->lo[d]);
+    c->reach[d][1] = none ? lowest - 1 : around ? highest : (int)fmin(highest, to - g->lo[d]);
+  }
+}
+
 /* Velocity and spin of the surface at the probes' roots; its acceleration over the last step, which
  * is smoother than that of the last sub-step, with the lattice's acoustics. Collective. */
 static void surface_motion(bw_coupler *c, double dt)

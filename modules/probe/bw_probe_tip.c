@@ -24,45 +24,49 @@ static inline double sum(row a)
   return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-/* Parabola through the three nodes nearest to s: moments 1, 0, 0. */
-static void lagrange(double s, int first, double at[PROBE_WIDTH])
+static inline void store(row r, double *p)
 {
-  const int nearest = (int)floor(s + 0.5);
-  const double r = s - nearest, value[3] = {0.5 * r * (r - 1.0), 1.0 - r * r, 0.5 * r * (r + 1.0)};
-  for (int q = 0; q < PROBE_WIDTH; q++) {
-    const int node = first + q - nearest + 1;
-    at[q] = node >= 0 && node < 3 ? value[node] : 0.0;
-  }
+  memcpy(p, &r, sizeof r);
 }
 
-/* The kernel's weights at one position of one direction. */
+/* Three weights from node `by` = 0, 1, 2 of a window on. */
+static inline row window(const double w[3], int by)
+{
+  if (by == 0) return (row){w[0], w[1], w[2], 0.0};
+  return by == 1 ? (row){0.0, w[0], w[1], w[2]} : (row){0.0, 0.0, w[0], w[1]};
+}
+
+/* Weights at one position s of one direction: of the kernel, from node `first` on. */
 typedef struct {
-  double s, w[BW_KERNEL_MAX_SUPPORT];
+  double s, w[3];
   int first;
 } point_weights;
 
+/* The parabola through the three nodes nearest to s: moments 1, 0, 0. */
+static inline point_weights parabola(double s)
+{
+  const double nearest = floor(s + 0.5), r = s - nearest;
+  return (point_weights){.s = s,
+                         .w = {0.5 * r * (r - 1.0), 1.0 - r * r, 0.5 * r * (r + 1.0)},
+                         .first = (int)nearest - 1};
+}
+
 /* Weights of direction d. The average over the stencil's four edges along a direction of
  * differences is the product of one slope and two means; both ends of a difference are a cell
- * apart, so that the lower end's weights are the upper end's, one node on. */
-static void combine(const bw_probe *probe, int d, const point_weights *tip,
-                    const point_weights *lower, bw_probe__weights *w)
+ * apart, so that the lower end's weights are the upper end's, one node on. Kernels of two nodes
+ * would leave the halo with a window of four: there it begins a node lower. */
+static inline void combine(const bw_probe *probe, int d, const point_weights *tip,
+                           const point_weights *lower, bw_probe__weights *w)
 {
   const bw_grid_view *g = probe->g;
-  const int support = probe->kernel->support, highest = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
-  const double per_h = 1.0 / g->spacing[d];
-  double ends[2 * PROBE_WIDTH] = {0.0}; /* node first + q: upper end ends[q], lower ends[q + 1] */
+  const int highest = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
   w->first = lower->first < highest ? lower->first : highest;
-  for (int q = 0; q < support; q++)
-    ends[1 + lower->first - w->first + q] = lower->w[q];
-  const row up = load(ends), down = load(ends + 1);
-  const row mean = 0.5 * (up + down), slope = per_h * (up - down);
-  memcpy(w->mean, &mean, sizeof mean);
-  memcpy(w->slope, &slope, sizeof slope);
-  memset(w->at, 0, sizeof w->at);
-  if (probe->profile == BW_PROBE_QUADRATIC)
-    lagrange(tip->s, w->first, w->at);
-  else
-    memcpy(w->at + (tip->first - w->first), tip->w, (size_t)support * sizeof *w->at);
+  const int by = lower->first - w->first;
+  const row down = window(lower->w, by), up = window(lower->w, by + 1);
+  store(0.5 * (up + down), w->mean);
+  store((up - down) * (1.0 / g->spacing[d]), w->slope);
+  const point_weights at = probe->profile == BW_PROBE_QUADRATIC ? parabola(tip->s) : *tip;
+  store(window(at.w, at.first - w->first), w->at);
 }
 
 /* Of a tip the faces sit at s, the centres at s + 1/2; their stencils' lower ends half a cell
@@ -74,7 +78,7 @@ void bw_probe__weigh(const bw_probe *probe, size_t n, const bw_probe__item item[
   enum { LINES = 6 };
   const bw_grid_view *g = probe->g;
   const int dims = g->n[2] == 1 ? 2 : 3;
-  double s[LINES][PROBE_BATCH] = {{0.0}}, w[BW_KERNEL_MAX_SUPPORT][LINES][PROBE_BATCH];
+  double s[LINES][PROBE_BATCH] = {{0.0}}, w[BW_KERNEL_MAX_SUPPORT][LINES][PROBE_BATCH] = {{{0.0}}};
   int first[LINES][PROBE_BATCH];
   for (size_t i = 0; i < n; i++)
     for (int d = 0; d < dims; d++) {
@@ -85,10 +89,9 @@ void bw_probe__weigh(const bw_probe *probe, size_t n, const bw_probe__item item[
   bw_kernel_delta_weights(probe->kernel, LINES * PROBE_BATCH, s[0], first[0], w[0][0]);
   for (size_t i = 0; i < n; i++) {
     for (int d = 0; d < dims; d++) {
-      point_weights face = {.s = s[d][i], .first = first[d][i]};
-      point_weights centre = {.s = s[3 + d][i], .first = first[3 + d][i]};
-      for (int q = 0; q < probe->kernel->support; q++)
-        face.w[q] = w[q][d][i], centre.w[q] = w[q][3 + d][i];
+      const int e = 3 + d;
+      const point_weights face = {s[d][i], {w[0][d][i], w[1][d][i], w[2][d][i]}, first[d][i]};
+      point_weights centre = {s[e][i], {w[0][e][i], w[1][e][i], w[2][e][i]}, first[e][i]};
       combine(probe, d, &centre, &face, &tip[i].w[PROBE_CENTRE][d]);
       centre.first--;
       combine(probe, d, &face, &centre, &tip[i].w[PROBE_FACE][d]);
@@ -97,15 +100,26 @@ void bw_probe__weigh(const bw_probe *probe, size_t n, const bw_probe__item item[
   }
 }
 
+static inline const bw_probe__weights *weights_of(const bw_probe__tip *tip, int component, int d)
+{
+  return &tip->w[d == component ? PROBE_FACE : PROBE_CENTRE][d];
+}
+
+/* Offset of the first node of a component's window. */
+static inline ptrdiff_t corner_of(const bw_grid_view *g, int component, const bw_probe__tip *tip)
+{
+  return bw_at(g, weights_of(tip, component, 0)->first, weights_of(tip, component, 1)->first,
+               weights_of(tip, component, 2)->first);
+}
+
 bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int component,
                                     const bw_probe__tip *tip)
 {
   const bw_grid_view *g = probe->g;
   const int depth = g->n[2] == 1 ? 1 : PROBE_WIDTH;
-  const bw_probe__weights *x = &tip->w[component == 0 ? PROBE_FACE : PROBE_CENTRE][0];
-  const bw_probe__weights *y = &tip->w[component == 1 ? PROBE_FACE : PROBE_CENTRE][1];
-  const bw_probe__weights *z = &tip->w[component == 2 ? PROBE_FACE : PROBE_CENTRE][2];
-  const bw_real *corner = f + bw_at(g, x->first, y->first, z->first);
+  const bw_probe__weights *x = weights_of(tip, component, 0), *y = weights_of(tip, component, 1);
+  const bw_probe__weights *z = weights_of(tip, component, 2);
+  const bw_real *corner = f + corner_of(g, component, tip);
   row at = {0}, dx = {0}, dy = {0}, dz = {0};
   for (int k = 0; k < depth; k++) {
     row at_y = {0}, mean_y = {0}, slope_y = {0};
@@ -133,6 +147,16 @@ static bw_probe__along along_normal(const bw_probe__sample *s, const double n[3]
   return a;
 }
 
+/* Rows of a batch are asked for before the first is needed: tips lie scattered. */
+static void fetch(const bw_probe *probe, const bw_real *f, int component, const bw_probe__tip *tip)
+{
+  const bw_grid_view *g = probe->g;
+  const bw_real *corner = f + corner_of(g, component, tip);
+  for (int k = 0; k < (g->n[2] == 1 ? 1 : PROBE_WIDTH); k++)
+    for (int j = 0; j < PROBE_WIDTH; j++)
+      __builtin_prefetch(corner + k * g->stride[2] + j * g->stride[1]);
+}
+
 static bw_probe__reply at_tip(const bw_probe *probe, bw_real *const u[3], const bw_real *p,
                               const double n[3], const bw_probe__tip *tip)
 {
@@ -154,6 +178,11 @@ void bw_probe__at_tips(const bw_probe *probe, bw_real *const u[3], const bw_real
   for (size_t q = 0; q < n; q += PROBE_BATCH) {
     const size_t some = n - q < PROBE_BATCH ? n - q : PROBE_BATCH;
     bw_probe__weigh(probe, some, item + q, tip);
+    for (size_t i = 0; i < some; i++) {
+      fetch(probe, p, 3, &tip[i]);
+      for (int c = 0; c < 3 && u[c] != NULL; c++)
+        fetch(probe, u[c], c, &tip[i]);
+    }
     for (size_t i = 0; i < some; i++)
       reply[q + i] = at_tip(probe, u, p, item[q + i].normal, &tip[i]);
   }

@@ -132,10 +132,33 @@ size_t bw_exchange_volume(const bw_exchange *e, size_t bytes)
   return (e->sent - e->self_count) * bytes;
 }
 
-/* Is the q-th item of the send buffer one that stays on this rank? */
-static bool stays(const bw_exchange *e, size_t q)
+/* Length of the run of consecutive items that begins at order[q]. */
+static size_t run_at(const bw_exchange *e, size_t q, size_t end)
 {
-  return q - e->self_send < e->self_count; /* also false below: unsigned */
+  size_t n = 1;
+  while (q + n < end && e->order[q + n] == e->order[q] + n)
+    n++;
+  return n;
+}
+
+/* to <- the items order[begin..end) of `from`, in that order. */
+static void gather(const bw_exchange *e, size_t begin, size_t end, size_t bytes,
+                   const unsigned char *from, unsigned char *to)
+{
+  for (size_t q = begin, n; q < end; q += n) {
+    n = run_at(e, q, end);
+    memcpy(to + (q - begin) * bytes, from + e->order[q] * bytes, n * bytes);
+  }
+}
+
+/* The way back. */
+static void scatter(const bw_exchange *e, size_t begin, size_t end, size_t bytes,
+                    const unsigned char *from, unsigned char *to)
+{
+  for (size_t q = begin, n; q < end; q += n) {
+    n = run_at(e, q, end);
+    memcpy(to + e->order[q] * bytes, from + (q - begin) * bytes, n * bytes);
+  }
 }
 
 /* The packed side needs a buffer of all items sent; it only ever grows. */
@@ -168,14 +191,14 @@ void bw_exchange_forward(bw_exchange *e, size_t bytes, const void *send, void *r
 {
   unsigned char *to = receive, *buffer = packed(e, bytes);
   const unsigned char *from = send;
+  const size_t stay_end = e->self_send + e->self_count;
   post(e, true, e->n_from, e->from, e->from_start, e->from_offset, bytes, to, TAG_FORWARD,
        e->requests);
-  for (size_t q = 0; q < e->sent; q++)
-    if (!stays(e, q)) memcpy(buffer + q * bytes, from + e->order[q] * bytes, bytes);
+  gather(e, 0, e->self_send, bytes, from, buffer);
+  gather(e, stay_end, e->sent, bytes, from, buffer + stay_end * bytes);
   post(e, false, e->n_to, e->to, e->to_start, e->to_offset, bytes, buffer, TAG_FORWARD,
        e->requests + e->n_from);
-  for (size_t q = 0; q < e->self_count; q++)
-    memcpy(to + (e->self_receive + q) * bytes, from + e->order[e->self_send + q] * bytes, bytes);
+  gather(e, e->self_send, stay_end, bytes, from, to + e->self_receive * bytes);
   MPI_Waitall(e->n_from + e->n_to, e->requests, MPI_STATUSES_IGNORE);
 }
 
@@ -183,13 +206,13 @@ void bw_exchange_backward(bw_exchange *e, size_t bytes, const void *reply, void 
 {
   unsigned char *to = answer, *buffer = packed(e, bytes);
   unsigned char *from = (unsigned char *)(uintptr_t)reply; /* MPI_Isend only reads it */
+  const size_t stay_end = e->self_send + e->self_count;
   post(e, true, e->n_to, e->to, e->to_start, e->to_offset, bytes, buffer, TAG_BACKWARD,
        e->requests);
   post(e, false, e->n_from, e->from, e->from_start, e->from_offset, bytes, from, TAG_BACKWARD,
        e->requests + e->n_to);
-  for (size_t q = 0; q < e->self_count; q++)
-    memcpy(to + e->order[e->self_send + q] * bytes, from + (e->self_receive + q) * bytes, bytes);
+  scatter(e, e->self_send, stay_end, bytes, from + e->self_receive * bytes, to);
   MPI_Waitall(e->n_from + e->n_to, e->requests, MPI_STATUSES_IGNORE);
-  for (size_t q = 0; q < e->sent; q++)
-    if (!stays(e, q)) memcpy(to + e->order[q] * bytes, buffer + q * bytes, bytes);
+  scatter(e, 0, e->self_send, bytes, buffer, to);
+  scatter(e, stay_end, e->sent, bytes, buffer + stay_end * bytes, to);
 }

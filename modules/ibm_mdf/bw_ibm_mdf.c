@@ -133,6 +133,50 @@ static double force_held(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
   return slip;
 }
 
+/* One turn of power iteration for A = interpolate(spread(. dV)) in x: reply[m] <- A reply[m],
+ * normalised. Returns <x, A x>/<x, x> with <x, y> = sum dV x y, in which A is self-adjoint: never
+ * above its largest eigenvalue. Collective. */
+static double power_iteration(bw_ibm_mdf *ib, bw_real *field)
+{
+  bw_real *const u[3] = {field, field, ib->g->n[2] == 1 ? NULL : field};
+  double sum[3] = {0.0, 0.0, 0.0}; /* <x, x>, <x, Ax>, <Ax, Ax> */
+  memset(field, 0, ib->g->size * sizeof *field);
+  for (size_t m = 0; m < ib->held; m++) {
+    ib->U[3 * m] = (bw_real)(ib->reply[m] * ib->dV[m] / ib->cell_volume);
+    ib->U[3 * m + 1] = ib->U[3 * m + 2] = 0;
+  }
+  bw_ibm_mdf__give_images(ib);
+  spread_from(ib, 0, u);
+  gather_velocity(ib, u);
+  for (size_t m = 0; m < ib->held; m++) {
+    const double x = ib->reply[m], Ax = (double)ib->U[3 * m], dV = ib->dV[m];
+    sum[0] += dV * x * x, sum[1] += dV * x * Ax, sum[2] += dV * Ax * Ax;
+    ib->reply[m] = Ax;
+  }
+  bw_comm_sum(bw_grid_comm(ib->grid), 3, sum);
+  for (size_t m = 0; m < ib->held && sum[2] > 0.0; m++)
+    ib->reply[m] /= sqrt(sum[2]);
+  return sum[0] > 0.0 ? sum[1] / sum[0] : 0.0;
+}
+
+bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
+{
+  enum { TURNS = 8 };
+  double largest = 0.0;
+  bw_real *field = NULL;
+  BW_TRY(bw_comm_agree(bw_grid_comm(ib->grid), bw_field_create(ib->grid, &field)));
+  for (size_t m = 0; m < ib->held; m++)
+    ib->reply[m] = 1.0;
+  for (int q = 0; q < TURNS; q++)
+    largest = power_iteration(ib, field);
+  bw_release(&field);
+  BW_REQUIRE(largest <= 2.0, BW_EINPUT,
+             "markers: forcing would grow by %.2f per iteration, they stand for more volume than "
+             "they have room for: give each its area times the grid spacing, or use fewer",
+             largest - 1.0);
+  return BW_OK;
+}
+
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
 {
   if (ib->markers == ib->outside) return;

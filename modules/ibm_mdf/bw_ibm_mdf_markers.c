@@ -183,5 +183,8 @@ bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], con
   bw_exchange_forward(ib->plan, sizeof *ib->item, ib->item, ib->received);
   st = settle(ib);
   ib->cost.set += bw_wall_time() - start;
+  if (st != BW_OK || ib->measured || ib->markers == ib->outside) return st;
+  st = bw_ibm_mdf__check_growth(ib);
+  ib->measured = st == BW_OK;
   return st;
 }

@@ -102,6 +102,7 @@ struct bw_ibm_mdf {
 
   int64_t markers, outside; /* over all ranks */
   double slip_sum;          /* sum |V-U|^2 over held markers before the last force */
+  bool measured;            /* has the growth of the first set been? */
   bw_ibm_mdf_cost cost;
 };
 
@@ -125,6 +126,9 @@ void bw_ibm_mdf__find_blocks(bw_ibm_mdf *ib);
 /* List the images of the held markers and send their places; room for the stencils of all.
  * Collective. */
 bw_status bw_ibm_mdf__cast_images(bw_ibm_mdf *ib) BW_MUST_CHECK;
+
+/* Does the forcing iteration of these markers converge? BW_EINPUT when it grows. Collective. */
+bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib) BW_MUST_CHECK;
 
 /* U of the images from U of their markers. Collective. */
 void bw_ibm_mdf__give_images(bw_ibm_mdf *ib);

@@ -175,10 +175,7 @@ START_TEST(halos_stay_valid)
       {{12, 10, 8}, false, BW_KERNEL_HAT2, 2}, {{6, 8, 2}, false, BW_KERNEL_PESKIN4, 1}};
   for (int t = 0; t < 6; t++) {
     fixture f;
-    fixture_make(&f, bw_check_world(), &cases[t], FIX_MARKERS, 0.0);
-    for (size_t m = 0; m < f.n; m++) /* many in a small box: keep the iteration from growing */
-      f.dV[m] = 0.01 * cell_volume(&f);
-    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV));
+    fixture_make(&f, bw_check_world(), &cases[t], 24, 0.0); /* more would grow in a small box */
     fill_scattered(&f, 1.0);
     bw_ibm_mdf_force(f.ib, f.u, DT);
     compare_with_update(&f);
@@ -242,6 +239,30 @@ START_TEST(sets_can_be_replaced)
 }
 END_TEST
 
+/* q markers in one place, dV = h^3 each: A has the eigenvalue q (sum phi^2)^3 = q/8; beside them
+ * one alone that is fine. */
+START_TEST(iterations_that_grow_are_refused)
+{
+  const bool first = bw_comm_rank(bw_check_world()) == 0;
+  for (int q = 15; q <= 17; q += 2) {
+    const fixture_case c = {{8, 8, 8}, true, BW_KERNEL_ROMA3, 1};
+    fixture f;
+    double X[3 * 18], V[3 * 18] = {0.0}, dV[18];
+    fixture_make(&f, bw_check_world(), &c, 0, 0.0);
+    for (int m = 0; m <= q; m++) {
+      X[3 * m] = X[3 * m + 1] = X[3 * m + 2] = m == q ? 0.1 : 1.33;
+      dV[m] = cell_volume(&f);
+    }
+    const size_t n = first ? (size_t)q + 1 : 0;
+    if (q < 16)
+      bw_check_ok(bw_ibm_mdf_set_markers(f.ib, n, X, V, dV));
+    else
+      bw_check_status(bw_ibm_mdf_set_markers(f.ib, n, X, V, dV), BW_EINPUT);
+    fixture_free(&f);
+  }
+}
+END_TEST
+
 START_TEST(bad_input_is_refused_on_all_ranks)
 {
   const bw_comm *comm = bw_check_world();
@@ -288,5 +309,6 @@ static const bw_check_test tests[] = {BW_TEST(one_marker_has_a_closed_form),
                                       BW_TEST(halos_stay_valid),
                                       BW_TEST(markers_outside_are_counted),
                                       BW_TEST(sets_can_be_replaced),
+                                      BW_TEST(iterations_that_grow_are_refused),
                                       BW_TEST(bad_input_is_refused_on_all_ranks)};
 BW_CHECK_MAIN("ibm_mdf.force", tests)

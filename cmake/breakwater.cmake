@@ -1,5 +1,6 @@
 # The verbs the top-level file is written in. Programs state in a head line what they need:
 #   BUILD modules=probe,ns_channel libs=gsl          what is linked besides their own module
+#   BUILD case=porous_breakup                        all sources of that case but its main
 #   TEST  ranks=1,2 timeout=120 args="--check"       how ctest runs them (default: ranks=1)
 include(GNUInstallDirs)
 find_package(MPI REQUIRED COMPONENTS C)
@@ -101,6 +102,13 @@ function(_bw_program target own head)
   add_executable(${target} ${head} ${ARGN})
   _bw_head(${head} BUILD modules modules)
   _bw_head(${head} BUILD libs libs)
+  _bw_head(${head} BUILD case case)
+  if(case)
+    file(GLOB parts CONFIGURE_DEPENDS cases/${case}/*.c)
+    list(FILTER parts EXCLUDE REGEX "/${case}\\.c$")
+    target_sources(${target} PRIVATE ${parts})
+    target_include_directories(${target} PRIVATE cases/${case})
+  endif()
   list(TRANSFORM modules PREPEND bw_)
   foreach(lib ${libs})
     _bw_external(${lib})

@@ -58,7 +58,7 @@ static void solve(double a[3][3], const double b[3], double x[3])
 
 /* Least squares: v = v_mean + spin x (x - x_mean), the particle's own velocity left out (it carries
  * the waves of the lattice): I spin = sum Gamma (x - x_mean) x v. */
-static void spin_of(const family_sums *s, bool planar, double spin[3])
+static void spin_of(const family_sums *s, const bw_pd_interface__stencil *g, double spin[3])
 {
   double inertia[3][3], moment[3], trace = 0.0;
   memset(spin, 0, 3 * sizeof *spin);
@@ -72,10 +72,11 @@ static void spin_of(const family_sums *s, bool planar, double spin[3])
   for (int d = 0; d < 3; d++)
     for (int e = 0; e < 3; e++)
       inertia[d][e] = (d == e) * trace - (s->xx[d][e] - s->x[d] * s->x[e] / s->weight);
-  if (!planar)
-    solve(inertia, moment, spin);
-  else if (trace > 0.0)
+  if (!(trace > 1e-6 * s->weight * g->ds * g->ds)) return; /* one partner: rounding is all */
+  if (g->dims == 2)
     spin[2] = moment[2] / trace;
+  else
+    solve(inertia, moment, spin);
 }
 
 void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
@@ -86,6 +87,6 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
   for (size_t row = 0; row < pi->n_list; row++) {
     family_sums s;
     sum_family(pi, X, pi->extended_velocity, (size_t)pi->list[row], &s);
-    spin_of(&s, pi->stencil.dims == 2, spin + 3 * row);
+    spin_of(&s, &pi->stencil, spin + 3 * row);
   }
 }

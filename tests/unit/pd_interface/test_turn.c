@@ -44,8 +44,10 @@ END_TEST
 START_TEST(no_inertia_no_spin)
 {
   const bw_shape rod = {.kind = BW_SHAPE_BOX, .upper = {7, 1, 1}},
+                 pair = {.kind = BW_SHAPE_BOX, .upper = {2, 1, 1}},
                  lone = {.kind = BW_SHAPE_BOX, .upper = {1, 1, 1}};
   check_spin(false, &rod, (double[3]){0.2, 0.0, 0.0}, 0.0);
+  check_spin(false, &pair, (double[3]){0.2, 0.1, 0.3}, 0.0);
   check_spin(false, &lone, (double[3]){0.2, 0.1, 0.3}, 0.0);
 }
 END_TEST

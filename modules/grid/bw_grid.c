@@ -114,6 +114,12 @@ const bw_comm *bw_grid_comm(const bw_grid *grid)
   return grid->comm;
 }
 
+void bw_grid_traffic(const bw_grid *grid, bw_grid_sent *halo, bw_grid_sent *swap)
+{
+  *halo = grid->halo;
+  *swap = grid->swap;
+}
+
 bw_status bw_field_create(const bw_grid *grid, bw_real **out)
 {
   return BW_ALLOCATE(out, grid->view.size);

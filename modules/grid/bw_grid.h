@@ -97,6 +97,10 @@ bw_status bw_field_create(const bw_grid *grid, bw_real **out) BW_MUST_CHECK;
  * neighbour's ghost value, so set the physical ghosts first. Allocates nothing. Collective. */
 void bw_halo_update(bw_grid *grid, int count, bw_real *const field[]);
 
+/* Only what a divergence reads: the layer just below the block, u[d] in direction d (no corners;
+ * u[2] may be NULL in 2D). Collective. */
+void bw_halo_update_faces(bw_grid *grid, bw_real *const u[3]);
+
 /* The adjoint of bw_halo_update: what was added in halo cells moves to the cell's owner and the
  * halo becomes zero. Halos beyond a physical boundary keep what is there (the exact transpose:
  * they receive from the neighbours' halos as interior cells do). Collective. */
@@ -104,6 +108,14 @@ void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[]);
 
 /* Bytes one bw_halo_update of one field sends to other ranks, from this rank. Local. */
 size_t bw_halo_volume(const bw_grid *grid);
+
+/* Sent to other ranks by this one since create: in halos, in the swaps of solvers on lines. Local.
+ */
+typedef struct {
+  long messages;
+  size_t bytes;
+} bw_grid_sent;
+void bw_grid_traffic(const bw_grid *grid, bw_grid_sent *halo, bw_grid_sent *swap);
 
 /* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order
  * of their coord[d]: receive[receive_start[p] ..] <- send[send_start[me] ..] of rank p. Counts

@@ -165,8 +165,10 @@ static void cross(bw_grid *g, int d, bool reduce, int count, bw_real *const fiel
     bw_real *to = g->send[side];
     for (int q = 0; q < count; q++)
       to = reduce ? pack_and_clear(v, &b, field[q], to) : pack(v, &b, field[q], to);
-    MPI_Isend(g->send[side], (int)(volume(&b) * (size_t)count * sizeof(bw_real)), MPI_BYTE,
-              g->neighbour[d][side], reduce ? side : 1 - side, g->mpi, &request[n++]);
+    const size_t bytes = volume(&b) * (size_t)count * sizeof(bw_real);
+    MPI_Isend(g->send[side], (int)bytes, MPI_BYTE, g->neighbour[d][side], reduce ? side : 1 - side,
+              g->mpi, &request[n++]);
+    bw_grid__count(&g->halo, bytes);
   }
   MPI_Waitall(n, request, MPI_STATUSES_IGNORE);
   for (int side = BELOW; side <= ABOVE; side++) {
@@ -203,6 +205,34 @@ void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[])
     const int n = count - start < BW_GRID__BATCH ? count - start : BW_GRID__BATCH;
     for (int d = 2; d >= 0; d--)
       step(grid, d, true, n, field + start);
+  }
+}
+
+/* One layer at index `at` of direction d, owned cells of the others. */
+static box layer(const bw_grid_view *v, int d, int at)
+{
+  box b = {{1, 1, 1}, {v->m[0], v->m[1], v->m[2]}};
+  b.lo[d] = b.hi[d] = at;
+  return b;
+}
+
+void bw_halo_update_faces(bw_grid *g, bw_real *const u[3])
+{
+  const bw_grid_view *v = &g->view;
+  for (int d = 0; d < 3; d++) {
+    const box top = layer(v, d, v->m[d]), below = layer(v, d, 0);
+    const size_t bytes = volume(&top) * sizeof(bw_real);
+    if (v->halo[d] == 0) continue;
+    if (wrapped(v, d)) copy_box(v, &top, &below, u[d]);
+    if (!crosses(v, d)) continue;
+    if (g->neighbour[d][ABOVE] != MPI_PROC_NULL) {
+      pack(v, &top, u[d], g->send[ABOVE]);
+      bw_grid__count(&g->halo, bytes);
+    }
+    MPI_Sendrecv(g->send[ABOVE], (int)bytes, MPI_BYTE, g->neighbour[d][ABOVE], BELOW,
+                 g->receive[BELOW], (int)bytes, MPI_BYTE, g->neighbour[d][BELOW], BELOW, g->mpi,
+                 MPI_STATUS_IGNORE);
+    if (g->neighbour[d][BELOW] != MPI_PROC_NULL) unpack(v, &below, g->receive[BELOW], u[d]);
   }
 }
 

@@ -15,7 +15,14 @@ struct bw_grid {
   bw_real *send[2], *receive[2]; /* one face of BW_GRID__BATCH fields each; NULL when serial */
   MPI_Comm line[3];              /* ranks of this line of blocks in y and in z; line[0] unused */
   MPI_Request *request;          /* for a swap within a line */
+  bw_grid_sent halo, swap;       /* since create */
 };
+
+static inline void bw_grid__count(bw_grid_sent *sent, size_t bytes)
+{
+  sent->messages++;
+  sent->bytes += bytes;
+}
 
 /* Cells before block c of r blocks over n cells: sizes differ by at most one, larger ones first. */
 static inline int bw_grid__block_start(int n, int r, int c)

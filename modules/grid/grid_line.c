@@ -39,9 +39,10 @@ void bw_grid_swap(bw_grid *g, int d, const size_t send_start[], const size_t sen
   }
   for (int q = 1; q < r; q++) { /* everyone starts with another partner */
     const int p = (me + q) % r;
-    if (send_count[p] > 0)
-      MPI_Isend(send + send_start[p], (int)send_count[p], real, p, TAG_SWAP, g->line[d],
-                &g->request[n++]);
+    if (send_count[p] == 0) continue;
+    MPI_Isend(send + send_start[p], (int)send_count[p], real, p, TAG_SWAP, g->line[d],
+              &g->request[n++]);
+    bw_grid__count(&g->swap, send_count[p] * sizeof(bw_real));
   }
   MPI_Waitall(n, g->request, MPI_STATUSES_IGNORE);
 }

@@ -126,6 +126,66 @@ START_TEST(reduce_is_the_adjoint_of_update)
 }
 END_TEST
 
+static bool just_below(const bw_grid_view *v, int q, const int at[3])
+{
+  bool below = at[q] == 0;
+  for (int d = 0; d < 3; d++)
+    below = below && (d == q || (at[d] >= 1 && at[d] <= v->m[d]));
+  return below;
+}
+
+/* The layer below the block in its own direction, for u, v, w: what update gives there, and nothing
+ * else is touched. Also what both sent. */
+static void check_faces(const grid_case *c)
+{
+  bw_grid *grid = grid_case_create(c);
+  const bw_grid_view *v = bw_grid_look(grid);
+  const int components = v->n[2] == 1 ? 2 : 3;
+  bw_real *whole[3] = {NULL, NULL, NULL}, *faces[3] = {NULL, NULL, NULL};
+  bw_grid_sent halo[3], swap;
+  uint64_t state = 1;
+  for (int q = 0; q < components; q++) {
+    bw_check_ok(bw_field_create(grid, &whole[q]));
+    bw_check_ok(bw_field_create(grid, &faces[q]));
+    FOR_STORAGE(v, at)
+    whole[q][bw_at(v, at[0], at[1], at[2])] = faces[q][bw_at(v, at[0], at[1], at[2])] =
+        (bw_real)pseudo_random(&state);
+  }
+  bw_grid_traffic(grid, &halo[0], &swap);
+  bw_halo_update_faces(grid, faces);
+  bw_grid_traffic(grid, &halo[1], &swap);
+  for (int q = 0; q < components; q++)
+    FOR_STORAGE(v, at)
+    {
+      const ptrdiff_t here = bw_at(v, at[0], at[1], at[2]);
+      if (!just_below(v, q, at)) ck_assert(faces[q][here] == whole[q][here]);
+    }
+  bw_halo_update(grid, components, whole);
+  bw_grid_traffic(grid, &halo[2], &swap);
+  for (int q = 0; q < components; q++)
+    FOR_STORAGE(v, at)
+    {
+      const ptrdiff_t here = bw_at(v, at[0], at[1], at[2]);
+      if (just_below(v, q, at)) ck_assert(faces[q][here] == whole[q][here]);
+    }
+  ck_assert_uint_eq(halo[0].bytes + swap.bytes, 0);
+  ck_assert_uint_eq(halo[2].bytes - halo[1].bytes, (size_t)components * bw_halo_volume(grid));
+  ck_assert_uint_le(halo[1].bytes, bw_halo_volume(grid)); /* of a field; the whole: of each */
+  for (int q = 0; q < 3; q++)
+    bw_release(&whole[q]), bw_release(&faces[q]);
+  bw_grid_destroy(&grid);
+}
+
+START_TEST(faces_are_those_of_update)
+{
+  for (int q = 0; q < GRID_CASES; q++)
+    for (int way = 0; way < GRID_WAYS; way++) {
+      grid_case c = grid_case_number(q);
+      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_faces(&c);
+    }
+}
+END_TEST
+
 /* Bytes of one field between blocks, counted by hand for z cut in two of a periodic box:
  * two faces of (n0 + 2h) (m1 + 2h) h cells. */
 START_TEST(volume_counts_messages_only)
@@ -139,7 +199,7 @@ START_TEST(volume_counts_messages_only)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(update_fills_every_halo_cell_with_its_image),
-                                      BW_TEST(reduce_is_the_adjoint_of_update),
-                                      BW_TEST(volume_counts_messages_only)};
+static const bw_check_test tests[] = {
+    BW_TEST(update_fills_every_halo_cell_with_its_image), BW_TEST(reduce_is_the_adjoint_of_update),
+    BW_TEST(faces_are_those_of_update), BW_TEST(volume_counts_messages_only)};
 BW_CHECK_MAIN("grid.halo", tests)

@@ -5,10 +5,10 @@
  * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4), in
  * Verlet that of the half-step velocity.
  * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
- * With `disorder` it is a cloud instead: X0 is disorder ds off that place in a random direction,
- * the same for the same site, seed and axes, whatever else there is. All particles keep the volume
- * of a cell; families and xi are those of the true places. At 0.38 a plane cloud has next to
- * nothing of the lattice's order left.
+ * With `disorder` it is a cloud instead: X0 is off that place in a random direction, by disorder
+ * ds and then less where neighbours nearer than 0.9 ds push each other apart (pd_bond_cloud.c); the
+ * same for the same site, seed and axes, whatever else there is. All particles keep the volume of
+ * a cell; families and xi are those of the true places.
  * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
  * at the end of every step when breakage is enabled: it holds during the whole step and is gone
  * from the force the next step starts with. Both ends decide alike, on any number of ranks.
@@ -58,9 +58,9 @@ typedef struct {
   bw_pd_surface_correction surface_correction; /* default volume */
   bw_pd_calibration calibration;               /* default none */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
-  double disorder;             /* particles start this many ds off their sites, 0.4 at most; then
-                                  volume_fraction is linear or none, 2D and 3D     default 0 */
-  int32_t disorder_seed;       /* another number, another cloud                    default 0 */
+  double disorder;       /* particles start up to this many ds off their sites, 0.4 at most; then
+                            volume_fraction is linear or none, 2D and 3D     default 0 */
+  int32_t disorder_seed; /* another number, another cloud                    default 0 */
   bw_pd_integrator integrator; /* default Verlet */
   double damping_pair;         /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
   double damping_mean;         /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */

@@ -11,12 +11,16 @@
  *
  * halo_48x32x32: copies of other ranks' particles; floor: the three layers at the cut.
  *
- * BUILD modules=pd_bond,pd_interface,vtk
+ * BUILD modules=pd_bond,pd_interface
  * TEST ranks=2 */
-#include "../cases/crack_branching/plate.c" /* the case's own plate, not a second one */
+#include "../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
+#include "../cases/notched_plate/specimen_crack.c"
+#include "../cases/notched_plate/specimen_input.c"
 #include "bw_bench.h"
+#include "bw_pd_shape.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { STEPS = 3 };
 typedef struct {
@@ -66,30 +70,29 @@ static void put(bw_bench *b, const char *name, const char *quantity, const char 
 
 typedef struct {
   const bw_comm *comm;
+  specimen_config config;
   bw_status st;
 } plate_work;
 
 static void tear(void *context)
 {
   plate_work *w = context;
-  const plate_config c = {.shape = {.length = 0.1, .height = 0.04, .notch = 0.05, .particles = 200},
-                          .solid = {.young_modulus = 72e9,
-                                    .density = 2440,
-                                    .fracture_energy = 135,
-                                    .horizon_ratio = 3,
-                                    .surface_correction = BW_PD_SURFACE_VOLUME},
-                          .load = {.stress = 12e6, .rows = 1},
-                          .time = {.step = 50e-9}};
-  plate p;
-  BW_THEN(w->st, plate_create(w->comm, &c, &p));
+  specimen p;
+  memset(&p, 0, sizeof p);
+  BW_THEN(w->st, specimen_create(w->comm, &w->config, &p));
   for (int step = 0; w->st == BW_OK && step < 1000; step++)
-    w->st = plate_step(&p);
-  plate_destroy(&p);
+    w->st = specimen_step(&p);
+  specimen_destroy(&p);
 }
 
 static bw_status branching(bw_bench *b, const bw_comm *self)
 {
-  plate_work w = {self, BW_OK};
+  plate_work w = {self, specimen_default(), BW_OK};
+  char path[1024];
+  const char *root = getenv("BW_SOURCE_DIR");
+  snprintf(path, sizeof path, "%s/cases/crack_branching/crack_branching.yaml",
+           root != NULL ? root : ".");
+  BW_TRY(bw_config_load(self, path, specimen_fields, 0, NULL, sizeof w.config, &w.config));
   put(b, "branching_16000_np1", "seconds_per_1000_steps", "s", bw_bench_median(self, tear, &w),
       NULL, NAN, NAN);
   return w.st;

@@ -251,12 +251,13 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   open_limits(&p->config);
   BW_TRY(check(&p->config));
   p->ds = config->shape.length / config->shape.particles;
-  p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, 0.0};
+  p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, NAN, 0.0};
   BW_TRY(make_solid(p));
   bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
   BW_THEN(st, BW_ALLOCATE(&p->notched, p->n));
   BW_THEN(st, BW_ALLOCATE(&p->F, 3 * p->n));
+  p->track.step = 0.5 * p->ds;
   BW_THEN(st, bw_pd_crack_track_note(&p->track, 0.0, 0.0));
   BW_TRY(bw_comm_agree(comm, st));
   bw_pd_bond_get_reference(p->solid, p->X0);
@@ -272,86 +273,6 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   return BW_OK;
 }
 
-bw_status specimen_find(specimen *p, bw_pd_crack *crack)
-{
-  const bw_pd_crack_config look = bw_pd_crack_config_default();
-  const specimen_follow *f = &p->config.follow;
-  const double gap = (1.5 + 2.0 * p->config.solid.disorder) * p->ds; /* diagonal neighbours */
-  bw_pd_bond_get_damage(p->solid, p->damage);
-  for (size_t h = 0; h < p->n; h++)
-    if (p->notched[h]) p->damage[h] = 0.0;
-  BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, crack));
-  bw_pd_crack_crop(crack, f->lower, f->upper);
-  return bw_comm_agree(p->comm, bw_pd_crack_join(crack, f->from[0], f->from[1], gap));
-}
-
-bw_status specimen_fit(specimen *p, bw_pd_crack_line *line)
-{
-  const specimen_follow *f = &p->config.follow;
-  bw_pd_crack crack;
-  BW_TRY(specimen_find(p, &crack));
-  *line = bw_pd_crack_fit(&crack, f->from[0], f->from[1], f->fit_from, f->fit_to);
-  bw_pd_crack_release(&crack);
-  return BW_OK;
-}
-
-/* Is the place within 1.5 ds of an edge or a hole? */
-static bool at_an_end(const specimen *p, const double x[2])
-{
-  const specimen_shape *s = &p->config.shape;
-  const double near = 1.5 * p->ds;
-  double gap = fmin(fmin(x[0], s->length - x[0]), fmin(x[1], s->height - x[1]));
-  for (int q = 0; q < p->config.n_holes; q++) {
-    const specimen_hole *o = &p->config.holes[q];
-    gap = fmin(gap, hypot(x[0] - o->centre[0], x[1] - o->centre[1]) - o->radius);
-  }
-  return gap < near;
-}
-
-static void note_time(double *what, bool happened, double time)
-{
-  if (happened && isnan(*what)) *what = time;
-}
-
-static bw_status find_tip(specimen *p)
-{
-  specimen_crack *c = &p->crack;
-  const specimen_follow *f = &p->config.follow;
-  bw_pd_crack crack;
-  BW_TRY(specimen_find(p, &crack));
-  double tip[2] = {NAN, NAN};
-  const double reach = bw_pd_crack_reach(&crack, f->from[0], f->from[1], tip);
-  if (reach > c->reach) c->reach = reach, c->tip[0] = tip[0], c->tip[1] = tip[1];
-  bw_pd_crack_release(&crack);
-  note_time(&c->t_start, c->reach > 1.5 * p->ds, p->time);
-  note_time(&c->t_end, !isnan(c->t_start) && at_an_end(p, c->tip), p->time);
-  return bw_comm_agree(p->comm, bw_pd_crack_track_note(&p->track, p->time, c->reach));
-}
-
-/* Has a bond broken on any rank since the last look? Collective. */
-static bool broke(specimen *p)
-{
-  int64_t news = bw_pd_bond_events(p->solid) != p->events;
-  p->events = bw_pd_bond_events(p->solid);
-  bw_comm_max_int(p->comm, 1, &news);
-  return news != 0;
-}
-
-double specimen_speed(const specimen *p, double window)
-{
-  return bw_pd_crack_speed(&p->track, window, p->crack.t_end);
-}
-
-static bw_status follow(specimen *p)
-{
-  if (broke(p)) {
-    note_time(&p->crack.t_first, true, p->time);
-    BW_TRY(find_tip(p));
-  }
-  p->crack.speed = bw_pd_crack_speed_at(&p->track, p->config.follow.speed_window, p->time);
-  return BW_OK;
-}
-
 bool specimen_done(const specimen *p)
 {
   const double stop = p->crack.t_end + p->config.time.after; /* NaN: it goes on to time.end */
@@ -364,7 +285,7 @@ bw_status specimen_step(specimen *p)
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
   if (p->rising) apply_traction(p);
-  if (p->steps % p->config.follow.every == 0) BW_TRY(follow(p));
+  if (p->steps % p->config.follow.every == 0) BW_TRY(specimen_look(p));
   return BW_OK;
 }
 

@@ -78,12 +78,13 @@ specimen_config specimen_default(void); /* limits not given: NaN, meaning none *
 
 /* What is known of the crack so far; NAN: not yet. */
 typedef struct {
-  double tip[2];  /* its particle farthest from the notch's tip [m] */
-  double reach;   /* that distance [m] */
-  double t_first; /* first bond broke, anywhere [s] */
-  double t_start; /* the crack has left the notch by more than ds [s] */
-  double t_end;   /* its tip came within 1.5 ds of an edge or hole [s] */
-  double speed;   /* of reach over the last speed_window, ADAPT 6.1 [m/s] */
+  double tip[2];   /* its particle farthest from the notch's tip [m] */
+  double reach;    /* that distance [m] */
+  double t_first;  /* first bond broke, anywhere [s] */
+  double t_start;  /* the crack has left the notch by more than ds [s] */
+  double t_branch; /* it was first seen forked [s] */
+  double t_end;    /* its tip came within 1.5 ds of an edge or hole [s] */
+  double speed;    /* of reach over the last speed_window, ADAPT 6.1 [m/s] */
 } specimen_crack;
 
 typedef struct {
@@ -111,6 +112,19 @@ void specimen_destroy(specimen *p);
 
 /* The followed crack as it is now (bw_pd_crack_release). Collective. */
 bw_status specimen_find(specimen *p, bw_pd_crack *crack) BW_MUST_CHECK;
+
+/* Follow the crack; specimen_step does, every follow.every steps. Collective. */
+bw_status specimen_look(specimen *p) BW_MUST_CHECK;
+
+/* Of a crack along x that forks. */
+typedef struct {
+  double x;                       /* where it forks [m]; NAN: nowhere */
+  int branches;                   /* half way between there (or the notch) and the tip */
+  double middle[2];               /* y of the two lowest there [m] */
+  double angle_first, angle_last; /* between the outermost branches, over 5 mm behind the fork and
+                                     before the tip [rad] */
+} specimen_fork;
+bw_status specimen_branches(specimen *p, specimen_fork *out) BW_MUST_CHECK; /* Collective. */
 
 /* Highest speed at which reach grows until t_end, over times `window` [m/s]. (Of reach, not of the
  * tip: with two branches the farthest particle is now on one, now on the other.) Local. */

@@ -117,7 +117,9 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   const specimen_crack *c = &p->crack;
   char text[3][16];
   bw_pd_crack_line line;
+  specimen_fork fork;
   BW_TRY(specimen_fit(p, &line));
+  BW_TRY(specimen_branches(p, &fork));
   bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",
               or_never(1e6 * c->t_first, text[0]), or_never(1e6 * c->t_start, text[1]),
               or_never(1e6 * c->t_end, text[2]));
@@ -127,6 +129,9 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   bw_log_info(log, "path at %s deg to x, %s mm wide (rms), %zu particles",
               or_never(line.angle * 180.0 / acos(-1.0), text[0]),
               or_never(1e3 * line.width, text[1]), line.n);
+  bw_log_info(log, "branches %d, forks %s mm past the notch, first seen %s us", fork.branches,
+              or_never(1e3 * (fork.x - p->config.follow.from[0]), text[0]),
+              or_never(1e6 * c->t_branch, text[1]));
   const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
   const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
   bw_log_info(log, "work %.4g J, fracture %.4g J, not accounted for %.2g %% of the work",

@@ -70,14 +70,17 @@ typedef struct {
  * straight. angle and width are NAN with fewer than four particles. Local. */
 bw_pd_crack_line bw_pd_crack_fit(const bw_pd_crack *crack, double s, double t, double a, double b);
 
-/* The way of a tip in time: the moments it arrived somewhere farther than before. Starts as {0}. */
+/* The way of a tip in time: the moments it arrived farther than before, by `step` at least. Starts
+ * as
+ * {.step = ds/2}: a particle beside the tip that cracks later is no arrival. */
 typedef struct {
+  double step; /* [L] */
   size_t n, room;
   double *time, *place; /* (n) rising both; a tip goes from particle to particle */
 } bw_pd_crack_track;
 void bw_pd_crack_track_release(bw_pd_crack_track *track); /* Local. */
 
-/* The tip is at `place` [L] at `time` [T]; forgotten when it is not farther. BW_EMEM. Local. */
+/* The tip is at `place` [L] at `time` [T]; forgotten when that is no arrival. BW_EMEM. Local. */
 bw_status bw_pd_crack_track_note(bw_pd_crack_track *track, double time, double place) BW_MUST_CHECK;
 
 /* Highest speed between two arrivals that are `window` [T] or just more apart, up to the time

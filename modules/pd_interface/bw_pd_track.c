@@ -25,7 +25,7 @@ static bw_status grow(double **values, size_t n, size_t room)
 
 bw_status bw_pd_crack_track_note(bw_pd_crack_track *track, double time, double place)
 {
-  if (track->n > 0 && !(place > track->place[track->n - 1])) return BW_OK;
+  if (track->n > 0 && !(place > track->place[track->n - 1] + track->step)) return BW_OK;
   if (track->n == track->room) {
     const size_t room = 2 * track->room + 64;
     BW_TRY(grow(&track->time, track->n, room));

@@ -31,20 +31,18 @@ static double layers(const bw_pd_crack *c)
 
 static bw_status measure(specimen *p, outcome *o)
 {
-  const double ds = p->ds, gap = 1.5 * ds, notch = p->config.follow.from[0];
+  specimen_fork fork;
   bw_pd_crack crack;
+  BW_TRY(specimen_branches(p, &fork));
   BW_TRY(specimen_find(p, &crack));
-  o->fork = bw_pd_crack_fork(&crack, notch + 0.5 * ds, ds, 3, gap);
-  const double from = isnan(o->fork) ? notch + 0.5 * ds : o->fork, tip = p->crack.tip[0];
-  const double station = from + ds * floor(0.5 * (tip - from) / ds);
-  double middle[2] = {NAN, NAN};
-  o->branches = bw_pd_crack_branches(&crack, station, 0.5 * ds, gap, 2, middle);
-  o->middle = (0.5 * (middle[0] + middle[1]) - p->config.follow.from[1]) / ds;
+  o->fork = fork.x;
+  o->branches = fork.branches;
+  o->middle = (0.5 * (fork.middle[0] + fork.middle[1]) - p->config.follow.from[1]) / p->ds;
   o->layers = layers(&crack);
   bw_pd_crack_release(&crack);
   o->t_start = p->crack.t_start;
   o->t_end = p->crack.t_end;
-  o->tip = tip;
+  o->tip = p->crack.tip[0];
   o->speed = specimen_speed(p, 5e-6);
   o->residual = specimen_residual(p);
   return BW_OK;
@@ -57,7 +55,7 @@ static bw_status tear(bw_validation *v, const char *how, bool claimed, int n,
   specimen_config c;
   specimen p;
   outcome o = {0};
-  BW_TRY(specimen_read(bw_validation_comm(v), "branching_3d", n, changes, &c));
+  BW_TRY(specimen_read(bw_validation_comm(v), "notched_plate/branching_3d", n, changes, &c));
   memset(&p, 0, sizeof p);
   bw_status st = specimen_break(bw_validation_comm(v), &c, &p);
   BW_THEN(st, measure(&p, &o));

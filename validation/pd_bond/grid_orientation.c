@@ -36,7 +36,7 @@ static bw_status tear(const bw_comm *comm, const variant *q, outcome *o)
 {
   specimen_config c;
   specimen p;
-  BW_TRY(specimen_read(comm, "turned_lattice", 0, NULL, &c));
+  BW_TRY(specimen_read(comm, "notched_plate/turned_lattice", 0, NULL, &c));
   c.shape.lattice_angle = q->turn;
   c.solid.horizon_ratio = q->m;
   c.time.step *= q->spacing;

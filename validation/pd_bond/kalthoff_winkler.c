@@ -60,7 +60,7 @@ static bw_status strike(const bw_comm *comm, int n, const char *const changes[],
 {
   specimen_config c;
   specimen p;
-  BW_TRY(specimen_read(comm, "notched_plate", n, changes, &c));
+  BW_TRY(specimen_read(comm, "notched_plate/notched_plate", n, changes, &c));
   memset(&p, 0, sizeof p);
   bw_status st = specimen_break(comm, &c, &p);
   BW_THEN(st, measure(&p, o));

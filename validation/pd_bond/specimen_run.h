@@ -1,18 +1,20 @@
-/* specimen_run.h -- the plates of cases/notched_plate, broken once, for the claims about them. */
+/* specimen_run.h -- the plates of cases/notched_plate and cases/crack_branching, broken once, for
+ * the claims about them. */
 #pragma once
 #include "../../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
+#include "../../cases/notched_plate/specimen_crack.c"
 #include "../../cases/notched_plate/specimen_input.c"
 #include "bw_validation.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The plate of cases/notched_plate/NAME.yaml with some keys changed. Collective. */
+/* The plate of cases/NAME.yaml with some keys changed. Collective. */
 static bw_status specimen_read(const bw_comm *comm, const char *name, int n,
                                const char *const changes[], specimen_config *c)
 {
   char path[1024];
   const char *root = getenv("BW_SOURCE_DIR");
-  snprintf(path, sizeof path, "%s/cases/notched_plate/%s.yaml", root != NULL ? root : ".", name);
+  snprintf(path, sizeof path, "%s/cases/%s.yaml", root != NULL ? root : ".", name);
   *c = specimen_default();
   return bw_config_load(comm, path, specimen_fields, n, changes, sizeof *c, c);
 }

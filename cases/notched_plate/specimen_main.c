@@ -1,0 +1,58 @@
+/* The driver of the cases that break a specimen. */
+#include "specimen_main.h"
+#include "bw_stop.h"
+#include "specimen_output.h"
+#include <math.h>
+
+static bw_status advance(specimen *p, const bw_case *run, bw_history *history)
+{
+  const specimen_files *files = &p->config.output;
+  const int64_t steps = (int64_t)ceil(p->config.time.end / p->config.time.step - 1e-9);
+  bw_progress *line = NULL;
+  bw_progress_config about = bw_progress_config_default();
+  about.time_start = 0.0, about.time_end = p->config.time.end, about.step_end = steps;
+  bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  specimen_sample(p, history);
+  while (st == BW_OK && !specimen_done(p) && !bw_stop_requested(p->comm)) {
+    st = specimen_step(p);
+    if (st == BW_OK && p->steps % files->sample_every == 0) specimen_sample(p, history);
+    if (p->steps % files->picture_every == 0) BW_THEN(st, specimen_picture(p, run));
+    bw_progress_update(line, p->steps, p->time, "crack %.1f mm", 1e3 * p->crack.reach);
+  }
+  bw_progress_finish(&line);
+  return st;
+}
+
+static bw_status simulate(const bw_comm *comm, const specimen_config *config, const bw_case *run)
+{
+  const bw_case_args *args = bw_case_args_of(run);
+  bw_history *history = NULL;
+  specimen p;
+  BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
+             "--restart: this case takes seconds and writes no checkpoints; run it from the start");
+  bw_status st = specimen_create(comm, config, &p);
+  if (st == BW_OK) specimen_describe(&p, bw_case_log(run));
+  if (st == BW_OK && !args->check) {
+    bw_stop_install();
+    st = specimen_open_history(&p, run, &history);
+    BW_THEN(st, advance(&p, run, history));
+    BW_THEN(st, specimen_crack_file(&p, run));
+    BW_THEN(st, specimen_summary(&p, bw_case_log(run)));
+    BW_THEN(st, bw_history_close(comm, &history));
+  }
+  specimen_destroy(&p);
+  return st;
+}
+
+int specimen_main(int argc, char **argv, const char *name, const char *title)
+{
+  specimen_config config = specimen_default();
+  const bw_case_about about = {name, title, specimen_fields, sizeof config};
+  bw_comm *world = NULL;
+  bw_case *run = NULL;
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &run));
+  if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(world, &config, run);
+  st = bw_case_end(world, &run, st);
+  return bw_finish(&world, st);
+}

@@ -48,8 +48,9 @@ def speeds(folders, out):
              "set xrange [0:60]", "set grid lc rgb '#dddddd'", "set key top right"]
     for q, folder in enumerate(folders):
         with open(folder / "history.csv", encoding="utf-8") as file:
-            rows = [r for r in csv.reader(file) if r and not r[0].startswith(("#", "time"))]
-        lines += [f"$d{q} << E"] + [f"{1e6 * float(r[0])} {r[2]}" for r in rows] + ["E"]
+            rows = list(csv.DictReader(file))
+        lines += [f"$d{q} << E"] + [f"{1e6 * float(r['time[s]'])} {r['speed[m/s]']}"
+                                    for r in rows] + ["E"]
     titles = ["200 x 80 particles", "400 x 160"]
     lines.append("plot " + ", ".join(
         [f"$d{q} using 1:2 with lines lw 2 title '{titles[q]}'" for q in range(len(folders))] +

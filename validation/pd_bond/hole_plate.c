@@ -111,7 +111,9 @@ static bw_status run(bw_validation *v)
   static const struct {
     const char *model, *name;
     bool meets;
-  } models[] = {{"A", "hole_15mm", false}, {"B", "hole_10mm", false}, {"C", "hole_5mm", true}};
+  } models[] = {{"A", "notched_plate/hole_15mm", false},
+                {"B", "notched_plate/hole_10mm", false},
+                {"C", "notched_plate/hole_5mm", true}};
   static const char *const fine[] = {"shape.particles=100", "time.step=20e-9", "follow.every=10"};
   const bw_comm *comm = bw_validation_comm(v);
   for (int level = 0; level <= bw_validation_full(v); level++)

@@ -4,6 +4,23 @@
 #include <math.h>
 #include <string.h>
 
+/* The medium fills the section, so its pores have to join: half the distance of neighbouring ones,
+ * in pitches, and the throat where two meet. */
+static bw_status check_throats(const porous_config *q)
+{
+  static const double half[] = {[BW_SHAPE_PORES_SC] = 0.5,
+                                [BW_SHAPE_PORES_BCC] = 0.43301270,
+                                [BW_SHAPE_PORES_FCC] = 0.35355339};
+  const double d = half[q->medium.lattice], r = q->medium.radius_over_pitch;
+  const double cells = q->medium.pitch / q->domain.length[1] * q->domain.cells[1];
+  const double throat = r > d ? 2.0 * sqrt(r * r - d * d) * cells : 0.0;
+  BW_REQUIRE(throat >= 1.0, BW_EINPUT,
+             "medium.radius_over_pitch = %g: neighbouring pores meet in throats of %.2g cells, and "
+             "nothing flows through a medium that fills the section; take more than %.3f",
+             r, throat, sqrt(d * d + 0.25 / (cells * cells)));
+  return BW_OK;
+}
+
 static bw_status check_combinations(const porous_config *q)
 {
   const porous_domain *d = &q->domain;
@@ -22,7 +39,7 @@ static bw_status check_combinations(const porous_config *q)
   BW_REQUIRE(fabs(pitches - round(pitches)) < 1e-9 * pitches, BW_EINPUT,
              "medium.pitch = %g m: the periodic span %g m must hold a whole number of pitches (%g)",
              q->medium.pitch, d->length[2], pitches);
-  return BW_OK;
+  return check_throats(q);
 }
 
 static bw_status build_fluid(porous_run *p)
@@ -86,6 +103,11 @@ static bw_status build_solid(porous_run *p)
   uint8_t *kind = NULL;
   bw_status st = bw_pd_shape_fill(m->clamped_layers > 0 ? 3 : 2, body, ds, solid.origin, false, &n,
                                   &site, &kind);
+  const int64_t layer = (int64_t)m->clamped_layers * lround(m->length / ds) * q->domain.cells[2];
+  if (st == BW_OK && n <= layer)
+    st = BW_FAIL(BW_EINPUT,
+                 "medium.radius_over_pitch = %g: the pores leave no particle of spacing %g m",
+                 m->radius_over_pitch, ds);
   BW_THEN(st, bw_pd_bond_create(p->comm, &solid, n, site, kind, &p->solid));
   bw_release(&site);
   bw_release(&kind);

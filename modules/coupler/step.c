@@ -6,7 +6,9 @@
 
 int bw_coupler_substeps(const bw_coupler *c, double dt)
 {
-  return (int)ceil(dt / (c->config.solid_safety * bw_pd_bond_dt_max(c->solid)));
+  const double least =
+      c->config.solid_safety * bw_pd_bond_dt_max(c->solid); /* no bonds: infinite */
+  return (int)fmax(1.0, ceil(dt / least));
 }
 
 bool bw_coupler__probes_look(const bw_coupler *c)

@@ -13,6 +13,7 @@ typedef struct {
   bool periodic;            /* along x, driven by a gradient; else inflow and outflow */
   double ratio, gravity;    /* density of the blocks; along -y */
   int n_block, block[4][4]; /* lower and upper corner in cells */
+  int held_block;           /* number (from 1) of the block that is prescribed; 0: none */
   bool no_contact, still;   /* still: fluid at rest */
   bw_coupler_load_kind load;
 } bodies_set_up;
@@ -81,7 +82,8 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
   c.contact = !b->no_contact;
   c.origin[2] = 0.5 * H;
   for (int q = 0; q < b->n_block; q++) {
-    shape[q] = (bw_shape){.kind = BW_SHAPE_BOX};
+    shape[q] = (bw_shape){.kind = BW_SHAPE_BOX,
+                          .particle_kind = q + 1 == b->held_block ? BW_PD_PRESCRIBED : BW_PD_FREE};
     for (int d = 0; d < 2; d++) {
       shape[q].lower[d] = b->block[q][d] * H;
       shape[q].upper[d] = b->block[q][2 + d] * H;

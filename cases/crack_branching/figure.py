@@ -45,7 +45,8 @@ def maps(folder, out):
 def speeds(folders, out):
     lines = ["set terminal pngcairo size 900,420 font 'sans,10'", f"set output '{out}'",
              "set xlabel 'time [us]'", "set ylabel 'speed of the tip over 2 us [m/s]'",
-             "set xrange [0:60]", "set grid lc rgb '#dddddd'", "set key top right"]
+             "set xrange [0:60]", "set yrange [0:2500]",
+             "set grid lc rgb '#dddddd'", "set key top right"]
     for q, folder in enumerate(folders):
         with open(folder / "history.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

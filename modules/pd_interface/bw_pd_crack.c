@@ -16,16 +16,6 @@ static double component(const double x[3], const double e[3])
   return x[0] * e[0] + x[1] * e[1] + x[2] * e[2];
 }
 
-double bw_pd_crack_tip(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
-                       const double X0[], const double damage[])
-{
-  double tip = -INFINITY;
-  for (size_t h = 0; h < n; h++)
-    if (damage[h] > config->level) tip = fmax(tip, component(&X0[3 * h], config->along));
-  bw_comm_max(comm, 1, &tip);
-  return tip;
-}
-
 typedef struct {
   double s, t;
 } point;

@@ -18,17 +18,13 @@ typedef struct {
 
 bw_pd_crack_config bw_pd_crack_config_default(void);
 
-/* Largest s of a cracked particle; -INFINITY when there is none. X0 (n,3) reference positions and
- * damage (n) of this rank's particles, as bw_pd_bond gives them. Collective. */
-double bw_pd_crack_tip(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
-                       const double X0[], const double damage[]);
-
 typedef struct {
   size_t n;
   double *s, *t; /* (n) cracked particles of all ranks, by rising s, then t */
 } bw_pd_crack;
 
-/* The whole crack on every rank; free with bw_pd_crack_release. Collective. */
+/* The whole crack on every rank; free with bw_pd_crack_release. X0 (n,3) reference positions and
+ * damage (n) of this rank's particles, as bw_pd_bond gives them. Collective. */
 bw_status bw_pd_crack_collect(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
                               const double X0[], const double damage[],
                               bw_pd_crack *out) BW_MUST_CHECK;

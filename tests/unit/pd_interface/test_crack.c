@@ -37,9 +37,9 @@ START_TEST(a_drawn_fork_is_measured)
 {
   plate p = plate_create();
   const bw_pd_crack_config c = bw_pd_crack_config_default();
-  bw_check_near(bw_pd_crack_tip(bw_check_world(), &c, p.n, p.X0, p.damage), 24.75, 1e-12);
   bw_pd_crack k;
   bw_check_ok(bw_pd_crack_collect(bw_check_world(), &c, p.n, p.X0, p.damage, &k));
+  bw_check_near(k.s[k.n - 1], 24.75, 1e-12);
   for (size_t q = 1; q < k.n; q++)
     ck_assert(k.s[q] > k.s[q - 1] || (k.s[q] == k.s[q - 1] && k.t[q] > k.t[q - 1]));
   const double gap = 0.75;
@@ -66,7 +66,6 @@ START_TEST(no_crack_is_no_crack)
   plate p = plate_create();
   bw_pd_crack_config c = bw_pd_crack_config_default();
   c.level = 0.5;
-  ck_assert(isinf(bw_pd_crack_tip(bw_check_world(), &c, p.n, p.X0, p.damage)));
   bw_pd_crack k;
   bw_check_ok(bw_pd_crack_collect(bw_check_world(), &c, p.n, p.X0, p.damage, &k));
   ck_assert_uint_eq(k.n, 0);

@@ -21,8 +21,9 @@ typedef struct {
   bool has_z;
 } box_sides;
 typedef struct {
-  double length[3], stretching;
+  double length[3], stretch;
   int cells[3];
+  char faces[256];
 } box_domain;
 typedef struct {
   double viscosity;

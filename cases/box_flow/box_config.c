@@ -8,11 +8,14 @@
 static const bw_config_field domain_fields[] = {
     V(box_domain, length, BW_REQUIRED, BW_ABOVE(0), "L", "box in x, y, z"),
     V(box_domain, cells, BW_REQUIRED, BW_AT_LEAST(1), "", "in x, y, z; 1 in z: two dimensions"),
-    V(box_domain, stretching, BW_OPTIONAL, BW_FROM_TO(0, 10), "", "tanh, towards both y sides"),
+    V(box_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
+      "of y: tanh, thin cells at both sides; 0: uniform"),
+    V(box_domain, faces, BW_OPTIONAL, BW_ANY, "", "text file with the faces in y, 0 to length"),
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {
     {"explicit", BW_VISCOUS_EXPLICIT, "cheapest; the step is limited by dx^2/nu"},
     {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "for cells that are thin in y"},
+    {"implicit", BW_VISCOUS_IMPLICIT, "no limit by the viscosity"},
     {NULL, 0, NULL}};
 static const bw_config_field fluid_fields[] = {
     V(box_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T", "kinematic"),
@@ -193,9 +196,9 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
   *fluid = bw_ns_channel_config_default();
   memcpy(grid->n, c->domain.cells, sizeof grid->n);
   memcpy(grid->length, c->domain.length, sizeof grid->length);
-  if (c->domain.stretching > 0.0) {
+  if (c->domain.stretch > 0.0) {
     grid->y_stretch = BW_STRETCH_TANH;
-    grid->y_stretch_strength = c->domain.stretching;
+    grid->y_stretch_strength = c->domain.stretch;
   }
   fluid->nu = c->fluid.viscosity;
   fluid->viscous = (bw_ns_viscous)c->fluid.viscous;
@@ -203,6 +206,9 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
     fluid->forcing = (bw_ns_forcing)c->forcing.kind;
     fluid->forcing_value = c->forcing.value;
   }
+  BW_REQUIRE(c->domain.stretch == 0.0 || c->domain.faces[0] == 0, BW_EINPUT,
+             "domain.stretch is %g and domain.faces is %s; give one of them", c->domain.stretch,
+             c->domain.faces);
   BW_TRY(times_check(c));
   if (isnan(c->time.step) && isnan(c->time.limit_share)) c->time.limit_share = 0.8;
   BW_TRY(sides_resolve(c, grid, fluid));

@@ -7,7 +7,16 @@
 bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
                      const bw_ns_channel_config *fluid)
 {
-  BW_TRY(bw_grid_create(comm, grid, &b->grid));
+  const char *path = b->config->domain.faces;
+  bw_grid_config g = *grid;
+  double *faces = NULL;
+  if (path[0] != 0) {
+    BW_TRY(bw_grid_read_table(comm, path, g.n[1], g.length[1], &faces));
+    g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
+  }
+  const bw_status st = bw_grid_create(comm, &g, &b->grid);
+  bw_release(&faces);
+  BW_TRY(st);
   return bw_ns_channel_create(b->grid, fluid, &b->fluid);
 }
 

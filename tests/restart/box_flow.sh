@@ -20,8 +20,10 @@ same() {
 same cavity 2 box_flow 4 2 --set "domain.cells=[24, 24, 1]" --set output.picture_every=0
 same channel 2 poiseuille 1 0.5 --set "domain.cells=[32, 16, 1]"
 same back_flow 2 back_flow 0.8 0.4 --set "domain.cells=[48, 24, 1]" --set output.picture_every=0.4
-same duct 2 duct 0.4 0.2 --set "domain.cells=[4, 12, 10]" --set domain.stretching=1.2 \
+same duct 2 duct 0.4 0.2 --set "domain.cells=[4, 12, 10]" --set domain.stretch=1.2 \
   --set fluid.viscous=implicit_y
+same implicit 2 back_flow 0.4 0.2 --set "domain.cells=[48, 24, 1]" --set fluid.viscous=implicit \
+  --set fluid.viscosity=0.01 --set output.picture_every=0
 same fixed_step 1 duct 0.4 0.2 --set "domain.cells=[4, 8, 8]" --set time.step=0.005
 
 # Steady in the end: the forcing is what the four walls take, G = 4 stress/a. Named columns.

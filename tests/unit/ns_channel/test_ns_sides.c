@@ -25,11 +25,30 @@ static void swirl(const double x[3], double t, void *context, double u[3])
   if (w->mirrored) u[w->d] = -u[w->d];
 }
 
+/* Cells in y that grow from 0.6 to 1.4 of the mean upwards; downwards where the flow is mirrored
+ * in y. */
+static bw_grid *grid_through(const bw_comm *comm, const through *w, int n2)
+{
+  enum { N1 = 9 };
+  double y[N1 + 1];
+  bw_grid_config c = bw_grid_config_default();
+  bw_grid *grid = NULL;
+  for (int j = 0; j <= N1; j++) {
+    const bool down = w->mirrored && w->d == 1;
+    const double s = (double)(down ? N1 - j : j) / N1, up = length[1] * s * (0.6 + 0.4 * s);
+    y[j] = down ? length[1] - up : up;
+  }
+  c.n[0] = 8, c.n[1] = N1, c.n[2] = n2;
+  memcpy(c.length, length, sizeof c.length);
+  c.y_stretch = BW_STRETCH_TABLE, c.y_table = y;
+  bw_check_ok(bw_grid_create(comm, &c, &grid));
+  return grid;
+}
+
 static bw_ns_channel *flow_through(const bw_comm *comm, through *w, int n2)
 {
   const int d = w->d, a = (d + 1) % (n2 == 1 ? 2 : 3), in = w->mirrored ? 1 : 0;
   const double sign = w->mirrored ? -1.0 : 1.0;
-  const int n[3] = {8, 9, n2};
   bw_ns_channel_config c = ns_config(closed, 0.02);
   c.viscous = w->viscous;
   c.side[d][in] = (bw_ns_side){.kind = BW_SIDE_INFLOW};
@@ -38,7 +57,7 @@ static bw_ns_channel *flow_through(const bw_comm *comm, through *w, int n2)
   c.side[d][1 - in].kind = BW_SIDE_OUTFLOW;
   c.side[a][0].velocity[d] = 0.6 * sign;
   c.side[a][1].kind = BW_SIDE_FREE_SLIP;
-  bw_ns_channel *ns = ns_solver(ns_grid(comm, n, length, closed, 1.2, 1), &c);
+  bw_ns_channel *ns = ns_solver(grid_through(comm, w, n2), &c);
   bw_check_ok(bw_ns_channel_set_velocity(ns, swirl, w, 0));
   return ns;
 }

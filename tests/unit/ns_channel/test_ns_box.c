@@ -2,19 +2,23 @@
  * TEST ranks=1,2,3,4 */
 #include "ns_support.h"
 
-enum { CASES = 5 };
+enum { CASES = 6 };
 
 static const int n[3] = {12, 10, 8};
 static const double length[3] = {1.2, 1.0, 0.8};
 
-/* Periodic channel with flow rate; gradient; inflow/outflow; implicit y; 2D. Stretched where the
+/* Periodic channel with flow rate; gradient; inflow/outflow; implicit y; 2D; from upper to lower z.
+ * Stretched where the
  * balance has to know the heights. */
 static bw_ns_channel *solver_of(int which)
 {
   const bool channel[3] = {true, false, true}, closed[3] = {false, false, false};
-  const bool *periodic = which == 2 ? closed : channel;
+  const bool *periodic = which == 2 || which == 5 ? closed : channel;
   bw_ns_channel_config c = ns_config(periodic, 0.05);
-  if (which != 2) {
+  if (which == 5) {
+    c.side[2][1].kind = BW_SIDE_INFLOW, c.side[2][1].velocity[2] = -0.5;
+    c.side[2][0].kind = BW_SIDE_OUTFLOW;
+  } else if (which != 2) {
     c.forcing = which == 1 ? BW_FORCING_GRADIENT : BW_FORCING_FLOW_RATE;
     c.forcing_value = 0.5;
   } else {

@@ -45,3 +45,7 @@ bw_status channel_profiles(channel_flow *f, const bw_case *run) BW_MUST_CHECK;
 /* channel_spectra.c: correlations_x.csv, correlations_z.csv, spectra_x.csv, spectra_z.csv, both
  * halves averaged; nothing before the first sample. Collective. */
 bw_status channel_spectra(channel_flow *f, const bw_case *run) BW_MUST_CHECK;
+
+/* The same columns into an HDF5 file, as arrays TABLE/COLUMN. Collective. */
+bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status channel_spectra_hdf5(channel_flow *f, bw_checkpoint *ck) BW_MUST_CHECK;

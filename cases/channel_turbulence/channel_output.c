@@ -84,6 +84,12 @@ static const column face_columns[] = {{"V_plus", BW_NS_PROFILE_V, 1},
                                       {"v_skewness", BW_NS_PROFILE_V_SKEWNESS, 0},
                                       {"v_flatness", BW_NS_PROFILE_V_FLATNESS, 0}};
 
+/* What makes a column dimensionless. */
+static double unit_of(const column *c, double u_tau, double re)
+{
+  return pow(u_tau, fabs((double)c->power)) * (c->power < 0 ? re : 1.0);
+}
+
 /* Every column and, behind it, its 95 % half width. work: (n + 1) rows of 2 n_columns. */
 static void write_table(FILE *out, const channel_flow *f, bool faces, int n_columns,
                         const column columns[], double u_tau, bw_ns_estimate work[])
@@ -101,8 +107,7 @@ static void write_table(FILE *out, const channel_flow *f, bool faces, int n_colu
     fprintf(out, "\n%.9g,%.9g", y, y * u_tau * re);
     for (int c = 0; c < n_columns; c++) {
       const bw_ns_estimate e = work[(size_t)c * rows + (size_t)j];
-      const int power = columns[c].power;
-      const double unit = pow(u_tau, fabs((double)power)) * (power < 0 ? re : 1.0);
+      const double unit = unit_of(&columns[c], u_tau, re);
       fprintf(out, ",%.9g,%.3g", e.mean / unit, e.interval / unit);
     }
   }
@@ -126,12 +131,62 @@ static void write_scalars(FILE *out, const channel_flow *f, bw_ns_estimate work[
           (double)bw_ns_statistics_samples(f->statistics) * f->config->interval * 2.0 * u.mean);
 }
 
+enum {
+  CENTRES = sizeof centre_columns / sizeof *centre_columns,
+  FACES = sizeof face_columns / sizeof *face_columns
+};
+
+/* The same columns as arrays FOLDER/NAME and FOLDER/NAME_ci95. numbers: (2, n + 1). */
+static bw_status put_columns(bw_checkpoint *ck, const channel_flow *f, bool faces, int n_columns,
+                             const column columns[], bw_ns_estimate work[], double numbers[])
+{
+  const bw_grid_view *g = bw_grid_look(f->grid);
+  const char *folder = faces ? "faces" : "centres";
+  const double re = f->config->reynolds, u_tau = channel_u_tau(f, work).mean;
+  const int first = faces ? 0 : 1, rows = faces ? g->n[1] / 2 + 1 : (g->n[1] + 1) / 2;
+  double *error = numbers + g->n[1] + 1;
+  char name[96];
+  for (int j = 0; j < rows; j++)
+    numbers[j] = faces ? g->y_face[j] : g->y_centre[j + 1];
+  snprintf(name, sizeof name, "%s/y_over_h", folder);
+  BW_TRY(bw_checkpoint_put_numbers(ck, name, rows, numbers));
+  for (int c = 0; c < n_columns; c++) {
+    bw_ns_statistics_profile(f->statistics, columns[c].kind, true, work);
+    const double unit = unit_of(&columns[c], u_tau, re);
+    for (int j = 0; j < rows; j++)
+      numbers[j] = work[first + j].mean / unit, error[j] = work[first + j].interval / unit;
+    snprintf(name, sizeof name, "%s/%s", folder, columns[c].name);
+    BW_TRY(bw_checkpoint_put_numbers(ck, name, rows, numbers));
+    snprintf(name, sizeof name, "%s/%s_ci95", folder, columns[c].name);
+    BW_TRY(bw_checkpoint_put_numbers(ck, name, rows, error));
+  }
+  return BW_OK;
+}
+
+bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck)
+{
+  if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;
+  const size_t rows = (size_t)f->config->cells[1] + 1;
+  bw_ns_estimate *work = NULL;
+  double *numbers = NULL;
+  bw_status st = BW_ALLOCATE(&work, rows);
+  BW_THEN(st, BW_ALLOCATE(&numbers, 2 * rows));
+  st = bw_comm_agree(bw_grid_comm(f->grid), st);
+  BW_THEN(st, put_columns(ck, f, false, CENTRES, centre_columns, work, numbers));
+  BW_THEN(st, put_columns(ck, f, true, FACES, face_columns, work, numbers));
+  if (st == BW_OK) {
+    const bw_ns_estimate u = channel_u_tau(f, work);
+    const double re_tau[2] = {0.5 * f->config->reynolds * u.mean,
+                              0.5 * f->config->reynolds * u.interval};
+    st = bw_checkpoint_put_numbers(ck, "Re_tau_and_ci95", 2, re_tau);
+  }
+  bw_release(&work);
+  bw_release(&numbers);
+  return st;
+}
+
 bw_status channel_profiles(channel_flow *f, const bw_case *run)
 {
-  enum {
-    CENTRES = sizeof centre_columns / sizeof *centre_columns,
-    FACES = sizeof face_columns / sizeof *face_columns
-  };
   static const char *const names[3] = {"centres.csv", "faces.csv", "scalars.csv"};
   const bw_comm *comm = bw_grid_comm(f->grid);
   if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;

@@ -2,79 +2,137 @@
 
 #include <stdio.h>
 
-/* One table: correlations R(r)/R(0) over r/h, or spectra E(k)/(u_tau^2 h) over k h. column:
- * (n/2 + 1) for each of 3 components and CHANNEL_HEIGHTS; half: (n/2 + 1). */
-static void write_table(FILE *out, const channel_flow *f, bool spectrum, int direction,
-                        double u_tau, double *column, double *half)
+static const struct {
+  const char *name;
+  bool spectrum;
+  int direction;
+} tables[] = {{"correlations_x", false, 0},
+              {"correlations_z", false, 2},
+              {"spectra_x", true, 0},
+              {"spectra_z", true, 2}};
+enum { TABLES = sizeof tables / sizeof *tables, COLUMNS = 3 * CHANNEL_HEIGHTS };
+
+/* Column c: a component at a height, both halves averaged: R(r)/R(0), or E(k)/(u_tau^2 h) (E_m is
+ * the energy of a band of width 2 pi/L). of, half: (n/2 + 1). */
+static void fill_column(const channel_flow *f, int table, int c, double u_tau, double *of,
+                        double *half)
 {
-  const int n = f->config->cells[direction], lags = n / 2 + 1;
-  const double L = f->config->length[direction], two_pi = 2.0 * acos(-1.0);
-  fputs(spectrum ? "k_h[-]" : "r_over_h[-]", out);
-  for (int q = 0; q < CHANNEL_HEIGHTS; q++)
-    for (int a = 0; a < 3; a++) {
-      double *to = column + (size_t)(3 * q + a) * (size_t)lags;
-      fprintf(out, ",%c%c_yplus%d[-]", "uvw"[a], "uvw"[a], channel_heights[q]);
-      for (int r = 0; r < lags; r++)
-        to[r] = 0.0;
-      for (int side = 0; side < 2; side++) {
-        const int plane = q + side * CHANNEL_HEIGHTS;
-        if (spectrum)
-          bw_ns_correlations_spectrum(f->correlations, plane, a, direction, half);
-        else
-          bw_ns_correlations_get(f->correlations, plane, a, direction, half);
-        for (int r = 0; r < lags; r++)
-          to[r] += 0.5 * half[r];
-      }
-    }
-  for (int r = spectrum ? 1 : 0; r < lags; r++) {
-    fprintf(out, "\n%.9g", spectrum ? two_pi * r / L : r * L / n);
-    for (int c = 0; c < 3 * CHANNEL_HEIGHTS; c++) {
-      const double *of = column + (size_t)c * (size_t)lags;
-      /* E_m is the energy of a band of width 2 pi/L */
-      fprintf(out, ",%.6g", of[r] / (spectrum ? two_pi / L * u_tau * u_tau : of[0]));
-    }
+  const int d = tables[table].direction, lags = f->config->cells[d] / 2 + 1;
+  for (int r = 0; r < lags; r++)
+    of[r] = 0.0;
+  for (int side = 0; side < 2; side++) {
+    const int plane = c / 3 + side * CHANNEL_HEIGHTS;
+    if (tables[table].spectrum)
+      bw_ns_correlations_spectrum(f->correlations, plane, c % 3, d, half);
+    else
+      bw_ns_correlations_get(f->correlations, plane, c % 3, d, half);
+    for (int r = 0; r < lags; r++)
+      of[r] += 0.5 * half[r];
+  }
+  const double band = 2.0 * acos(-1.0) / f->config->length[d];
+  const double unit = tables[table].spectrum ? band * u_tau * u_tau : of[0];
+  for (int r = 0; r < lags; r++)
+    of[r] /= unit;
+}
+
+/* r/h, or k h. */
+static double abscissa(const channel_flow *f, int table, int r)
+{
+  const int d = tables[table].direction;
+  const double L = f->config->length[d];
+  return tables[table].spectrum ? 2.0 * acos(-1.0) * r / L : r * L / f->config->cells[d];
+}
+
+static void column_name(int c, size_t size, char name[])
+{
+  const char q = "uvw"[c % 3];
+  snprintf(name, size, "%c%c_yplus%d", q, q, channel_heights[c / 3]);
+}
+
+/* column: (COLUMNS + 1, n/2 + 1). */
+static void write_table(FILE *out, const channel_flow *f, int table, double u_tau, double *column)
+{
+  const int lags = f->config->cells[tables[table].direction] / 2 + 1;
+  fputs(tables[table].spectrum ? "k_h[-]" : "r_over_h[-]", out);
+  for (int c = 0; c < COLUMNS; c++) {
+    char name[32];
+    column_name(c, sizeof name, name);
+    fprintf(out, ",%s[-]", name);
+    fill_column(f, table, c, u_tau, column + c * lags, column + COLUMNS * lags);
+  }
+  for (int r = tables[table].spectrum ? 1 : 0; r < lags; r++) {
+    fprintf(out, "\n%.9g", abscissa(f, table, r));
+    for (int c = 0; c < COLUMNS; c++)
+      fprintf(out, ",%.6g", column[c * lags + r]);
   }
   fputc('\n', out);
 }
 
-static bw_status write_file(const channel_flow *f, const bw_case *run, const char *name,
-                            bool spectrum, int direction, double u_tau, double *column)
+static bw_status write_file(const channel_flow *f, const bw_case *run, int table, double u_tau,
+                            double *column)
 {
-  char *path = NULL;
+  char *path = NULL, name[32];
+  snprintf(name, sizeof name, "%s.csv", tables[table].name);
   BW_TRY(bw_case_path(run, name, &path));
   bw_status st = BW_OK;
   FILE *out = fopen(path, "w");
   if (out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
   if (out != NULL) {
-    const size_t lags = (size_t)f->config->cells[direction] / 2 + 1;
-    write_table(out, f, spectrum, direction, u_tau, column, column + 3 * CHANNEL_HEIGHTS * lags);
+    write_table(out, f, table, u_tau, column);
     if (fclose(out) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
   }
   bw_release(&path);
   return st;
 }
 
-bw_status channel_spectra(channel_flow *f, const bw_case *run)
+/* From k = 0 and r = 0 on. column: (2, n/2 + 1). */
+static bw_status put_table(bw_checkpoint *ck, const channel_flow *f, int table, double u_tau,
+                           double *column)
 {
-  static const struct {
-    const char *name;
-    bool spectrum;
-    int direction;
-  } table[] = {{"correlations_x.csv", false, 0},
-               {"correlations_z.csv", false, 2},
-               {"spectra_x.csv", true, 0},
-               {"spectra_z.csv", true, 2}};
+  const int lags = f->config->cells[tables[table].direction] / 2 + 1;
+  char name[96], last[32];
+  for (int r = 0; r < lags; r++)
+    column[r] = abscissa(f, table, r);
+  snprintf(name, sizeof name, "%s/%s", tables[table].name,
+           tables[table].spectrum ? "k_h" : "r_over_h");
+  BW_TRY(bw_checkpoint_put_numbers(ck, name, lags, column));
+  for (int c = 0; c < COLUMNS; c++) {
+    column_name(c, sizeof last, last);
+    snprintf(name, sizeof name, "%s/%s", tables[table].name, last);
+    fill_column(f, table, c, u_tau, column, column + lags);
+    BW_TRY(bw_checkpoint_put_numbers(ck, name, lags, column));
+  }
+  return BW_OK;
+}
+
+/* Where the columns go to: csv files of rank 0, or a file of all. */
+static bw_status each_table(channel_flow *f, const bw_case *run, bw_checkpoint *ck)
+{
   const bw_comm *comm = bw_grid_comm(f->grid);
   if (bw_ns_correlations_samples(f->correlations) == 0) return BW_OK;
   const int *n = f->config->cells, most = (n[0] > n[2] ? n[0] : n[2]) / 2 + 1;
   double *column = NULL;
   bw_ns_estimate *rows = NULL;
-  bw_status st = BW_ALLOCATE(&column, (size_t)most * (3 * CHANNEL_HEIGHTS + 1));
+  bw_status st = BW_ALLOCATE(&column, (size_t)most * (COLUMNS + 1));
   BW_THEN(st, BW_ALLOCATE(&rows, (size_t)n[1] + 1));
+  st = bw_comm_agree(comm, st);
   const double u_tau = st == BW_OK ? channel_u_tau(f, rows).mean : 0.0;
-  for (size_t q = 0; q < 4 && st == BW_OK && bw_comm_rank(comm) == 0; q++)
-    st = write_file(f, run, table[q].name, table[q].spectrum, table[q].direction, u_tau, column);
+  for (int q = 0; q < TABLES && st == BW_OK; q++)
+    if (ck != NULL)
+      st = put_table(ck, f, q, u_tau, column);
+    else if (bw_comm_rank(comm) == 0)
+      st = write_file(f, run, q, u_tau, column);
   bw_release(&column);
   bw_release(&rows);
   return bw_comm_agree(comm, st);
+}
+
+bw_status channel_spectra(channel_flow *f, const bw_case *run)
+{
+  return each_table(f, run, NULL);
+}
+
+bw_status channel_spectra_hdf5(channel_flow *f, bw_checkpoint *ck)
+{
+  return each_table(f, NULL, ck);
 }

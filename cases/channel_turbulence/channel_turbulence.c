@@ -7,13 +7,28 @@
 #include "bw_stop.h"
 #include "channel_case.h"
 
+static bw_status save_statistics(channel_flow *f, const bw_case *run)
+{
+  char *path = NULL;
+  bw_checkpoint *ck = NULL;
+  BW_TRY(channel_profiles(f, run));
+  BW_TRY(channel_spectra(f, run));
+  BW_TRY(bw_case_path(run, "statistics.h5", &path));
+  bw_status st = bw_checkpoint_create(bw_grid_comm(f->grid), path, &ck);
+  BW_THEN(st, channel_profiles_hdf5(f, ck));
+  BW_THEN(st, channel_spectra_hdf5(f, ck));
+  BW_THEN(st, bw_checkpoint_close(&ck));
+  bw_checkpoint_abandon(&ck);
+  bw_release(&path);
+  return st;
+}
+
 static bw_status save(channel_flow *f, const bw_case *run)
 {
   char *path = NULL;
   bw_status st = bw_case_path(run, "checkpoint.h5", &path);
   BW_THEN(st, channel_save(f, path));
-  BW_THEN(st, channel_profiles(f, run));
-  BW_THEN(st, channel_spectra(f, run));
+  BW_THEN(st, save_statistics(f, run));
   bw_release(&path);
   return st;
 }

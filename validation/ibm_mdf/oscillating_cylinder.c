@@ -13,9 +13,9 @@
  *            from which one displaced mass is taken: 0.1 h of doubt about the wall is 0.4 h/d of
  *            the area and 0.4 (h/d) (1 + 1/c_a) of c_a (4.5 % at 15 cells, where the layer
  *            sqrt(2 nu/w) of 0.126 d has two cells), and 0.2 h/d of c_d. Walls 8 d away add
- *            2/16^2 = 0.8 % to c_a (concentric potential flow), 1.5 % for the step, for three digits
- *            and for not knowing how they fitted. Probes: what they miss on a steady cylinder
- *            (README of probe), 7 % of the friction at 15 cells, and what the markers have.
+ *            2/16^2 = 0.8 % to c_a (concentric potential flow), 1.5 % for the step, three digits
+ *            and not knowing how they fitted. Probes: what they miss on a steady cylinder (README
+ *            of probe), 7 % of the friction at 15 cells, and what the markers have.
  * BUILD modules=ns_channel,probe
  * TEST  ranks=1,2 */
 #include "../../cases/cylinder_drag/body_flow.h"

@@ -1,6 +1,8 @@
-/* block.h -- a block in fluid at rest in a closed box, plane: free, or moved by force.
- * Units: box 1 x 1, density of the fluid 1. The block is stiff against a step: its bending does not
- * matter, sound crosses it four times in a step, and its oscillations die out within one. */
+/* block.h -- a body in fluid at rest in a closed box, plane: free, or moved by force.
+ * Units: box 1 x 1, density of the fluid 1. Block and cylinder are stiff against a step: bending
+ * does not matter, sound crosses them four times in a step, and oscillations die out within one.
+ * The plate, 2 x 12 cells on the floor, held under it, is elastic: sound goes one spacing in a
+ * step, and pair damping takes the waves of the lattice (as fast as c/ds) within some steps. */
 #pragma once
 #include "bw_coupler.h"
 #include "bw_memory.h"
@@ -11,7 +13,10 @@
 enum { CELLS = 32, BLOCK = 8 };
 static const double H = 1.0 / CELLS, DT = 2e-3, NU = 1e-2;
 
+typedef enum { A_BLOCK, A_CYLINDER, A_PLATE } block_body;
+
 typedef struct {
+  block_body body;
   double ratio; /* density of the block over the fluid's */
   double w;     /* load relaxation */
   double dt;    /* of the steps to come: says what is stiff */
@@ -27,6 +32,7 @@ typedef struct {
   bw_pd_bond *solid;
   bw_coupler *coupler;
   size_t n;
+  double mass; /* of the fluid that the body displaces */
   double *X, *V;
 } block_scene;
 
@@ -40,24 +46,50 @@ static inline void block_destroy(block_scene *s)
   bw_release(&s->V);
 }
 
+/* Returns how many of the two shapes are used: the body, and what holds it under the floor. */
+static inline int block_shapes(const block_set_up *b, bw_shape shape[2])
+{
+  const double size = BLOCK * H, first = 0.5 - 0.5 * size, thin = 2 * H, tall = 12 * H;
+  const uint8_t kind = b->moved ? BW_PD_PRESCRIBED : BW_PD_FREE;
+  shape[0] = (bw_shape){.kind = b->body == A_CYLINDER ? BW_SHAPE_CYLINDER : BW_SHAPE_BOX,
+                        .lower = {first, first},
+                        .upper = {first + size, first + size, H},
+                        .centre = {0.5, 0.5},
+                        .radius = 0.5 * size,
+                        .axis = 2,
+                        .particle_kind = kind};
+  if (b->body != A_PLATE) return 1;
+  shape[0].lower[1] = 0.0, shape[0].upper[1] = tall;
+  shape[0].lower[0] = 0.5 - 0.5 * thin, shape[0].upper[0] = 0.5 + 0.5 * thin;
+  shape[1] = shape[0];
+  shape[1].lower[1] = -3.0 * H, shape[1].upper[1] = 0.0;
+  shape[1].particle_kind = BW_PD_PRESCRIBED;
+  return 2;
+}
+
 static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up *b, block_scene *s)
 {
-  const double size = BLOCK * H, speed_of_sound = 4.0 * size / b->dt, first = 0.5 - 0.5 * size;
-  const bw_shape block = {.kind = BW_SHAPE_BOX,
-                          .lower = {first, first},
-                          .upper = {first + size, first + size, H},
-                          .particle_kind = b->moved ? BW_PD_PRESCRIBED : BW_PD_FREE};
+  const double size = BLOCK * H;
+  const double speed_of_sound = (b->body == A_PLATE ? H : 4.0 * size) / b->dt;
+  bw_shape shape[2];
+  const int shapes = block_shapes(b, shape);
   bw_pd_bond_config c = bw_pd_bond_config_default();
   c.geometry = BW_PD_PLANE_STRAIN;
   c.ds = c.thickness = H;
   c.rho = b->ratio;
   c.E = b->ratio * speed_of_sound * speed_of_sound;
-  c.damping_mean = b->ratio * speed_of_sound / size; /* rests within a step */
+  if (b->body == A_PLATE)
+    c.damping_pair = b->ratio * 0.1 / (b->dt * 30.0 * H * H * H); /* 30 h^3: the family */
+  else
+    c.damping_mean = b->ratio * speed_of_sound / size; /* rests within a step */
   c.origin[2] = 0.5 * H;
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(1, &block, H, c.origin, true, &n, &site, &kind);
+  bw_status st = bw_pd_shape_fill(shapes, shape, H, c.origin, true, &n, &site, &kind);
+  s->mass = 0.0;
+  for (int64_t q = 0; st == BW_OK && q < n; q++)
+    s->mass += site[3 * q + 1] >= 0 ? H * H * H : 0.0;
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
@@ -87,6 +119,7 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   c.load = b->load;
   c.load_relaxation = b->w;
   c.count_work = true;
+  c.walled[1][0] = b->body == A_PLATE;
   if (b->iterations > 0) {
     c.coupling_iterations = b->iterations;
     c.load_relaxation = 0.1;    /* Aitken's first factor */
@@ -98,7 +131,7 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
   bw_coupler_hold_solid(s->coupler, false);
   for (size_t i = 0; i < s->n; i++)
-    s->V[3 * i] = b->speed;
+    s->V[3 * i] = s->X[3 * i + 1] > 0.0 ? b->speed : 0.0;
   if (b->moved)
     bw_pd_bond_set_prescribed(s->solid, s->V);
   else

@@ -2,6 +2,7 @@
  * TEST ranks=1,2,3,4 */
 #include "ibm_fixture.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double DT = 0.02;
@@ -263,6 +264,30 @@ START_TEST(iterations_that_grow_are_refused)
 }
 END_TEST
 
+/* Deeper for wider kernels, and for fewer iterations, which leave more slip; never less than a flat
+ * sheet along the grid has on average without slip, (1/2) sum phi_i phi_j |i - j|. */
+START_TEST(retraction_follows_kernel_and_iterations)
+{
+  static const bw_kernel_delta_id rising[] = {BW_KERNEL_HAT2, BW_KERNEL_ROMA3, BW_KERNEL_PESKIN4};
+  for (int k = 0; k < 3; k++) {
+    double least = 0.0;
+    for (int shift = 0; shift < 10; shift++) {
+      const bw_kernel_delta *kernel = bw_kernel_delta_get(rising[k]);
+      for (int i = -2; i <= 3; i++)
+        for (int j = -2; j <= 3; j++)
+          least += 0.05 * kernel->phi(0.1 * shift - i) * kernel->phi(0.1 * shift - j) * abs(i - j);
+    }
+    double last = 1.0;
+    for (int n = 1; n <= 64; n++) {
+      const double r = bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){rising[k], n});
+      ck_assert(r <= last && r >= least);
+      if (k > 0) ck_assert(r > bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){rising[k - 1], n}));
+      last = r;
+    }
+  }
+}
+END_TEST
+
 START_TEST(bad_input_is_refused_on_all_ranks)
 {
   const bw_comm *comm = bw_check_world();
@@ -310,5 +335,6 @@ static const bw_check_test tests[] = {BW_TEST(one_marker_has_a_closed_form),
                                       BW_TEST(markers_outside_are_counted),
                                       BW_TEST(sets_can_be_replaced),
                                       BW_TEST(iterations_that_grow_are_refused),
+                                      BW_TEST(retraction_follows_kernel_and_iterations),
                                       BW_TEST(bad_input_is_refused_on_all_ranks)};
 BW_CHECK_MAIN("ibm_mdf.force", tests)

@@ -177,6 +177,8 @@ typedef struct {
   const bw_real *X;
 } bw_pd_bond_extended;
 bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
+/* Reference place of one of them, copies where they act [L]. Local. */
+void bw_pd_bond_get_place(const bw_pd_bond *pd, size_t extended, double X0[3]);
 
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
  * Collective. */

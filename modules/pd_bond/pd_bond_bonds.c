@@ -65,6 +65,11 @@ double bw_pd_bond_stencil_fraction(const bw_pd_bond *pd, int slot)
   return pd->stencil.fraction[slot];
 }
 
+void bw_pd_bond_get_place(const bw_pd_bond *pd, size_t extended, double X0[3])
+{
+  bw_pd_bond__reference(pd, extended, X0);
+}
+
 bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd)
 {
   double X[3];

@@ -1,27 +1,9 @@
-/* What an update does: look where bonds broke or gaps may open, then renew normals and rows. */
+/* What an update does: look where bonds broke or gaps may open, renew what follows from that, and
+ * turn the normals with the body. */
 #include "bw_memory.h"
 #include "pd_interface_internal.h"
 #include <math.h>
 #include <string.h>
-
-/* A stand-in where the neighbours balance: the middle of the lowest group of empty sectors (one
- * of the sides of a sheet), or of the lowest one when they surround the particle. */
-static void guess_normal(const bw_pd_interface__stencil *s, uint32_t empty, double n[3])
-{
-  const uint32_t group = bw_pd_interface__group(s, empty);
-  double sum[3] = {0.0, 0.0, 0.0}, squared = 0.0;
-  int lowest = -1;
-  for (int k = 0; k < s->sectors; k++) {
-    if (!(group >> (unsigned)k & 1u)) continue;
-    if (lowest < 0) lowest = k;
-    for (int d = 0; d < 3; d++)
-      sum[d] += s->direction[k][d];
-  }
-  for (int d = 0; d < 3; d++)
-    squared += sum[d] * sum[d];
-  for (int d = 0; d < 3; d++)
-    n[d] = squared > 1e-6 ? sum[d] / sqrt(squared) : s->direction[lowest][d];
-}
 
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X)
 {
@@ -29,9 +11,7 @@ bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X)
   bw_pd_interface__locate(pi, h, X);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi);
   if (pi->outside[h] || !bw_pd_interface__is_open(s, empty, pi->config.n_empty)) return false;
-  double *n = &pi->normal[3 * h];
-  const bool known = n[0] != 0.0 || n[1] != 0.0 || n[2] != 0.0;
-  if (!bw_pd_interface__normal_of(pi, h, X, n) && !known) guess_normal(s, empty, n);
+  bw_pd_interface__tell_normal(pi, h, empty);
   return true;
 }
 
@@ -50,8 +30,9 @@ static void classify(bw_pd_interface *pi, size_t h)
 }
 
 /* Particles whose bonds broke since the last look, and those that left a wall or met it again.
- * Where nothing broke nothing but the places at the walls is read. */
-static void follow_changes(bw_pd_interface *pi, const bw_real *X)
+ * Where nothing broke nothing but the places at the walls is read. Returns whether there are any.
+ */
+static bool follow_changes(bw_pd_interface *pi, const bw_real *X)
 {
   bool changed = false;
   for (size_t q = 0; q < pi->n_leaning; q++) {
@@ -72,19 +53,25 @@ static void follow_changes(bw_pd_interface *pi, const bw_real *X)
       changed = true;
     }
   }
-  if (!changed) return;
+  if (!changed) return false;
   pi->n_gap = 0;
   for (size_t h = 0; h < pi->n; h++)
     if (pi->undecided[h]) pi->gap[pi->n_gap++] = (int32_t)h;
+  return true;
 }
 
-static void follow_gaps(bw_pd_interface *pi, const bw_real *X)
+/* Returns whether a gap has opened or closed far enough to show. */
+static bool follow_gaps(bw_pd_interface *pi, const bw_real *X)
 {
+  bool changed = false;
   for (size_t q = 0; q < pi->n_gap; q++) {
     const size_t h = (size_t)pi->gap[q];
+    const bool before = pi->surface[h];
     bw_pd_interface__resolve(pi, h, false);
     pi->surface[h] = bw_pd_interface__judge(pi, h, X);
+    changed = changed || pi->surface[h] != before;
   }
+  return changed;
 }
 
 /* Room for `more` rows at the end of the pool. Only new crack faces ever ask for it after the
@@ -122,62 +109,21 @@ static void write_row(bw_pd_interface *pi, size_t h)
   pi->stale[h] = false;
 }
 
-/* The normal of h now; it stays the last one where the neighbours balance. */
-static void renew_normal(bw_pd_interface *pi, size_t h, const bw_real *X)
+void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 {
-  if (pi->stale[h]) {
-    bw_pd_interface__resolve(pi, h, false);
-    write_row(pi, h);
-  }
-  double *n = &pi->normal[3 * h];
-  const bool told = pi->stale[h]
-                        ? bw_pd_interface__normal_of(pi, h, X, n)
-                        : bw_pd_interface__normal(pi, h, X, pi->row_n[h], &pi->pool[pi->row[h]], n);
-  if (told || n[0] != 0.0 || n[1] != 0.0 || n[2] != 0.0) return;
-  uint32_t not_held, never;
-  bw_pd_interface__resolve(pi, h, false);
-  bw_pd_interface__bare_sectors(pi, &not_held, &never);
-  guess_normal(&pi->stencil, not_held, n);
-}
-
-/* Particle h at the end of the list. */
-static void append(bw_pd_interface *pi, size_t h, const bw_real *X)
-{
-  const size_t row = pi->n_list++;
-  pi->list[row] = (int32_t)h;
-  pi->area[row] = pi->first[h] ? pi->area_first[h] : pi->area_new;
-  for (size_t d = 0; d < 3; d++) {
-    pi->position[3 * row + d] = (double)X[3 * h + d];
-    pi->velocity[3 * row + d] = pi->all_velocity[3 * h + d];
-    pi->list_normal[3 * row + d] = pi->normal[3 * h + d];
-  }
-}
-
-/* Mean of the normals of the surface particles a surface particle has intact bonds with. Those
- * on the other side of a sheet or an edge look elsewhere (more than 60 degrees) and stay out.
- * Collective. */
-static void smooth(bw_pd_interface *pi)
-{
-  memset(pi->own_normal, 0, 3 * pi->n * sizeof *pi->own_normal);
-  for (size_t row = 0; row < pi->n_list; row++)
-    memcpy(&pi->own_normal[3 * pi->list[row]], &pi->list_normal[3 * row], 3 * sizeof(double));
-  bw_pd_bond_fill_extended(pi->pd, 3 * sizeof(double), pi->own_normal, pi->all_normal);
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row];
-    const double *mine = &pi->all_normal[3 * h];
-    double sum[3] = {mine[0], mine[1], mine[2]}, squared = 0.0;
-    const int family = bw_pd_bond_links(pi->pd, h, pi->link);
-    for (int q = 0; q < family; q++) {
-      const double *n = &pi->all_normal[3 * (size_t)pi->link[q].neighbour];
-      const double cosine = mine[0] * n[0] + mine[1] * n[1] + mine[2] * n[2];
-      if (!pi->link[q].intact || !(cosine > 0.5)) continue;
-      for (int d = 0; d < 3; d++)
-        sum[d] += n[d];
+  pi->n_list = 0;
+  for (size_t h = 0; h < pi->n; h++) {
+    if (!pi->surface[h]) continue;
+    if (pi->stale[h]) {
+      uint32_t not_held, never;
+      bw_pd_interface__resolve(pi, h, reference);
+      bw_pd_interface__bare_sectors(pi, &not_held, &never);
+      bw_pd_interface__tell_normal(pi, h, not_held);
+      bw_pd_interface__anchor(pi, h);
+      write_row(pi, h);
     }
-    for (int d = 0; d < 3; d++)
-      squared += sum[d] * sum[d];
-    for (size_t d = 0; d < 3; d++)
-      pi->list_normal[3 * row + d] = sum[d] / sqrt(squared);
+    pi->area[pi->n_list] = pi->first[h] ? pi->area_first[h] : pi->area_new;
+    pi->list[pi->n_list++] = (int32_t)h;
   }
 }
 
@@ -185,14 +131,19 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
   const bw_pd_bond_extended all = bw_pd_bond_get_extended(pi->pd);
   bw_pd_bond_get_velocity(pi->pd, pi->all_velocity);
-  follow_changes(pi, all.X);
-  follow_gaps(pi, all.X);
-  pi->n_list = 0;
-  for (size_t h = 0; h < pi->n; h++) {
-    if (!pi->surface[h]) continue;
-    renew_normal(pi, h, all.X);
-    append(pi, h, all.X);
+  const bool broken = follow_changes(pi, all.X), shown = follow_gaps(pi, all.X);
+  int64_t changed = pi->fresh_start || broken || shown;
+  if (changed) bw_pd_interface__renew(pi, false);
+  pi->fresh_start = false;
+  bw_comm_max_int(bw_pd_bond_comm(pi->pd), 1, &changed);
+  if (changed) bw_pd_interface__settle_normals(pi);
+  for (size_t row = 0; row < pi->n_list; row++) {
+    const size_t h = (size_t)pi->list[row];
+    for (size_t d = 0; d < 3; d++) {
+      pi->position[3 * row + d] = (double)all.X[3 * h + d];
+      pi->velocity[3 * row + d] = pi->all_velocity[3 * h + d];
+    }
+    bw_pd_interface__follow(pi, row, all.X);
   }
-  if (pi->config.smooth_normals) smooth(pi);
   return BW_OK;
 }

@@ -64,13 +64,14 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->own_normal, pi->config.smooth_normals ? 3 * n : 0));
+  BW_THEN(st, BW_ALLOCATE(&pi->own_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
+  BW_THEN(st, BW_ALLOCATE(&pi->hold, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->extended_velocity, 3 * pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->near, slots));
-  BW_THEN(st, BW_ALLOCATE(&pi->present, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->place, 3 * slots));
   return st;
 }
@@ -105,15 +106,18 @@ static void measure_reference(bw_pd_interface *pi)
   double total[2] = {0.0, 0.0};
   for (size_t h = 0; h < pi->n; h++) {
     bw_pd_interface__resolve(pi, h, true);
-    pi->first[h] = bw_pd_interface__judge(pi, h, NULL);
-    pi->surface[h] = pi->first[h];
-    if (pi->outside[h]) continue;
-    total[0] += bw_pd_interface__open_area(pi);
-    if (!pi->first[h]) continue;
-    double n[3] = {0.0, 0.0, 0.0};
-    const bool known =
-        bw_pd_interface__normal_of(pi, h, NULL, n); /* a sheet open on both sides: one of them */
-    pi->area_first[h] = known ? fmax(bw_pd_interface__facing_area(pi, n), least) : pi->area_new;
+    pi->first[h] = pi->surface[h] = bw_pd_interface__judge(pi, h, NULL);
+    if (!pi->outside[h]) total[0] += bw_pd_interface__open_area(pi);
+  }
+  bw_pd_interface__renew(pi, true);
+  bw_pd_interface__settle_normals(pi);
+  for (size_t row = 0; row < pi->n_list; row++) {
+    const size_t h = (size_t)pi->list[row];
+    double n[3];
+    bw_pd_interface__resolve(pi, h, true);
+    const double facing = bw_pd_interface__facing_area(pi, &pi->own_normal[3 * h]);
+    const bool known = bw_pd_interface__normal_of(pi, n); /* else a sheet open on both sides */
+    pi->area_first[h] = known ? fmax(facing, least) : pi->area_new;
     total[1] += 1.0;
   }
   bw_comm_sum(bw_pd_bond_comm(pi->pd), 2, total);
@@ -151,8 +155,10 @@ bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *c
   }
   bw_pd_bond_get_reference(pd, pi->X0);
   place_walls(pi);
+  memset(pi->stale, true, pi->n * sizeof *pi->stale);
   measure_reference(pi);
   memset(pi->stale, true, pi->n * sizeof *pi->stale);
+  pi->fresh_start = true;
   *out = pi;
   return bw_pd_interface_update(pi);
 }
@@ -162,22 +168,18 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,    (void **)&p->first,
-                    (void **)&p->outside,    (void **)&p->leans,
-                    (void **)&p->broken,     (void **)&p->fresh,
-                    (void **)&p->undecided,  (void **)&p->gap,
-                    (void **)&p->row,        (void **)&p->row_n,
-                    (void **)&p->row_room,   (void **)&p->stale,
-                    (void **)&p->near,       (void **)&p->present,
-                    (void **)&p->pool,       (void **)&p->leaning,
-                    (void **)&p->list,       (void **)&p->X0,
-                    (void **)&p->normal,     (void **)&p->position,
-                    (void **)&p->velocity,   (void **)&p->all_velocity,
-                    (void **)&p->area,       (void **)&p->list_normal,
-                    (void **)&p->link,       (void **)&p->state,
-                    (void **)&p->place,      (void **)&p->off,
-                    (void **)&p->area_first, (void **)&p->own_normal,
-                    (void **)&p->all_normal, (void **)&p->extended_velocity};
+  void **array[] = {
+      (void **)&p->surface,     (void **)&p->first,        (void **)&p->outside,
+      (void **)&p->leans,       (void **)&p->broken,       (void **)&p->fresh,
+      (void **)&p->undecided,   (void **)&p->gap,          (void **)&p->row,
+      (void **)&p->row_n,       (void **)&p->row_room,     (void **)&p->stale,
+      (void **)&p->near,        (void **)&p->hold,         (void **)&p->anchor,
+      (void **)&p->pool,        (void **)&p->leaning,      (void **)&p->list,
+      (void **)&p->X0,          (void **)&p->normal,       (void **)&p->position,
+      (void **)&p->velocity,    (void **)&p->all_velocity, (void **)&p->area,
+      (void **)&p->list_normal, (void **)&p->link,         (void **)&p->state,
+      (void **)&p->place,       (void **)&p->off,          (void **)&p->area_first,
+      (void **)&p->own_normal,  (void **)&p->all_normal,   (void **)&p->extended_velocity};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   bw_release(pi);

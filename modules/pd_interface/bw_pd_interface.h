@@ -7,9 +7,11 @@
  * when no intact bond points into it and the mean distance 3.42 to the partners of its broken
  * bonds, if it has any, exceeds the threshold (the horizon by default). A particle is surface
  * when `n_empty` neighbouring sectors are empty; in a body that never broke these are the
- * particles with an open side on the lattice. Normals by 3.45-3.46 (outward: into the fluid);
- * where the neighbours balance (thin sheets, single particles) the normal is the last one that
- * could be told, at the start the direction of the empty sectors.
+ * particles with an open side on the lattice. Normals (outward: into the
+ * fluid): 3.45-3.46 in the reference shape over the partners that still hold, turned with the body
+ * as a material surface is; smoothed on request. Where the neighbours balance (thin sheets, single
+ * particles) 3.45 is the last one that could be told, at the start the direction of the empty
+ * sectors.
  * Areas of particles that were surface in the reference shape, one of
  *   open sides (default): ds^2 sum over the open lattice faces f of e_f.n_h, at least ds^2/4, so
  *     that sum A n is a closed surface (uniform pressure gives no net force) and sum A n.x each
@@ -20,8 +22,8 @@
  * (refused for a disordered cloud, which no plane mirrors) give them as planes in the config. There
  * partners are taken as mirrored in the plane, until the particle has moved from the wall by more
  * than the threshold or its bonds across it broke. Particles beyond such a plane (ghost layers) are
- * never surface. A disordered cloud has the sectors, weights, first surface and areas of its sites,
- * and normals from the true present places. MPI: results are of the rank's own particles. Updates
+ * never surface. A disordered cloud has the sectors, weights, first surface, areas and first
+ * normals of its sites. MPI: results are of the rank's own particles. Updates
  * cost only the copying of positions and the normals when no bond broke. */
 #pragma once
 #include "bw_pd_bond.h"
@@ -35,8 +37,8 @@ typedef struct {
   int n_empty;         /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
                           POROUS), 1 in 3D                                     default 0 */
   bw_pd_area area;     /* of surface particles, above                  default open sides */
-  bool smooth_normals; /* average 3.45 over the surface within the horizon (normals that differ
-                          by more than 60 degrees apart); one exchange per update. Default false */
+  bool smooth_normals; /* fit over the surface within the horizon: for bodies without edges, which
+                          it rounds over twice that. Default false */
   bool walled[3][2];   /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
   double lower[3], upper[3];
 } bw_pd_interface_config;

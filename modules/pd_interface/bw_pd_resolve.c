@@ -144,24 +144,15 @@ uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
   return empty;
 }
 
-bool bw_pd_interface__normal(const bw_pd_interface *pi, size_t h, const bw_real *X, size_t count,
-                             const bw_pd_interface__near partner[], double n[3])
+bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0, Xh[3], x[3];
-  position_of(pi, h, X, Xh);
-  for (size_t q = 0; q < count; q++) {
-    const double fraction = s->fraction[partner[q].slot];
-    if (X != NULL && partner[q].cross == 0) { /* nearly all; images and the reference: below */
-      const bw_real *there = &X[3 * (size_t)partner[q].partner];
-      x[0] = (double)there[0] - Xh[0], x[1] = (double)there[1] - Xh[1];
-      x[2] = (double)there[2] - Xh[2];
-    } else {
-      locate_one(pi, Xh, X, &partner[q], x);
-    }
+  double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
+  for (int q = 0; q < s->slots; q++) {
+    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
     for (int d = 0; d < 3; d++)
-      mean[d] += fraction * x[d];
-    weight += fraction;
+      mean[d] += s->fraction[q] * s->xi[3 * q + d];
+    weight += s->fraction[q];
   }
   const double length = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
   /* A face has about ds here, a sheet of two layers ds/2; below ds/50 it is chance. */
@@ -169,14 +160,6 @@ bool bw_pd_interface__normal(const bw_pd_interface *pi, size_t h, const bw_real 
   for (int d = 0; d < 3; d++)
     n[d] = -mean[d] / length;
   return true;
-}
-
-bool bw_pd_interface__normal_of(bw_pd_interface *pi, size_t h, const bw_real *X, double n[3])
-{
-  size_t count = 0;
-  for (int q = 0; q < pi->stencil.slots; q++)
-    if (pi->state[q] == BW_PD_INTERFACE__INTACT) pi->present[count++] = pi->near[q];
-  return bw_pd_interface__normal(pi, h, X, count, pi->present, n);
 }
 
 /* |n.e| of the open face half a step along e: n from the centroid of the solid in a ball

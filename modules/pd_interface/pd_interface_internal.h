@@ -50,7 +50,9 @@ struct bw_pd_interface {
   bool *surface;        /* (n) now */
   bool *first;          /* (n) in the reference shape */
   double *X0;           /* (n,3) */
-  double *normal;       /* (n,3) last unit normal of those that are or were surface; else 0 */
+  double *normal;       /* (n,3) last unit normal 3.45 of those that are or were surface, in the
+                           reference shape; else 0 */
+  int32_t *anchor;      /* (n,6) ends of three line elements: extended particles, or h twice */
 
   bool *outside;    /* (n) beyond a wall: never surface */
   bool *leans;      /* (n) its family reaches beyond a wall */
@@ -65,11 +67,10 @@ struct bw_pd_interface {
   int32_t *gap;     /* (n_gap) those that are */
   size_t n_gap;
 
-  bw_pd_bond_link *link;          /* (slots) scratch, of the particle resolved last, as are: */
-  uint8_t *state;                 /* (slots) enum below */
-  bw_pd_interface__near *near;    /* (slots) who is there, where state is not ABSENT */
-  bw_pd_interface__near *present; /* (slots) those that are intact, one after the other */
-  double *place;                  /* (slots,3) relative to the particle */
+  bw_pd_bond_link *link;       /* (slots) scratch, of the particle resolved last, as are: */
+  uint8_t *state;              /* (slots) enum below */
+  bw_pd_interface__near *near; /* (slots) who is there, where state is not ABSENT */
+  double *place;               /* (slots,3) relative to the particle */
 
   bw_pd_interface__near *pool; /* (pool_n of pool_room) partners of surface particles, in rows */
   size_t pool_n, pool_room;
@@ -81,8 +82,10 @@ struct bw_pd_interface {
   size_t n_list;
   double *position, *velocity, *list_normal, *area;
   double *all_velocity;      /* (n,3) */
-  double *own_normal;        /* (n,3) of the surface, 0 elsewhere; for smoothing */
+  double *own_normal;        /* (n,3) of the surface in the reference shape, 0 elsewhere */
   double *all_normal;        /* (n_extended,3) */
+  double *hold;              /* (n_list,3) smooth reference normal along the line elements */
+  bool fresh_start;          /* nothing is known of the present shape yet */
   double *extended_velocity; /* (n_extended,3) scratch of turn */
 };
 
@@ -100,12 +103,9 @@ void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_real *X);
 void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never);
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi);
 
-/* Unit normal 3.45 of h from a list of its present partners; false, and n unchanged, when they
- * balance. X NULL: in the reference shape. Local. */
-bool bw_pd_interface__normal(const bw_pd_interface *pi, size_t h, const bw_real *X, size_t count,
-                             const bw_pd_interface__near partner[], double n[3]);
-/* The same of the particle resolved last. */
-bool bw_pd_interface__normal_of(bw_pd_interface *pi, size_t h, const bw_real *X, double n[3]);
+/* Unit normal 3.45 of the particle resolved last in the reference shape; false, and n unchanged,
+ * when its present partners balance. Local. */
+bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3]);
 
 /* Area [L^2] of the open lattice faces of the particle resolved last, each projected on the
  * normal there (reference shape). Local. */
@@ -117,5 +117,17 @@ double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X);
 
+/* bw_pd_normal.c. Of h, resolved last: its normal 3.45 (where partners balance the one before, at
+ * first that of its empty sectors), and where its line elements end. */
+void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty);
+void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);
+/* own_normal of the listed surface, smoothed if asked, and what its line elements hold of it.
+ * Collective. */
+void bw_pd_interface__settle_normals(bw_pd_interface *pi);
+/* list_normal of a row, turned with the body. */
+void bw_pd_interface__follow(bw_pd_interface *pi, size_t row, const bw_real *X);
+
 /* bw_pd_follow.c: surface or not, of h resolved last (X NULL: reference); renews its normal. */
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X);
+/* The list of surface particles, its areas, and rows, normals 3.45, anchors of the stale ones. */
+void bw_pd_interface__renew(bw_pd_interface *pi, bool reference);

@@ -118,13 +118,13 @@ END_TEST
 /* Largest and mean angle allowed: 3.45 at m = 3 sees the steps of the lattice. A step of one ds
  * that fills half of the half family moves its centroid sideways by about ds/10 of its distance
  * ds: 6 degrees, and two steps as much again; long straight steps (tube, disc) more often than the
- * broken ones of a ball. Smoothing averages over them: 5 and 2.5 degrees are asked of it.
+ * broken ones of a ball. Smoothed: 5 and 2.5 degrees are asked.
  * Area: 3 %; planes of all directions have up to 2 % (half a cell at the rim of the ball of radius
  * 3 of 20 % of the solid seen), curvature adds none. */
 START_TEST(round_bodies_have_their_normals_and_areas)
 {
   for (int smooth = 0; smooth < 2; smooth++) {
-    const double most = smooth ? 7.0 : 12.0, mean = smooth ? 2.5 : 4.5;
+    const double most = smooth ? 5.0 : 12.0, mean = smooth ? 2.5 : 4.5;
     bw_pd_interface_config ic = bw_pd_interface_config_default();
     ic.smooth_normals = smooth;
     ic.area = BW_PD_AREA_EQUAL;

@@ -1,5 +1,5 @@
-/* The spin of a surface: that of a body that turns and moves, whatever else it is.
- * TEST ranks=1,2,3,4 */
+/* The spin of a surface: that of a body that turns and moves, whatever else it is. Its normals
+ * turn. TEST ranks=1,2,3,4 */
 #include "body.h"
 
 static void check_spin(bool planar, const bw_shape *shape, const double spin[3], double scale)
@@ -52,6 +52,60 @@ START_TEST(no_inertia_no_spin)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(rigid_rotation_is_exact),
-                                      BW_TEST(no_inertia_no_spin)};
+/* x = F X: normals of a material surface go with the cofactors of F (Nanson), whatever the body. */
+static void check_normals(bool planar, const bw_shape *shape, double F[3][3])
+{
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  const bw_pd_bond_config c = body_config(planar);
+  body b = body_create(1, shape, &c, &ic);
+  const bw_pd_surface s = bw_pd_interface_surface(b.pi);
+  const size_t n = bw_pd_bond_count(b.pd), rows = s.n;
+  double *X = NULL, *V = NULL, *before = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&before, 3 * rows));
+  memcpy(before, s.N, 3 * rows * sizeof *before);
+  bw_pd_bond_get_reference(b.pd, V);
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++)
+      X[3 * i + d] = F[d][0] * V[3 * i] + F[d][1] * V[3 * i + 1] + F[d][2] * V[3 * i + 2];
+  memset(V, 0, 3 * n * sizeof *V);
+  bw_pd_bond_set_state(b.pd, X, V);
+  bw_check_ok(bw_pd_interface_update(b.pi));
+  for (size_t q = 0; q < rows; q++) {
+    double want[3], length = 0.0;
+    for (int d = 0; d < 3; d++) {
+      want[d] = 0.0;
+      for (int k = 0; k < 3; k++) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3, l = (k + 1) % 3, m = (k + 2) % 3;
+        want[d] += (F[e][l] * F[f][m] - F[e][m] * F[f][l]) * before[3 * q + (size_t)k];
+      }
+      length += want[d] * want[d];
+    }
+    for (size_t d = 0; d < 3; d++)
+      bw_check_near(s.N[3 * q + d], want[d] / sqrt(length), 1e4 * BW_REAL_EPSILON);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&before);
+  body_destroy(&b);
+}
+
+START_TEST(normals_go_with_the_body)
+{
+  const bw_shape ball = {.kind = BW_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 5};
+  const bw_shape sheet = {.kind = BW_SHAPE_BOX, .upper = {8, 6, 1}};
+  double turned[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}};
+  double skewed[3][3] = {{1.1, 0.2, 0.0}, {0.0, 0.9, -0.1}, {0.1, 0.0, 1.0}};
+  double plane[3][3] = {{0.6, -0.8, 0.0}, {1.0, 0.6, 0.0}, {0.0, 0.0, 1.0}};
+  check_normals(false, &ball, turned);
+  check_normals(false, &ball, skewed);
+  check_normals(false, &sheet, turned);
+  const bw_shape disc = {.kind = BW_SHAPE_CYLINDER, .centre = {1, 2, 0.5}, .radius = 6, .axis = 2};
+  check_normals(true, &disc, plane);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(rigid_rotation_is_exact), BW_TEST(no_inertia_no_spin),
+                                      BW_TEST(normals_go_with_the_body)};
 BW_CHECK_MAIN("pd_interface.turn", tests)

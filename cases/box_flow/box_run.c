@@ -62,7 +62,8 @@ bw_status box_advance(box_run *b)
     const double span = end - bw_ns_channel_time(b->fluid);
     const double longest =
         isnan(time->step) ? time->limit_share * bw_ns_channel_dt_max(b->fluid) : time->step;
-    left = (int64_t)ceil(span / longest * (1.0 - 1e-12));
+    /* at least one: at rest an implicit viscous term sets no limit */
+    left = (int64_t)fmax(1.0, ceil(span / longest * (1.0 - 1e-12)));
     b->dt = span / (double)left;
     BW_TRY(bw_ns_channel_step(b->fluid, b->dt));
   }

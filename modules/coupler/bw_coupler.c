@@ -68,10 +68,10 @@ static bw_status create_parts(bw_coupler *c)
 enum { N_VECTORS = 17 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
-  double **const all[N_VECTORS] = {&c->F,        &c->V,     &c->V_before, &c->X,      &c->X_inside,
-                                   &c->marker_X, &c->root,  &c->marker_V, &c->normal, &c->marker_dV,
-                                   &c->area,     &c->accel, &c->traction, &c->force,  &c->turn,
-                                   &c->spin,     &c->root_V};
+  double **const all[N_VECTORS] = {
+      &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
+      &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
+      &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V};
   memcpy(vector, all, sizeof all);
 }
 
@@ -99,6 +99,7 @@ static bw_status create_arrays(bw_coupler *c)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
   BW_TRY(BW_ALLOCATE(&c->flag, n));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
+  BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
   for (int q = 0; q < 3 && c->config.coupling_iterations > 1; q++)
     BW_TRY(BW_ALLOCATE(&c->iterate[q], 3 * n));
@@ -145,6 +146,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   for (int q = 0; q < N_VECTORS; q++)
     bw_release(vector[q]);
   bw_release(&c->particle);
+  bw_release(&c->particle_inside);
   bw_release(&c->row);
   bw_timer_destroy(&c->timer);
   bw_release(&c->flag);

@@ -57,8 +57,13 @@ struct bw_coupler {
   bool watched, stepped; /* bw_coupler_watch; has there been a step since create or load */
   int reach[3][2];       /* local cells that probes can read, where p_mean is kept */
   bw_real *inside;       /* field: 1 in cells that hold a particle */
-  double *X, *X_inside;  /* (n,3) positions now, and when `inside` was computed */
+  double *X;             /* (n,3) positions, scratch */
+  /* `inside` was computed for these n_inside surface particles and roots (n,3) */
+  int32_t *particle_inside;
+  double *root_inside;
+  size_t n_inside;
   bool inside_known, markers_moved;
+  bool motion_known; /* turn and V are those of the solid's present velocities */
   double checked_dt; /* step for which the present flow was found stable */
   bw_timer *timer;
   double bonds; /* intact ends of this rank at the start: work of one force evaluation */

@@ -114,7 +114,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   bw_ns_channel_set_time(c->fluid, s->fluid_numbers[0]);
   bw_ns_channel_set_gradient(c->fluid, s->fluid_numbers[1]);
   bw_ns_channel_refresh(c->fluid);
-  c->p_mean_known = c->stepped = false;
+  c->p_mean_known = c->stepped = c->motion_known = false;
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);

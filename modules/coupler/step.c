@@ -91,6 +91,7 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
   bw_pd_bond_get_velocity(c->solid, c->V_before);
   for (int q = 0; q < substeps; q++)
     BW_THEN(st, bw_pd_bond_step(c->solid, dt / substeps));
+  c->motion_known = false;
   bw_timer_stop(c->timer, BW_PART_SOLID);
   return st;
 }

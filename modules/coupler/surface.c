@@ -26,8 +26,11 @@ static double marker_offset(const bw_coupler *c)
 /* Points at a distance `out` from the surface particles, along their normals. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
 {
-  bw_pd_interface_turn(c->interface, c->turn);
-  bw_pd_bond_get_velocity(c->solid, c->V);
+  if (!c->motion_known) {
+    bw_pd_interface_turn(c->interface, c->turn);
+    bw_pd_bond_get_velocity(c->solid, c->V);
+    c->motion_known = true;
+  }
   for (size_t q = 0; q < c->n_surface; q++) {
     const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
     for (int d = 0; d < 3; d++) {
@@ -66,15 +69,22 @@ static void place(bw_coupler *c)
     c->particle[n++] = s.particle[q];
   }
   c->n_surface = n;
+  c->motion_known = false;
   bw_coupler__marker_velocity(c, c->marker_V);
 }
 
-/* Does `inside` still describe where the solid is, to a tenth of a cell? The same on all ranks. */
+/* Does `inside` still describe where the solid is, to a tenth of a cell? Its surface tells. The
+ * same on all ranks. */
 static bool inside_is_stale(bw_coupler *c)
 {
-  double moved = c->inside_known ? 0.0 : INFINITY;
-  for (size_t i = 0; i < 3 * c->n; i++)
-    moved = fmax(moved, fabs(c->X[i] - c->X_inside[i]));
+  const size_t n = c->n_surface;
+  const bool known = c->inside_known && n == c->n_inside &&
+                     memcmp(c->particle_inside, c->particle, n * sizeof *c->particle) == 0;
+  double moved = known ? 0.0 : INFINITY;
+  for (size_t i = 0; known && i < 3 * n; i++) {
+    const double far = fabs(c->root[i] - c->root_inside[i]);
+    moved = far > moved ? far : moved;
+  }
   bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 1, &moved);
   return moved > 0.1 * c->h;
 }
@@ -101,6 +111,7 @@ static bw_status mark_inside(bw_coupler *c)
   double *send = NULL, *receive = NULL;
   bw_exchange *plan = NULL;
   size_t n = 0;
+  bw_pd_bond_get_position(c->solid, c->X);
   bw_status st = BW_ALLOCATE(&owner, c->n);
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
   for (size_t p = 0; st == BW_OK && p < c->n; p++) {
@@ -119,7 +130,9 @@ static bw_status mark_inside(bw_coupler *c)
     for (size_t q = 0; q < bw_exchange_received(plan); q++)
       c->inside[cell_of(g, receive + 3 * q)] = 1;
     bw_halo_update(grid, 1, &c->inside);
-    memcpy(c->X_inside, c->X, 3 * c->n * sizeof *c->X);
+    memcpy(c->root_inside, c->root, 3 * c->n_surface * sizeof *c->root);
+    memcpy(c->particle_inside, c->particle, c->n_surface * sizeof *c->particle);
+    c->n_inside = c->n_surface;
     c->inside_known = true;
   }
   bw_exchange_destroy(&plan);
@@ -187,7 +200,6 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   const bw_real *p = c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
-  bw_pd_bond_get_position(c->solid, c->X);
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));

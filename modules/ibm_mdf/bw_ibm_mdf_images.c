@@ -76,13 +76,10 @@ static void cast_one(bw_ibm_mdf *ib, unsigned m, const double s[3], const int at
 /* Images of marker m, the first of them the q-th of all; returns the number after the last. */
 static size_t cast_marker(bw_ibm_mdf *ib, unsigned m, size_t q, bool *changed)
 {
-  const bw_ibm_mdf__item *item = &ib->received[ib->order[m]];
-  double s[3];
+  const double *s = ib->place[m].s;
   unsigned bits[3];
-  for (int d = 0; d < 3; d++) {
-    s[d] = bw_ibm_mdf__local(ib->g, item->s, d);
+  for (int d = 0; d < 3; d++)
     bits[d] = reached(ib, d, s[d]);
-  }
   if (bits[0] == 1 && bits[1] == 1 && bits[2] == 1) return q;
   int at[3];
   for (at[2] = 0; bits[2] >> at[2] != 0; at[2]++)

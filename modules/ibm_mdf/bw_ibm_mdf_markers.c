@@ -28,6 +28,7 @@ static bw_status reserve_held(bw_ibm_mdf *ib, size_t held)
   IBM_RENEW(&ib->swap, some);
   IBM_RENEW(&ib->key, some);
   IBM_RENEW(&ib->key_swap, some);
+  IBM_RENEW(&ib->place, some);
   IBM_RENEW(&ib->V, 3 * some);
   IBM_RENEW(&ib->dV, some);
   IBM_RENEW(&ib->QdV, 3 * some);
@@ -144,6 +145,8 @@ static bw_status settle(bw_ibm_mdf *ib)
   sort_by_cell(ib);
   for (size_t m = 0; m < ib->held; m++) {
     const bw_ibm_mdf__item *item = &ib->received[ib->order[m]];
+    for (int d = 0; d < 3; d++)
+      ib->place[m].s[d] = bw_ibm_mdf__local(ib->g, item->s, d);
     memcpy(ib->V + 3 * m, item->v, sizeof item->v);
     ib->dV[m] = item->volume;
   }

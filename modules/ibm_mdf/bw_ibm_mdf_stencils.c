@@ -22,6 +22,15 @@ static uint32_t kept(const bw_grid_view *g, int place, int d, int lowest, const 
   return bits;
 }
 
+/* Weights that begin `by` nodes after the window does; those outside it are dropped. */
+static void move_window(int by, int width, bw_real w[IBM_WIDTH])
+{
+  bw_real moved[IBM_WIDTH] = {0};
+  for (int q = 0; q < IBM_WIDTH; q++)
+    if (q + by >= 0 && q + by < width) moved[q + by] = w[q];
+  memcpy(w, moved, sizeof moved);
+}
+
 /* Row `line` of marker i of a batch. The window of nodes is moved where it would leave the halo: x
  * rows of narrow kernels, and images, of which only what lies in reach has weights here. Returns
  * the lowest node. */
@@ -32,11 +41,9 @@ static int fill_line(const bw_ibm_mdf *ib, const batch *b, int line, int i, bw_r
   const int first = b->first[line][i];
   const int lowest = 1 - g->halo[d], highest = g->m[d] + g->halo[d] - width + 1;
   const int start = first < lowest ? lowest : first > highest ? highest : first;
-  memset(w, 0, IBM_WIDTH * sizeof *w);
-  for (int q = 0; q < support; q++) {
-    const int p = first + q - start;
-    if (p >= 0 && p < width) w[p] = (bw_real)b->w[q][line][i];
-  }
+  for (int q = 0; q < IBM_WIDTH; q++) /* beyond the support: zero */
+    w[q] = (bw_real)b->w[q][line][i];
+  if (start != first) move_window(first - start, width, w);
   return start;
 }
 
@@ -67,14 +74,13 @@ static void fill(const bw_ibm_mdf *ib, const batch *b, int i, bw_ibm_mdf__weight
 static void place_of(const bw_ibm_mdf *ib, size_t m, double s[3])
 {
   for (int d = 0; d < 3; d++)
-    s[d] = m < ib->held ? bw_ibm_mdf__local(ib->g, ib->received[ib->order[m]].s, d)
-                        : ib->image[m - ib->held].s[d];
+    s[d] = m < ib->held ? ib->place[m].s[d] : ib->image[m - ib->held].s[d];
 }
 
 void bw_ibm_mdf__weigh(bw_ibm_mdf *ib)
 {
   const size_t all = ib->held + ib->images;
-  batch b = {.s = {{0.0}}};
+  batch b = {.s = {{0.0}}}; /* weights beyond the support stay zero */
   for (size_t start = 0; start < all; start += BATCH) {
     const int n = all - start < BATCH ? (int)(all - start) : BATCH;
     for (int i = 0; i < n; i++) {

@@ -81,6 +81,7 @@ struct bw_ibm_mdf {
   size_t held, held_room;
   bw_ibm_mdf__item *received;              /* (held) */
   unsigned *order, *swap, *key, *key_swap; /* (held) */
+  bw_ibm_mdf__place *place;                /* (held) */
   size_t *layer;  /* (m[2] + 1) first marker of each layer of cells in z, and the end */
   double *V, *dV; /* (held,3), (held) */
   double *QdV;    /* (held,3) since begin_step */

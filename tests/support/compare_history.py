@@ -3,11 +3,13 @@
 
 usage: compare_history.py A B TOLERANCE [STEPS_AFTER]
 Until the first bond breaks every column agrees to TOLERANCE times its scale, the largest value of
-that column (of the vector, for the components of one) in A. For STEPS_AFTER rows after that
+that column (of the vector, for the components of one) in A, but for what tells how the work is divided. For STEPS_AFTER rows after that
 (default 100) the number of broken bonds is the same. Exit code 1 and one line where not.
 """
 import csv
 import sys
+
+DIVISION = ("markers_most_over_mean[-]",)  # depends on the number of ranks by itself
 
 
 def read(path):
@@ -39,6 +41,8 @@ def main(path_a, path_b, tolerance, after=100):
     scale, worst = scales(names, a[:first]), (0.0, "", 0)
     for q in range(first):
         for c, name in enumerate(names):
+            if name in DIVISION:
+                continue
             error = abs(a[q][c] - b[q][c]) / scale[c] if scale[c] > 0 else abs(b[q][c])
             worst = max(worst, (error, name, q))
     print(f"before breaking: {first} rows, worst {worst[0]:.2e} in {worst[1]} at row {worst[2]}")

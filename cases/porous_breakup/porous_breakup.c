@@ -72,7 +72,7 @@ static bw_status simulate(porous_run *p)
   }
   if (st == BW_EDIVERGED || st == BW_ECFL) st = porous_save_last_good(p, st);
   BW_THEN(st, porous_fragments_csv(p));
-  BW_THEN(st, bw_timer_report(bw_coupler_timer(p->coupler), p->comm, bw_case_log(p->run)));
+  BW_THEN(st, porous_cost(p));
   return st;
 }
 

@@ -64,7 +64,7 @@ typedef struct {
   int64_t total_step;               /* since the start of the flow */
   double last_drop, last_drop_time; /* pressure drop at the previous settling check */
   double kept_progress[N_PROGRESS]; /* what a checkpoint says of the run, of the last good state */
-  double broken;                    /* bonds, at the last sample */
+  double broken, imbalance;         /* bonds; markers, most on a rank over the mean; last sample */
   bool warned;                      /* that pieces hit each other too hard */
   bool stopped;                     /* a signal asked for an end in good order */
 } porous_run;
@@ -107,8 +107,7 @@ enum {
   COL_OUT,
   COL_LEFT,
   COL_WALLS,
-  COL_IMBALANCE = COL_WALLS + 3,
-  COL_COUNT
+  COL_COUNT = COL_WALLS + 3
 };
 extern const char *const porous_columns[COL_COUNT];
 bw_status porous_measure(porous_run *p, double row[COL_COUNT]) BW_MUST_CHECK;
@@ -145,3 +144,5 @@ bw_status porous_restart(porous_run *p, const char *path) BW_MUST_CHECK;
 /* What is due after a step: the last good state, samples, pictures, checkpoints. */
 bw_status porous_after_step(porous_run *p) BW_MUST_CHECK;
 bw_status porous_fragments_csv(porous_run *p) BW_MUST_CHECK;
+/* Where the time went, and how evenly the markers lay on the ranks. Collective. */
+bw_status porous_cost(porous_run *p) BW_MUST_CHECK;

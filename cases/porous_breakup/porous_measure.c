@@ -41,7 +41,6 @@ const char *const porous_columns[COL_COUNT] = {
     [COL_WALLS] = "impulse_on_walls_x[N s]",
     [COL_WALLS + 1] = "impulse_on_walls_y[N s]",
     [COL_WALLS + 2] = "impulse_on_walls_z[N s]",
-    [COL_IMBALANCE] = "markers_most_over_mean[-]",
 };
 
 /* Mean of p/rho over the plane of cells i. */
@@ -205,7 +204,7 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_INSIDE] = r.mass_inside;
   row[COL_OUT] = r.mass_out;
   row[COL_LEFT] = r.mass_left;
-  row[COL_IMBALANCE] = r.imbalance;
+  p->imbalance = r.imbalance;
   for (int d = 0; d < 3; d++) {
     row[COL_REACTION + d] = r.force_reaction[d];
     row[COL_PROBE + d] = r.force_probe[d];

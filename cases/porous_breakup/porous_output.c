@@ -203,3 +203,9 @@ bw_status porous_fragments_csv(porous_run *p)
   bw_release(&path);
   return bw_comm_agree(p->comm, st);
 }
+
+bw_status porous_cost(porous_run *p)
+{
+  bw_log_info(bw_case_log(p->run), "markers    most on a rank over the mean: %.2f", p->imbalance);
+  return bw_timer_report(bw_coupler_timer(p->coupler), p->comm, bw_case_log(p->run));
+}

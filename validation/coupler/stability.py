@@ -18,8 +18,9 @@ script = ["set terminal pngcairo size 1300,470 font ',10'", f"set output '{sys.a
           "set multiplot layout 1,3", "set logscale xy; set grid",
           "set xlabel 'share w of the new load in each step'; set xrange [0.04:1.3]",
           "set ylabel 'density of the body over that of the fluid'; set yrange [0.01:20]",
-          "set key bottom right"]
+          "set key bottom right font ',9'"]
 for body in BODIES:
+    script.append("set key" if body == BODIES[-1] else "unset key")
     plots = []
     for load, colour in LOADS:
         of = [r for r in rows if r.get("body") == body and r.get("load") == load]

@@ -23,7 +23,7 @@ static void add_pressure(bw_coupler *c, int r)
   static const double gamma[3] = {8.0 / 15, 2.0 / 15, 1.0 / 3};
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_real *p = bw_ns_channel_pressure(c->fluid);
-  const bw_real weight = (bw_real)gamma[r], keep = r > 0;
+  const bw_real weight = (bw_real)gamma[r];
   bw_real *restrict mean = c->p_mean;
   c->p_mean_known = false;
   if (!bw_coupler__probes_look(c)) return;
@@ -33,7 +33,7 @@ static void add_pressure(bw_coupler *c, int r)
       const ptrdiff_t begin = bw_at(g, c->reach[0][0], j, k), end = bw_at(g, c->reach[0][1], j, k);
 #pragma omp simd
       for (ptrdiff_t i = begin; i <= end; i++)
-        mean[i] = keep * mean[i] + weight * p[i];
+        mean[i] = (r > 0 ? mean[i] : (bw_real)0) + weight * p[i];
     }
   c->p_mean_known = r == 2;
 }

@@ -205,6 +205,25 @@ START_TEST(blocks_share_a_marker_and_its_force)
 }
 END_TEST
 
+/* The mean of the pressure is gathered in watched steps, wherever probes read it: not a number is
+ * left from before, and none is claimed after a step that was not watched. */
+START_TEST(probes_look_when_watched)
+{
+  scene s = build(0.5, 0.5);
+  bw_coupler_report r;
+  for (int watched = 0; watched <= 1; watched++) {
+    for (size_t i = 0; i < bw_grid_look(s.grid)->size; i++)
+      s.coupler->p_mean[i] = NAN;
+    bw_coupler_watch(s.coupler, watched == 1);
+    bw_check_ok(bw_coupler_step(s.coupler, 1.0e-3));
+    bw_check_ok(bw_coupler_measure(s.coupler, &r));
+    for (int d = 0; d < 3; d++)
+      ck_assert_int_eq(isfinite(r.force_probe[d]), watched);
+  }
+  destroy(&s);
+}
+END_TEST
+
 START_TEST(substeps_keep_the_solid_within_its_limit)
 {
   scene s = build(0.5, 0.5);
@@ -372,6 +391,7 @@ END_TEST
 static const bw_check_test tests[] = {BW_TEST(markers_sit_where_the_retraction_says),
                                       BW_TEST(linear_pressure_lifts_the_body),
                                       BW_TEST(blocks_share_a_marker_and_its_force),
+                                      BW_TEST(probes_look_when_watched),
                                       BW_TEST(substeps_keep_the_solid_within_its_limit),
                                       BW_TEST(iterated_step_meets_its_residual),
                                       BW_TEST(held_solid_stays_free_one_is_carried),

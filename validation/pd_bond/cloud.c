@@ -41,12 +41,14 @@ static bw_pd_bond_config glass(double m, double disorder, int seed)
   return c;
 }
 
+/* angle: NaN where there is none */
 static void claim(bw_validation *v, const char *what, const char *quantity, double measured,
                   double reference, double tolerance, const char *source, double m, double disorder,
                   double angle)
 {
   char extra[120];
-  snprintf(extra, sizeof extra, "\"m\": %g, \"disorder\": %g, \"angle\": %g", m, disorder, angle);
+  const int used = snprintf(extra, sizeof extra, "\"m\": %g, \"disorder\": %g", m, disorder);
+  if (!isnan(angle)) snprintf(extra + used, sizeof extra - (size_t)used, ", \"angle\": %g", angle);
   bw_validation_row(v, &(bw_claim){.claim = what,
                                    .quantity = quantity,
                                    .measured = measured,

@@ -129,9 +129,9 @@ static bw_status clouds(bw_validation *v)
       sum += towards, squares += towards * towards;
     }
   const double scatter = sqrt((squares - sum * sum / runs) / (runs - 1.0));
-  const variant all = {NAN, 3.0, 2.0, false, 0.38, 0};
-  add(v, "clouds do not draw the path to their sites' weak directions [deg]", "pull_cloud",
-      sum / runs, 0.0, 3.0 * scatter / sqrt(runs), &all);
+  const variant all = {0.0, 3.0, 2.0, false, 0.38, 0};
+  add(v, "clouds do not draw the path to their sites' weak directions [deg, all turns]",
+      "pull_cloud", sum / runs, 0.0, 3.0 * scatter / sqrt(runs), &all);
   return BW_OK;
 }
 

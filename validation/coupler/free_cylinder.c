@@ -12,12 +12,12 @@
  * Tolerance  a lattice's surface is a staircase, its steps up to a spacing high: what the fluid
  *            meets lies between their mean and their envelope, 0.25 h further out or in, and
  *            forcing knows the surface to 0.1 h (Breugem 2012): 0.7 h of the diameter.
- *            fall: d ln U/d ln D = -1.37 (Faxen's series): 0.96/N for N cells per diameter.
+ *            fall: reported, no claim. It goes with D^-1.37 (Faxen's series), so that 0.7 h would
+ *            explain 12 % with 8 cells; where between the two the surface is felt is not derived.
  *            couette, poiseuille: the lags behind a point of the fluid, 3.6 and 3 %, go with D^2:
  *            2 (0.7/8) of them, 0.6 %, and 0.4 % for slip, which is of the order of the viscous
  *            number of the step, 0.08, times the lag.
- *            Loaded by probes it falls 10 to 15 % too fast (two cells do not resolve the friction
- *            on steps): reported beside.
+ *            Drift by probes: reported (two cells do not resolve the friction on steps).
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=300 */
 #include "bw_coupler.h"
@@ -165,8 +165,8 @@ static bw_status measure(const bw_comm *comm, const scene_set_up *b, double *out
 
 static double tolerance(const scene_set_up *b)
 {
-  if (b->load == BW_LOAD_PROBES && b->motion != COUETTE) return INFINITY;
-  return b->motion == FALL ? 0.96 / b->cells : 0.01;
+  const bool smooth = b->load == BW_LOAD_REACTION || b->motion == COUETTE;
+  return b->motion != FALL && smooth ? 0.01 : INFINITY;
 }
 
 /* Speed of fall for the blockage k over 1/(4 pi mu): H. Faxen 1946. */

@@ -25,7 +25,6 @@
 #include "cantilever.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double RE = 40.0, E_STAR = 73000.0, THIN = 0.1, GAP_TOP = 0.5, FORCE_TOL = 0.03,
@@ -38,21 +37,17 @@ typedef struct {
 
 static bw_status read_reference(steady *r)
 {
-  const char *root = getenv("BW_SOURCE_DIR");
-  char path[512], line[512];
-  snprintf(path, sizeof path, "%s/data/bending_plate/bending_plate_fem.csv",
-           root != NULL ? root : ".");
-  FILE *in = fopen(path, "r");
-  BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s (set BW_SOURCE_DIR to the source folder)", path);
+  enum { COLUMNS = 6, MOST = 8 };
+  double table[MOST][COLUMNS]; /* Re, E*, nu, tip x, tip y, force */
+  int rows = 0;
   bool found = false;
-  while (!found && fgets(line, sizeof line, in) != NULL) {
-    double Re, E, nu;
-    found = sscanf(line, "%lf,%lf,%lf,%lf,%lf,%lf", &Re, &E, &nu, &r->tip[0], &r->tip[1],
-                   &r->force) == 6 &&
-            Re == RE && E == E_STAR;
+  BW_TRY(
+      bw_validation_table("bending_plate/bending_plate_fem.csv", COLUMNS, MOST, table[0], &rows));
+  for (int q = 0; q < rows && !found; q++) {
+    found = table[q][0] == RE && table[q][1] == E_STAR;
+    *r = (steady){{table[q][3], table[q][4]}, table[q][5]};
   }
-  fclose(in);
-  BW_REQUIRE(found, BW_EINPUT, "%s has no row for Re %g, E* %g", path, RE, E_STAR);
+  BW_REQUIRE(found, BW_EINPUT, "no reference for Re %g, E* %g", RE, E_STAR);
   return BW_OK;
 }
 

@@ -23,29 +23,25 @@
 #include "bw_validation.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double STEADY = 1.0e-5, LATEST = 60.0, FRICTION_SHARE = 0.35;
 
-/* Cd of the reference for a domain; NaN when the file has none. */
+/* Cd of the reference for a domain. */
 static bw_status reference(const cylinder_config *c, double *Cd)
 {
-  const char *root = getenv("BW_SOURCE_DIR");
-  char path[512], line[512];
-  snprintf(path, sizeof path, "%s/data/confined_cylinder/confined_cylinder.csv",
-           root != NULL ? root : ".");
-  FILE *in = fopen(path, "r");
-  BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s (set BW_SOURCE_DIR to the source folder)", path);
+  enum { COLUMNS = 5, MOST = 32 };
+  double table[MOST][COLUMNS]; /* blockage, Re_d, d before, d behind, Cd */
+  int rows = 0;
+  BW_TRY(bw_validation_table("confined_cylinder/confined_cylinder.csv", COLUMNS, MOST, table[0],
+                             &rows));
   *Cd = NAN;
-  while (fgets(line, sizeof line, in) != NULL) {
-    double blockage, Re, up, down, value;
-    if (sscanf(line, "%lf,%lf,%lf,%lf,%lf", &blockage, &Re, &up, &down, &value) == 5 &&
-        blockage == c->blockage && Re == c->reynolds && up == c->upstream && down == c->downstream)
-      *Cd = value;
+  for (int q = 0; q < rows; q++) {
+    const double *r = table[q];
+    if (r[0] == c->blockage && r[1] == c->reynolds && r[2] == c->upstream && r[3] == c->downstream)
+      *Cd = r[4];
   }
-  fclose(in);
-  BW_REQUIRE(isfinite(*Cd), BW_EINPUT, "%s has no row for Re_d %g, %g d before, %g d behind", path,
+  BW_REQUIRE(isfinite(*Cd), BW_EINPUT, "no reference for Re_d %g, %g d before, %g d behind",
              c->reynolds, c->upstream, c->downstream);
   return BW_OK;
 }

@@ -20,7 +20,6 @@
 #include "bw_validation.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROWS = 37 }; /* every five degrees */
@@ -30,17 +29,16 @@ typedef struct {
 
 static bw_status read_reference(wall_table *w)
 {
-  const char *root = getenv("BW_SOURCE_DIR");
-  char path[512], line[512];
-  int n = 0;
-  snprintf(path, sizeof path, "%s/data/confined_cylinder/confined_cylinder_wall.csv",
-           root != NULL ? root : ".");
-  FILE *in = fopen(path, "r");
-  BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s (set BW_SOURCE_DIR to the source folder)", path);
-  while (n < ROWS && fgets(line, sizeof line, in) != NULL)
-    n += sscanf(line, "%lf,%lf,%lf", &w->theta[n], &w->dp[n], &w->tau[n]) == 3;
-  fclose(in);
-  BW_REQUIRE(n == ROWS, BW_EIO, "%s has %d rows, %d are needed", path, n, ROWS);
+  double table[ROWS][3];
+  int rows = 0;
+  BW_TRY(bw_validation_table("confined_cylinder/confined_cylinder_wall.csv", 3, ROWS, table[0],
+                             &rows));
+  BW_REQUIRE(rows == ROWS, BW_EINPUT, "the reference has %d rows, %d are needed", rows, ROWS);
+  for (int q = 0; q < ROWS; q++) {
+    w->theta[q] = table[q][0];
+    w->dp[q] = table[q][1];
+    w->tau[q] = table[q][2];
+  }
   return BW_OK;
 }
 

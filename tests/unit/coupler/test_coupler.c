@@ -255,12 +255,11 @@ START_TEST(iterated_step_meets_its_residual)
   const double lower = FIRST * H, upper = (FIRST + BLOCK) * H;
   const bw_shape cube = {
       .kind = BW_SHAPE_BOX, .lower = {lower, lower, lower}, .upper = {upper, upper, upper}};
+  material.rho = 0.1 * RHO;
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  material.rho = 0.1 * RHO;
-  /* stiff against a step, its waves damped: the coupling is tested here, not the lattice */
-  const double c = 4.0 * BLOCK * H / 1.0e-3;
+  const double c = 4.0 * BLOCK * H / 1.0e-3; /* stiff: the coupling is tested, not the lattice */
   material.E = material.rho * c * c;
   material.damping_mean = material.rho * c / (BLOCK * H);
   bw_check_ok(bw_pd_shape_fill(1, &cube, H, material.origin, false, &n, &site, &kind));

@@ -77,8 +77,9 @@ static bending_config twin(const plate_kind *kind, int cells, double young, int 
   c.plate.young_modulus = young;
   c.plate.density = 40.0;
   c.plate.damping_absolute = 12.0 * c.plate.density; /* about critical for the first mode, 9 */
-  /* waves of two particles' length, at 3700, are fed by the delayed load and have to be damped */
-  c.plate.damping_mean = 300.0 * c.plate.density;
+  /* waves of two particles' length, at 470 per particle across, are fed by the delayed load and
+     have to be damped: a twelfth of that */
+  c.plate.damping_mean = 470.0 / 12.0 * kind->across * c.plate.density;
   c.coupling.load = load;
   c.coupling.iterations = 4;
   return c;

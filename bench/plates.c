@@ -16,25 +16,13 @@
 #include "../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
 #include "../cases/notched_plate/specimen_crack.c"
 #include "../cases/notched_plate/specimen_input.c"
-#include "bw_bench.h"
+#include "bw_bench_solid.h"
 #include "bw_pd_shape.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { STEPS = 3 };
-typedef struct {
-  bw_pd_bond *pd;
-  double dt;
-  bw_status st;
-} solid_work;
-
-static void advance(void *context)
-{
-  solid_work *w = context;
-  for (int q = 0; q < STEPS; q++)
-    BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
-}
 
 static bw_status box(const bw_comm *comm, const int size[3], double m, bool contact,
                      bw_pd_bond **pd)
@@ -56,10 +44,7 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
 
 static double ms_per_step(const bw_comm *comm, bw_pd_bond *pd, bw_status *st)
 {
-  solid_work w = {pd, 0.5 * bw_pd_bond_dt_max(pd), BW_OK};
-  const double seconds = bw_bench_median(comm, advance, &w);
-  *st = w.st;
-  return 1e3 * seconds / STEPS;
+  return 1e3 * bw_bench_solid_seconds(comm, pd, STEPS, st);
 }
 
 static void put(bw_bench *b, const char *name, const char *quantity, const char *unit, double value,

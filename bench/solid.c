@@ -6,7 +6,7 @@
  * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
  * BUILD modules=pd_bond
  * TEST ranks=2 */
-#include "bw_bench.h"
+#include "bw_bench_solid.h"
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
 #include "bw_pd_shape.h"
@@ -16,18 +16,6 @@
 #include <stdlib.h>
 
 enum { STEPS = 5 };
-typedef struct {
-  bw_pd_bond *pd;
-  double dt;
-  bw_status st;
-} solid_work;
-
-static void advance(void *context)
-{
-  solid_work *w = context;
-  for (int q = 0; q < STEPS; q++)
-    BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
-}
 
 /* Its last "Loop time of T on N procs for M steps", ms per step; NaN where it was not run. */
 static double lammps(int ranks)
@@ -50,7 +38,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
 {
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
   bw_pd_bond_config c = bw_pd_bond_config_default();
-  solid_work w = {0};
+  bw_pd_bond *pd = NULL;
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
@@ -58,12 +46,11 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.family_reach = BW_PD_REACH_HORIZON;
   c.disorder = disorder;
   bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &w.pd));
+  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
   if (st == BW_OK) {
-    const double bonds = 2.0 * (double)bw_pd_bond_account(w.pd).bonds;
-    w.dt = 0.5 * bw_pd_bond_dt_max(w.pd);
-    const double seconds = bw_bench_median(comm, advance, &w) / STEPS;
-    double bytes = (double)bw_pd_bond_list_bytes(w.pd);
+    const double bonds = 2.0 * (double)bw_pd_bond_account(pd).bonds;
+    const double seconds = bw_bench_solid_seconds(comm, pd, STEPS, &st);
+    double bytes = (double)bw_pd_bond_list_bytes(pd);
     bw_comm_sum(comm, 1, &bytes);
     const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
     bw_bench_put(b, &(bw_bench_row){name, "ms_per_force_evaluation", "ms", 1e3 * seconds,
@@ -73,9 +60,8 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
                                     1e9 * seconds * bw_comm_size(comm) / bonds, NULL, NAN, NAN});
     bw_bench_put(
         b, &(bw_bench_row){name, "bytes_per_directed_bond", "B", bytes / bonds, NULL, NAN, NAN});
-    st = w.st;
   }
-  bw_pd_bond_destroy(&w.pd);
+  bw_pd_bond_destroy(&pd);
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -23,7 +23,8 @@ static double marker_offset(const bw_coupler *c)
   return 0.5 * bw_pd_bond_settings(c->solid)->ds - c->config.retraction * c->h;
 }
 
-/* Points at a distance `out` from the surface particles, along their normals. Collective. */
+/* Velocity V of the points at a distance `out` from the surface particles, along their normals, and
+ * their spin; computed once for each motion of the solid. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
 {
   if (!c->motion_known) {

@@ -101,11 +101,6 @@ void bw_halo_update(bw_grid *grid, int count, bw_real *const field[]);
  * u[2] may be NULL in 2D). Collective. */
 void bw_halo_update_faces(bw_grid *grid, bw_real *const u[3]);
 
-/* The adjoint of bw_halo_update: what was added in halo cells moves to the cell's owner and the
- * halo becomes zero. Halos beyond a physical boundary keep what is there (the exact transpose:
- * they receive from the neighbours' halos as interior cells do). Collective. */
-void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[]);
-
 /* Bytes one bw_halo_update of one field sends to other ranks, from this rank. Local. */
 size_t bw_halo_volume(const bw_grid *grid);
 

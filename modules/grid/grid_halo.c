@@ -1,10 +1,9 @@
-/* Halo update and its adjoint, direction by direction.
+/* Halo update, direction by direction.
  *
  * Update goes x, y, z and each step takes along what the earlier ones filled, so edges and
- * corners arrive without diagonal messages; reduce goes z, y, x, the exact transpose. A step
- * covers in the later directions the interior plus ghosts beyond a physical boundary: those are
- * values like any other, and a halo cell over the edge of a block and of the box is its
- * neighbour's ghost. */
+ * corners arrive without diagonal messages. A step covers in the later directions the interior plus
+ * ghosts beyond a physical boundary: those are values like any other, and a halo cell over the edge
+ * of a block and of the box is its neighbour's ghost. */
 #include "bw_memory.h"
 #include "grid_internal.h"
 
@@ -83,31 +82,6 @@ static const bw_real *unpack(const bw_grid_view *v, const box *b, const bw_real 
   return from;
 }
 
-static bw_real *pack_and_clear(const bw_grid_view *v, const box *b, bw_real *f, bw_real *to)
-{
-  const size_t n = (size_t)(b->hi[0] - b->lo[0] + 1);
-  for (int k = b->lo[2]; k <= b->hi[2]; k++)
-    for (int j = b->lo[1]; j <= b->hi[1]; j++, to += n) {
-      bw_real *row = f + bw_at(v, b->lo[0], j, k);
-      memcpy(to, row, n * sizeof *to);
-      memset(row, 0, n * sizeof *row);
-    }
-  return to;
-}
-
-static const bw_real *unpack_add(const bw_grid_view *v, const box *b, const bw_real *from,
-                                 bw_real *f)
-{
-  const int n = b->hi[0] - b->lo[0] + 1;
-  for (int k = b->lo[2]; k <= b->hi[2]; k++)
-    for (int j = b->lo[1]; j <= b->hi[1]; j++, from += n) {
-      bw_real *row = f + bw_at(v, b->lo[0], j, k);
-      for (int i = 0; i < n; i++)
-        row[i] += from[i];
-    }
-  return from;
-}
-
 /* Rows of `to` become rows of `from` (boxes of one shape inside one field). */
 static void copy_box(const bw_grid_view *v, const box *from, const box *to, bw_real *f)
 {
@@ -121,73 +95,56 @@ static void copy_box(const bw_grid_view *v, const box *from, const box *to, bw_r
     }
 }
 
-/* Rows of `from` are added to rows of `to` and cleared. */
-static void fold_box(const bw_grid_view *v, const box *from, const box *to, bw_real *f)
-{
-  const int n = to->hi[0] - to->lo[0] + 1;
-  for (int k = to->lo[2], kk = from->lo[2]; k <= to->hi[2]; k++, kk++)
-    for (int j = to->lo[1], jj = from->lo[1]; j <= to->hi[1]; j++, jj++) {
-      bw_real *a = f + bw_at(v, from->lo[0], jj, kk), *b = f + bw_at(v, to->lo[0], j, k);
-      for (int i = 0; i < n; i++) {
-        b[i] += a[i];
-        a[i] = 0;
-      }
-    }
-}
-
-static void wrap(const bw_grid_view *v, int d, bool reduce, bw_real *f)
+static void wrap(const bw_grid_view *v, int d, bw_real *f)
 {
   for (int side = BELOW; side <= ABOVE; side++) {
     const box image = owned_layers(v, d, 1 - side), ghost = halo_layers(v, d, side);
-    if (reduce)
-      fold_box(v, &ghost, &image, f);
-    else
-      copy_box(v, &image, &ghost, f);
+    copy_box(v, &image, &ghost, f);
   }
 }
 
-/* One message each way per neighbour. The tag is the side of the halo it fills (update) or came
- * from (reduce), so that two messages between the same pair of ranks cannot be confused. */
-static void cross(bw_grid *g, int d, bool reduce, int count, bw_real *const field[])
+/* One message each way per neighbour. The tag is the side of the halo it fills, so that two
+ * messages between the same pair of ranks cannot be confused. */
+static void cross(bw_grid *g, int d, int count, bw_real *const field[])
 {
   const bw_grid_view *v = &g->view;
   MPI_Request request[4];
   int n = 0;
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
-    const box b = reduce ? owned_layers(v, d, side) : halo_layers(v, d, side);
+    const box b = halo_layers(v, d, side);
     MPI_Irecv(g->receive[side], (int)(volume(&b) * (size_t)count * sizeof(bw_real)), MPI_BYTE,
-              g->neighbour[d][side], reduce ? 1 - side : side, g->mpi, &request[n++]);
+              g->neighbour[d][side], side, g->mpi, &request[n++]);
   }
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
-    const box b = reduce ? halo_layers(v, d, side) : owned_layers(v, d, side);
+    const box b = owned_layers(v, d, side);
     bw_real *to = g->send[side];
     for (int q = 0; q < count; q++)
-      to = reduce ? pack_and_clear(v, &b, field[q], to) : pack(v, &b, field[q], to);
+      to = pack(v, &b, field[q], to);
     const size_t bytes = volume(&b) * (size_t)count * sizeof(bw_real);
-    MPI_Isend(g->send[side], (int)bytes, MPI_BYTE, g->neighbour[d][side], reduce ? side : 1 - side,
-              g->mpi, &request[n++]);
+    MPI_Isend(g->send[side], (int)bytes, MPI_BYTE, g->neighbour[d][side], 1 - side, g->mpi,
+              &request[n++]);
     bw_grid__count(&g->halo, bytes);
   }
   MPI_Waitall(n, request, MPI_STATUSES_IGNORE);
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
-    const box b = reduce ? owned_layers(v, d, side) : halo_layers(v, d, side);
+    const box b = halo_layers(v, d, side);
     const bw_real *from = g->receive[side];
     for (int q = 0; q < count; q++)
-      from = reduce ? unpack_add(v, &b, from, field[q]) : unpack(v, &b, from, field[q]);
+      from = unpack(v, &b, from, field[q]);
   }
 }
 
-static void step(bw_grid *g, int d, bool reduce, int count, bw_real *const field[])
+static void step(bw_grid *g, int d, int count, bw_real *const field[])
 {
   if (g->view.halo[d] == 0) return;
   if (crosses(&g->view, d))
-    cross(g, d, reduce, count, field);
+    cross(g, d, count, field);
   else if (wrapped(&g->view, d))
     for (int q = 0; q < count; q++)
-      wrap(&g->view, d, reduce, field[q]);
+      wrap(&g->view, d, field[q]);
 }
 
 void bw_halo_update(bw_grid *grid, int count, bw_real *const field[])
@@ -195,16 +152,7 @@ void bw_halo_update(bw_grid *grid, int count, bw_real *const field[])
   for (int start = 0; start < count; start += BW_GRID__BATCH) {
     const int n = count - start < BW_GRID__BATCH ? count - start : BW_GRID__BATCH;
     for (int d = 0; d < 3; d++)
-      step(grid, d, false, n, field + start);
-  }
-}
-
-void bw_halo_reduce(bw_grid *grid, int count, bw_real *const field[])
-{
-  for (int start = 0; start < count; start += BW_GRID__BATCH) {
-    const int n = count - start < BW_GRID__BATCH ? count - start : BW_GRID__BATCH;
-    for (int d = 2; d >= 0; d--)
-      step(grid, d, true, n, field + start);
+      step(grid, d, n, field + start);
   }
 }
 

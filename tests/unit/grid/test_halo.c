@@ -1,4 +1,4 @@
-/* Halo update and reduce: every halo cell gets its image, the rest stays; reduce is the adjoint.
+/* Halo update: every halo cell gets its image, the rest stays.
  * TEST ranks=1,2,3,4 */
 #include "grid_cases.h"
 
@@ -73,59 +73,6 @@ static double pseudo_random(uint64_t *state)
   return (double)(*state >> 11) / 9007199254740992.0 - 0.5;
 }
 
-/* Random numbers over all storage cells; returns nothing the grid computed. */
-static void randomise(const bw_grid_view *v, uint64_t seed, bw_real *f)
-{
-  FOR_STORAGE(v, at)
-  f[bw_at(v, at[0], at[1], at[2])] = (bw_real)pseudo_random(&seed);
-}
-
-/* <a, b> over all storage cells of all ranks. */
-static double dot(const bw_grid_view *v, const bw_real *a, const bw_real *b)
-{
-  double s = 0;
-  FOR_STORAGE(v, at)
-  s += (double)a[bw_at(v, at[0], at[1], at[2])] * (double)b[bw_at(v, at[0], at[1], at[2])];
-  bw_comm_sum(bw_check_world(), 1, &s);
-  return s;
-}
-
-static void check_adjoint(const grid_case *c)
-{
-  bw_grid *grid = grid_case_create(c);
-  const bw_grid_view *v = bw_grid_look(grid);
-  bw_real *f = NULL, *g = NULL, *uf = NULL, *rg = NULL;
-  bw_check_ok(bw_field_create(grid, &f));
-  bw_check_ok(bw_field_create(grid, &uf));
-  bw_check_ok(bw_field_create(grid, &g));
-  bw_check_ok(bw_field_create(grid, &rg));
-  const uint64_t rank = (uint64_t)bw_comm_rank(bw_check_world());
-  randomise(v, 17 + rank, f), randomise(v, 17 + rank, uf);
-  randomise(v, 991 + rank, g), randomise(v, 991 + rank, rg);
-  bw_halo_update(grid, 1, &uf);
-  bw_halo_reduce(grid, 1, &rg);
-  /* Halo cells of f are overwritten by update: they must carry nothing after reduce. Origin of
-   * the tolerance: about 1000 terms of size 1/4 in sums of size 100, plus round-off in reduce. */
-  const double left = dot(v, uf, g), right = dot(v, f, rg);
-  ck_assert_msg(fabs(left - right) <= 50 * BW_REAL_EPSILON * (1.0 + fabs(left)),
-                "<update f, g> = %.17g, <f, reduce g> = %.17g", left, right);
-  int image[3];
-  FOR_STORAGE(v, at)
-  if (image_of(v, at, image)) ck_assert_double_eq(rg[bw_at(v, at[0], at[1], at[2])], 0);
-  bw_release(&f), bw_release(&g), bw_release(&uf), bw_release(&rg);
-  bw_grid_destroy(&grid);
-}
-
-START_TEST(reduce_is_the_adjoint_of_update)
-{
-  for (int q = 0; q < GRID_CASES; q++)
-    for (int way = 0; way < GRID_WAYS; way++) {
-      grid_case c = grid_case_number(q);
-      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_adjoint(&c);
-    }
-}
-END_TEST
-
 static bool just_below(const bw_grid_view *v, int q, const int at[3])
 {
   bool below = at[q] == 0;
@@ -199,7 +146,7 @@ START_TEST(volume_counts_messages_only)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(update_fills_every_halo_cell_with_its_image), BW_TEST(reduce_is_the_adjoint_of_update),
-    BW_TEST(faces_are_those_of_update), BW_TEST(volume_counts_messages_only)};
+static const bw_check_test tests[] = {BW_TEST(update_fills_every_halo_cell_with_its_image),
+                                      BW_TEST(faces_are_those_of_update),
+                                      BW_TEST(volume_counts_messages_only)};
 BW_CHECK_MAIN("grid.halo", tests)

@@ -4,23 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The medium fills the section, so its pores have to join: half the distance of neighbouring ones,
- * in pitches, and the throat where two meet. */
-static bw_status check_throats(const porous_config *q)
-{
-  static const double half[] = {[BW_SHAPE_PORES_SC] = 0.5,
-                                [BW_SHAPE_PORES_BCC] = 0.43301270,
-                                [BW_SHAPE_PORES_FCC] = 0.35355339};
-  const double d = half[q->medium.lattice], r = q->medium.radius_over_pitch;
-  const double cells = q->medium.pitch / q->domain.length[1] * q->domain.cells[1];
-  const double throat = r > d ? 2.0 * sqrt(r * r - d * d) * cells : 0.0;
-  BW_REQUIRE(throat >= 1.0, BW_EINPUT,
-             "medium.radius_over_pitch = %g: neighbouring pores meet in throats of %.2g cells, and "
-             "nothing flows through a medium that fills the section; take more than %.3f",
-             r, throat, sqrt(d * d + 0.25 / (cells * cells)));
-  return BW_OK;
-}
-
 static bw_status check_combinations(const porous_config *q)
 {
   const porous_domain *d = &q->domain;
@@ -32,14 +15,7 @@ static bw_status check_combinations(const porous_config *q)
   BW_REQUIRE(q->medium.front + q->medium.length < d->length[0], BW_EINPUT,
              "medium.front + medium.length = %g m reaches the outflow at domain.length[0] = %g m",
              q->medium.front + q->medium.length, d->length[0]);
-  BW_REQUIRE(q->medium.pitch * (1.0 - 1e-9) <= d->length[2], BW_EINPUT,
-             "medium.pitch = %g m is larger than the span domain.length[2] = %g m", q->medium.pitch,
-             d->length[2]);
-  const double pitches = d->length[2] / q->medium.pitch;
-  BW_REQUIRE(fabs(pitches - round(pitches)) < 1e-9 * pitches, BW_EINPUT,
-             "medium.pitch = %g m: the periodic span %g m must hold a whole number of pitches (%g)",
-             q->medium.pitch, d->length[2], pitches);
-  return check_throats(q);
+  return BW_OK;
 }
 
 static bw_status build_fluid(porous_run *p)
@@ -62,33 +38,11 @@ static bw_status build_fluid(porous_run *p)
   return bw_ns_channel_create(p->grid, &flow, &p->fluid);
 }
 
-/* Box minus pores, on a slab under the lower wall that holds it. */
 static bw_status build_solid(porous_run *p)
 {
   const porous_config *q = p->config;
-  const porous_medium *m = &q->medium;
-  const double ds = q->domain.length[1] / q->domain.cells[1], under = m->clamped_layers * ds;
-  const double end = m->front + m->length;
-  bw_shape body[3] = {
-      {.kind = BW_SHAPE_BOX, .lower = {m->front}, .upper = {end}},
-      {.kind = (bw_shape_kind)m->lattice,
-       .remove = true,
-       .radius = m->radius_over_pitch * m->pitch,
-       .pitch = m->pitch,
-       .centre = {m->front}},
-      {.kind = BW_SHAPE_BOX,
-       .lower = {m->front, -under},
-       .upper = {end},
-       .particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE},
-  };
-  for (int d = 1; d < 3; d++)
-    body[0].upper[d] = q->domain.length[d];
-  body[2].upper[2] = q->domain.length[2];
-  for (int d = 0; d < 3; d++)
-    body[1].centre[d] += m->offset[d] * m->pitch;
-
   bw_pd_bond_config solid = bw_pd_bond_config_default();
-  solid.ds = ds;
+  solid.ds = q->domain.length[1] / q->domain.cells[1];
   solid.horizon_ratio = q->solid.horizon_ratio;
   solid.rho = q->solid.density;
   solid.E = q->solid.young_modulus;
@@ -101,13 +55,7 @@ static bw_status build_solid(porous_run *p)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(m->clamped_layers > 0 ? 3 : 2, body, ds, solid.origin, false, &n,
-                                  &site, &kind);
-  const int64_t layer = (int64_t)m->clamped_layers * lround(m->length / ds) * q->domain.cells[2];
-  if (st == BW_OK && n <= layer)
-    st = BW_FAIL(BW_EINPUT,
-                 "medium.radius_over_pitch = %g: the pores leave no particle of spacing %g m",
-                 m->radius_over_pitch, ds);
+  bw_status st = porous_medium_sites(p->comm, q, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(p->comm, &solid, n, site, kind, &p->solid));
   bw_release(&site);
   bw_release(&kind);
@@ -206,8 +154,8 @@ void porous_describe(porous_run *p)
               q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
               bw_comm_size(p->comm));
   bw_log_info(log,
-              "medium     %lld particles in the channel (POROUS, 128 x 64 x 64: 54662), "
-              "%lld with the clamped layer; horizon/spacing %g",
+              "medium     %lld particles in the channel, %lld with the clamped layer; "
+              "horizon/spacing %g",
               (long long)(total - (int64_t)clamped), (long long)total, q->solid.horizon_ratio);
   bw_log_info(log,
               "groups     Re_b = %g, E* = E/(rho U_b^2) = %g, density ratio %g, Cauchy number %g, "

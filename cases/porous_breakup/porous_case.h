@@ -20,8 +20,24 @@ typedef struct {
   bool contact;
 } porous_solid;
 typedef struct {
+  double radius[2], porosity;
+  int seed;
+} porous_random;
+typedef struct {
+  char file[256];
+  double solid[2], voxel;
+} porous_image;
+typedef struct {
+  char file[256];
+  double scale;
+} porous_surface;
+typedef struct {
   int lattice;
   double front, length, pitch, radius_over_pitch, offset[3];
+  bool has_random, has_image, has_surface;
+  porous_random random;
+  porous_image image;
+  porous_surface surface;
   int clamped_layers;
 } porous_medium;
 typedef struct {
@@ -47,6 +63,13 @@ extern const bw_config_field porous_fields[];
 porous_config porous_config_default(void);
 const porous_phase *porous_phase_of(const porous_config *q, int phase);
 extern const char *const porous_phase_name[PHASE_COUNT];
+
+/* ---- the medium (porous_medium.c) ---- */
+/* Its particles on sites of the grid's cells, with the slab that holds it: site (n,3), kind (n),
+ * the caller's (bw_release). Refused when nothing is left of it or nothing flows through.
+ * Collective. */
+bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
+                              int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
 /* ---- the objects of a run (porous_build.c) ---- */
 enum { N_PROGRESS = 5 }; /* numbers of a checkpoint: phase, steps, settling check */

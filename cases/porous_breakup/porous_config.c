@@ -36,13 +36,34 @@ static const bw_config_word lattice_words[] = {
     {"pores_bcc", BW_SHAPE_PORES_BCC, "body-centred cubic"},
     {"pores_fcc", BW_SHAPE_PORES_FCC, "face-centred cubic"},
     {NULL, 0, NULL}};
+static const bw_config_field random_fields[] = {
+    V(porous_random, radius, BW_REQUIRED, BW_ABOVE(0), "m", "smallest and largest of the pores"),
+    V(porous_random, porosity, BW_REQUIRED, BW_BETWEEN(0, 1), "",
+      "to expect: pores overlap freely"),
+    V(porous_random, seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another seed, another medium"),
+    BW_CONFIG_END};
+static const bw_config_field image_fields[] = {
+    V(porous_image, file, BW_REQUIRED, BW_ANY, "", "NRRD or MetaImage"),
+    V(porous_image, solid, BW_REQUIRED, BW_ANY, "", "smallest and largest value of solid voxels"),
+    V(porous_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "m", "size; else as the file says"),
+    BW_CONFIG_END};
+static const bw_config_field surface_fields[] = {
+    V(porous_surface, file, BW_REQUIRED, BW_ANY, "", "STL, closed"),
+    V(porous_surface, scale, BW_OPTIONAL, BW_ABOVE(0), "m", "a unit of length of the file"),
+    BW_CONFIG_END};
 static const bw_config_field medium_fields[] = {
     V(porous_medium, front, BW_REQUIRED, BW_ABOVE(0), "m", "distance of the front from the inflow"),
     V(porous_medium, length, BW_REQUIRED, BW_ABOVE(0), "m", "length along the stream"),
     BW_CONFIG_WORD(porous_medium, lattice, BW_OPTIONAL, lattice_words, "where the pores are"),
-    V(porous_medium, pitch, BW_REQUIRED, BW_ABOVE(0), "m", "of the pore lattice"),
-    V(porous_medium, radius_over_pitch, BW_REQUIRED, BW_BETWEEN(0, 1), "", "of the pores"),
+    V(porous_medium, pitch, BW_OPTIONAL, BW_ABOVE(0), "m", "of the pore lattice"),
+    V(porous_medium, radius_over_pitch, BW_OPTIONAL, BW_BETWEEN(0, 1), "", "of the pores"),
     V(porous_medium, offset, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "of the pores, in pitches"),
+    BW_CONFIG_MAP_IF(porous_medium, random, has_random, random_fields,
+                     "instead of a lattice: balls at random places are pores"),
+    BW_CONFIG_MAP_IF(porous_medium, image, has_image, image_fields,
+                     "instead: voxels, the first one's corner at front, floor and z = 0"),
+    BW_CONFIG_MAP_IF(porous_medium, surface, has_surface, surface_fields,
+                     "instead: a body, its box's corner at front, floor and z = 0"),
     V(porous_medium, clamped_layers, BW_OPTIONAL, BW_FROM_TO(0, 16), "",
       "particles under the lower wall that hold the medium"),
     BW_CONFIG_END};
@@ -98,6 +119,9 @@ porous_config porous_config_default(void)
                                     .pitch = NAN,
                                     .radius_over_pitch = NAN,
                                     .offset = {0.5, 0.5, 0.5},
+                                    .random = {.radius = {NAN, NAN}, .porosity = NAN, .seed = 1},
+                                    .image = {.solid = {NAN, NAN}, .voxel = NAN},
+                                    .surface = {.scale = 1.0},
                                     .clamped_layers = 3},
                          .coupling = bw_coupler_config_default(),
                          .flow = phase,

@@ -200,7 +200,7 @@ static bw_status site_range(int count, const bw_shape shape[], double ds, const 
     double lower = INFINITY, upper = -INFINITY;
     for (int q = 0; q < count; q++) {
       const extent e = rows[shape[q].kind].bounds(&shape[q]);
-      if (shape[q].remove || !isfinite(e.lower[d])) continue;
+      if (shape[q].remove || shape[q].outside || !isfinite(e.lower[d])) continue;
       lower = fmin(lower, e.lower[d]);
       upper = fmax(upper, e.upper[d]);
     }
@@ -225,7 +225,7 @@ static bool solid_at(int count, const bw_shape shape[], int dims, double tie, co
   bool solid = false;
   for (int q = 0; q < count; q++) {
     if (shape[q].remove && !solid) continue; /* nothing there to take away */
-    if (!rows[shape[q].kind].inside(&shape[q], dims, tie, x)) continue;
+    if (rows[shape[q].kind].inside(&shape[q], dims, tie, x) == shape[q].outside) continue;
     solid = !shape[q].remove;
     *kind = shape[q].particle_kind;
   }

@@ -26,7 +26,8 @@ typedef enum {
 
 typedef struct {
   bw_shape_kind kind;
-  bool remove;                                         /* false: add */
+  bool remove;  /* false: add */
+  bool outside; /* the shape is all of space but the body: removed, it cuts to the body */
   double lower[3], upper[3], centre[3], radius, pitch; /* [L]; unused ones ignored */
   int axis;
   const bw_pd_mask *mask; /* borrowed */

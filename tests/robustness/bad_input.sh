@@ -31,7 +31,7 @@ with not_cubes "cubes" --set "domain.cells=[32, 16, 20]"
 with beyond_outflow "medium.length.*outflow" --set medium.length=0.19
 with pitch "pitch" --set medium.pitch=0.03
 # Porosity 0.02: the pores do not join; porosity 1: nothing is left.
-with closed_pores "radius_over_pitch = 0.168.*throats" --set medium.radius_over_pitch=0.168
+with closed_pores "radius_over_pitch = 0.168.*larger pores" --set medium.radius_over_pitch=0.168
 with no_solid "radius_over_pitch = 0.9.*no particle" --set medium.radius_over_pitch=0.9
 with too_large_step "at t = 0 .*limit" --set flow.time_step=0.5
 with no_restart "absent.h5" --restart "$out/absent.h5"

@@ -118,6 +118,21 @@ START_TEST(round_shapes_have_their_volume)
 }
 END_TEST
 
+/* What is taken away from a ball outside a box and inside it are its two parts. */
+START_TEST(outside_is_the_rest_of_space)
+{
+  bw_shape body[2] = {
+      {.kind = BW_SHAPE_SPHERE, .centre = {0.1, 0.2, 0.3}, .radius = 6.0},
+      {.kind = BW_SHAPE_BOX, .lower = {-2, -9, -1}, .upper = {9, 3, 9}, .remove = true}};
+  const int64_t whole = sites_of(1, body, 1.0, false), beside = sites_of(2, body, 1.0, false);
+  body[1].outside = true;
+  const int64_t within = sites_of(2, body, 1.0, false);
+  ck_assert_int_gt(within, 0);
+  ck_assert_int_gt(beside, 0);
+  ck_assert_int_eq(within + beside, whole);
+}
+END_TEST
+
 START_TEST(impossible_shapes_are_refused_by_number)
 {
   int64_t n = 0;
@@ -144,10 +159,8 @@ START_TEST(impossible_shapes_are_refused_by_number)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(porous_medium_of_the_thesis),
-    BW_TEST(pore_lattices_remove_their_number_of_balls),
-    BW_TEST(order_origin_and_kind),
-    BW_TEST(round_shapes_have_their_volume),
-    BW_TEST(impossible_shapes_are_refused_by_number),
+    BW_TEST(porous_medium_of_the_thesis),  BW_TEST(pore_lattices_remove_their_number_of_balls),
+    BW_TEST(order_origin_and_kind),        BW_TEST(round_shapes_have_their_volume),
+    BW_TEST(outside_is_the_rest_of_space), BW_TEST(impossible_shapes_are_refused_by_number),
 };
 BW_CHECK_MAIN("pd_bond.shape", tests)

@@ -35,6 +35,7 @@ const char *const porous_columns[COL_COUNT] = {
     [COL_BLOCKED] = "probes_blocked[-]",
     [COL_DISPLACEMENT] = "displacement_max_over_h[-]",
     [COL_GIVEN] = "work_given_by_fluid[J]",
+    [COL_LATE] = "work_held_back_by_relaxation[J]",
     [COL_INSIDE] = "solid_mass_inside[kg]",
     [COL_OUT] = "solid_mass_passing_out[kg]",
     [COL_LEFT] = "solid_mass_left[kg]",
@@ -201,6 +202,7 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_BLOCKED] = (double)r.probes_blocked;
   row[COL_GIVEN] = r.work_given;
+  row[COL_LATE] = r.work_late;
   row[COL_INSIDE] = r.mass_inside;
   row[COL_OUT] = r.mass_out;
   row[COL_LEFT] = r.mass_left;

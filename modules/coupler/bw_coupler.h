@@ -80,8 +80,9 @@ typedef struct {
   double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
                                 that ends the iteration [-]             default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
-  bool count_work;           /* work_given of the report (an exchange per step)  default false */
-  bool walled[3][2];         /* sides of the box the solid leans on: no surface there */
+  bool
+      count_work; /* work_given and work_late of the report (an exchange per step)  default false */
+  bool walled[3][2]; /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
 
 bw_coupler_config bw_coupler_config_default(void);
@@ -115,8 +116,11 @@ typedef struct {
   double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
                                      balance of a box around it; 0 when no box was watched */
   double work_given;              /* by the fluid through the markers since the start:
-                                     -rho int sum Q dV.V dt; received: the solid's ledger, external
-                                     [M L^2/T^2]; 0 without count_work */
+                                     -rho int sum Q dV.V dt [M L^2/T^2]; 0 without count_work */
+  double work_late;               /* of it, what a relaxed load brings later or never: int of
+                                     (load - F').V dt; 0 without count_work or with w = 1.
+                                     given = late + received (the solid's ledger, external, less
+                                     its weight's), to the order of the step */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
   int iterations;                 /* of the last step (1: explicit) and ... */
   double residual;                /* ... what it ended with [-]; 0 when explicit */

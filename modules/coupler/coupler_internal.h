@@ -3,15 +3,21 @@
 #include "bw_coupler.h"
 #include "bw_exchange.h"
 
+/* Of the fluid on the solid since the start, this rank's share [M L^2/T^2]: given through the
+ * markers; of the load, what relaxation holds back of it. */
+typedef struct {
+  double given, late;
+} bw_coupler__work;
+
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
   bool filled;
-  double fluid_numbers[2]; /* time, gradient of the forcing */
-  bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
-  double *rows;            /* (n,BW_PD_RESTART_ROW) of bw_pd_bond_get_restart */
-  double sums[BW_PD_RESTART_SUMS], work_given;
-  uint8_t *bits;        /* (n, bits_bytes) */
-  double *V_before, *F; /* (n,3) */
+  double fluid_numbers[2];                  /* time, gradient of the forcing */
+  bw_real *field[4];                        /* u, v, w, p; NULL where the fluid has none */
+  double *rows;                             /* (n,BW_PD_RESTART_ROW) of bw_pd_bond_get_restart */
+  double sums[BW_PD_RESTART_SUMS], work[2]; /* of all ranks: given, late */
+  uint8_t *bits;                            /* (n, bits_bytes) */
+  double *V_before, *F;                     /* (n,3) */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
@@ -73,7 +79,7 @@ struct bw_coupler {
   bool *gone;                   /* (n) scratch: particles beyond an outflow */
   uint8_t *stays;               /* (particles and copies) scratch: not gone */
   bw_pd_bond_link *link;        /* (family) scratch */
-  double work_given;            /* of this rank's markers [M L^2/T^2] */
+  bw_coupler__work work;
   bw_coupler__state kept;
   /* Iterated coupling: state at the beginning of the step; guess of the surface's velocity, its
    * residual and the one before (n,3) each. */
@@ -119,7 +125,7 @@ void bw_coupler__blocks_reaction(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
 /* c->force, relaxed, to the force density F of the particles. Local. */
-void bw_coupler__relax_load(bw_coupler *c, double relaxation);
+void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation);
 void bw_coupler__state_release(bw_coupler__state *s);
 bw_status bw_coupler__state_create(const bw_coupler *c,
                                    bw_coupler__state *s) BW_MUST_CHECK; /* Local */

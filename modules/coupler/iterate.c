@@ -37,12 +37,12 @@ static void compare(bw_coupler *c, double sums[4])
 bw_status bw_coupler__iterate(bw_coupler *c, double dt)
 {
   const int most = c->config.coupling_iterations;
-  const double work = c->work_given;
+  const bw_coupler__work work = c->work;
   double omega = c->config.load_relaxation, sums[4];
   bw_coupler__state_capture(c, &c->start);
   memcpy(c->iterate[GUESS], c->marker_V, 3 * c->n_surface * sizeof *c->marker_V);
   for (int k = 1;; k++) {
-    c->work_given = work;
+    c->work = work;
     BW_TRY(give_guess(c));
     BW_TRY(bw_coupler__advance_fluid(c, dt));
     BW_TRY(bw_coupler__load_solid(c, dt, 1.0));

@@ -21,7 +21,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .markers = ibm.markers,
                          .markers_outside = ibm.outside,
                          .imbalance = ibm.imbalance,
-                         .work_given = c->work_given,
+                         .work_given = c->work.given,
+                         .work_late = c->work.late,
                          .iterations = c->iterations,
                          .residual = c->residual,
                          .unconverged = c->unconverged};
@@ -41,6 +42,7 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);
+  bw_comm_sum(comm, 1, &r.work_late);
   bw_coupler__count_mass(c, mass);
   r.mass_inside = mass[0], r.mass_out = mass[1], r.mass_left = mass[2];
   count_probes(c, count);

@@ -49,8 +49,8 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   s->fluid_numbers[0] = bw_ns_channel_time(c->fluid);
   s->fluid_numbers[1] = bw_ns_channel_gradient(c->fluid);
   bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
-  s->work_given = c->work_given;
-  bw_comm_sum(bw_pd_bond_comm(c->solid), 1, &s->work_given);
+  s->work[0] = c->work.given, s->work[1] = c->work.late;
+  bw_comm_sum(bw_pd_bond_comm(c->solid), 2, s->work);
   bw_pd_bond_get_bits(c->solid, s->bits);
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
@@ -75,7 +75,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
-  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_given", 1, &s->work_given));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(
@@ -94,7 +94,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_given", 1, &s->work_given));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(
@@ -140,7 +140,8 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
   if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, bw_coupler__state_create(c, &c->kept)));
   BW_TRY(read_state(c, &c->kept, ck));
   c->kept.filled = true;
-  c->work_given = bw_comm_rank(comm) == 0 ? c->kept.work_given : 0.0;
+  const double own = bw_comm_rank(comm) == 0 ? 1.0 : 0.0;
+  c->work = (bw_coupler__work){own * c->kept.work[0], own * c->kept.work[1]};
   BW_TRY(bw_coupler__state_restore(c, &c->kept));
   return bw_coupler__follow_surface(c);
 }

@@ -76,7 +76,7 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (!probes || c->config.count_work) bw_coupler__reaction_force(c);
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
-  bw_coupler__relax_load(c, relaxation);
+  bw_coupler__relax_load(c, dt, relaxation);
   bw_coupler__push_solid(c);
   bw_timer_stop(c->timer, BW_PART_PROBES);
   return st;

@@ -231,16 +231,29 @@ void bw_coupler__reaction_force(bw_coupler *c)
 void bw_coupler__count_work(bw_coupler *c, double dt)
 {
   for (size_t q = 0; q < 3 * c->n_surface; q++) /* a block's shares meet its mean velocity */
-    c->work_given += dt * c->force[q] * c->marker_V[q];
+    c->work.given += dt * c->force[q] * c->marker_V[q];
 }
 
-/* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h). */
-void bw_coupler__relax_load(bw_coupler *c, double relaxation)
+/* Power of the load on the particles as they move at the beginning of the step. */
+static double power(bw_coupler *c)
+{
+  double *V = c->X, sum = 0.0; /* scratch */
+  bw_pd_bond_get_velocity(c->solid, V);
+  for (size_t i = 0; i < 3 * c->n; i++)
+    sum += c->F[i] * V[i];
+  return sum * bw_pd_bond_volume(c->solid);
+}
+
+/* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h):
+ * F' <- (1 - w) F' + w F keeps F - F' = (1 - w)/w (F' - F' before) back, which is booked. */
+void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
 {
   const double w = relaxation, volume = bw_pd_bond_volume(c->solid);
+  const double before = c->config.count_work ? power(c) : 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)
     c->F[i] *= 1.0 - w;
   for (size_t q = 0; q < c->n_surface; q++)
     for (int d = 0; d < 3; d++)
       c->F[3 * (size_t)c->particle[q] + d] += w * c->force[3 * q + d] / volume;
+  if (c->config.count_work) c->work.late += dt * (1.0 - w) / w * (power(c) - before);
 }

@@ -13,10 +13,12 @@
  *                2 phi/(h S + 2 phi); and 2 % for the clear cells on both sides and for slip.
  * force_balance  reaction over control volume: 1.5 %, what markers within 1.5 cells of a wall
  *                spread beyond it (docs/verification/porous_breakup).
- * solid_mass     inside, passing out and left over what there was: to round-off.
- * work           given by the fluid over received by the solid: reported. A relaxed load (w = 0.1)
- *                follows the motion late, so that the two differ while the medium swings;
- *                coupler.work has the claim, with w = 1.
+ * work           given by the fluid, less what the relaxed load holds back, over received by the
+ *                solid, before it breaks: 1 %, the requirement. The load rises within
+ *                dt/w = 1 ms, the medium's own time, so that given over received alone is 1.055
+ *                (were the medium fast against it, it would be 2: F x against F x/2).
+ *                While it breaks (work_breaking): reported. Undamped waves of the lattice are
+ *                shorter than the step, and markers move at the velocity of its beginning.
  * broken_bond_fraction, fragments   no numbers in POROUS, where S1 stays whole: reported.
  * BUILD modules=coupler case=porous_breakup
  * TEST  ranks=1 timeout=600 */
@@ -82,7 +84,6 @@ static void rows(bw_validation *v, const char *run, const porous_config *q, cons
   const double U = q->fluid.bulk_velocity, p0 = q->fluid.density * U * U, none = INFINITY;
   const double section = q->domain.length[1] * q->domain.length[2];
   const double *rest = o->rest, *last = o->last;
-  const double mass = last[COL_INSIDE] + last[COL_OUT] + last[COL_LEFT];
   double phi = NAN, S = NAN;
   ideal_medium(q, &phi, &S);
   const double walls = 2.0 * phi / (q->domain.length[1] * S + 2.0 * phi);
@@ -96,10 +97,10 @@ static void rows(bw_validation *v, const char *run, const porous_config *q, cons
       walls + 0.02, BW_CONSERVATION, "momentum of the channel");
   row(v, run, "force_balance", rest[COL_REACTION] / rest[COL_BOX], 1.0, 0.015, BW_CONSERVATION,
       "momentum of a box around the medium");
-  row(v, run, "solid_mass", mass / (rest[COL_INSIDE] + rest[COL_OUT] + rest[COL_LEFT]), 1.0, 1e-12,
-      BW_CONSERVATION, "no particle is made or lost");
-  row(v, run, "work", last[COL_GIVEN] / last[COL_EXTERNAL], 1.0, none, BW_CONSERVATION,
-      "Newton's third law");
+  row(v, run, "work", (rest[COL_GIVEN] - rest[COL_LATE]) / rest[COL_EXTERNAL], 1.0, 0.01,
+      BW_CONSERVATION, "Newton's third law");
+  row(v, run, "work_breaking", (last[COL_GIVEN] - last[COL_LATE]) / last[COL_EXTERNAL], 1.0, none,
+      BW_CONSERVATION, "Newton's third law");
   row(v, run, "broken_bond_fraction", last[COL_BROKEN_FRACTION], 0.0, none, BW_PUBLISHED,
       "POROUS: S1 stays whole");
   row(v, run, "fragments", last[COL_FRAGMENTS], 0.0, none, BW_PUBLISHED, "POROUS: S1 stays whole");

@@ -129,7 +129,7 @@ START_TEST(linear_pressure_lifts_the_body)
   for (size_t i = 0; i < bw_pd_bond_count(s.solid); i++)
     s.coupler->V_before[3 * i] = -3.0 * 0.25; /* the particles are at rest now */
   bw_check_ok(bw_coupler__probe_force(s.coupler, 0.25));
-  bw_coupler__relax_load(s.coupler, 0.5);
+  bw_coupler__relax_load(s.coupler, 0.25, 0.5);
   double force[3];
   memcpy(force, s.coupler->force_probe, sizeof force);
   bw_comm_sum(bw_check_world(), 3, force);

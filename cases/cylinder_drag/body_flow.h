@@ -1,5 +1,6 @@
 /* body_flow.h -- a box of fluid with surfaces of markers in it: the step, the pressure that acted,
- * markers on circles. Shared by cylinder_flow.h and the validations of ibm_mdf and probe.
+ * markers on circles and spheres. Shared by cylinder_flow.h and the validations of ibm_mdf and
+ * probe.
  *
  * body_flow_box makes a box of cubic cells that is periodic or walled; who needs another one makes
  * grid, fluid and body and calls body_flow_ready. */
@@ -142,5 +143,27 @@ static inline void body_circle(body_surface *s, size_t from, size_t n, const dou
     X[0] = centre[0] + R * c, X[1] = centre[1] + R * d, X[2] = 0.5 * h;
     N[0] = c, N[1] = d, N[2] = 0.0;
     s->dV[from + q] = turn * R * h * h;
+  }
+}
+
+/* Points about h apart on a sphere of radius R. */
+static inline size_t body_sphere_size(double R, double h)
+{
+  return (size_t)lround(4.0 * acos(-1.0) * R * R / (h * h));
+}
+
+/* All points (those that this rank has): a sphere of radius R about `centre`, evenly on a spiral,
+ * normals outward; dV = area per point times h. At rest. */
+static inline void body_sphere(body_surface *s, const double centre[3], double R, double h)
+{
+  const double pi = acos(-1.0), golden = pi * (3.0 - sqrt(5.0));
+  for (size_t q = 0; q < s->n; q++) {
+    const double z = 1.0 - (2.0 * (double)q + 1.0) / (double)s->n, r = sqrt(1.0 - z * z);
+    const double N[3] = {r * cos(golden * (double)q), r * sin(golden * (double)q), z};
+    for (int d = 0; d < 3; d++) {
+      s->N[3 * q + d] = N[d];
+      s->X[3 * q + d] = centre[d] + R * N[d];
+    }
+    s->dV[q] = 4.0 * pi * R * R / (double)s->n * h;
   }
 }

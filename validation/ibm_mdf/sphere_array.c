@@ -23,24 +23,6 @@ enum { ROWS = 7 };
 static const double PI = 3.14159265358979323846, CENTRE[3] = {0.5137, 0.4871, 0.5043};
 static const double STEADY = 1.0e-4, LATEST = 2.0; /* change of U per 0.01 L^2/nu; L^2/nu */
 
-/* Radius a; one marker per h^2. */
-static bw_status sphere(const bw_comm *comm, double a, double h, body_surface *s)
-{
-  const double area = 4.0 * PI * a * a, golden = PI * (3.0 - sqrt(5.0));
-  const size_t n = (size_t)lround(area / (h * h));
-  BW_TRY(body_surface_alloc(comm, n, s));
-  for (size_t q = 0; q < s->n; q++) {
-    const double z = 1.0 - (2.0 * (double)q + 1.0) / (double)n, r = sqrt(1.0 - z * z);
-    const double N[3] = {r * cos(golden * (double)q), r * sin(golden * (double)q), z};
-    for (int d = 0; d < 3; d++) {
-      s->N[3 * q + d] = N[d];
-      s->X[3 * q + d] = CENTRE[d] + a * N[d];
-    }
-    s->dV[q] = area / (double)n * h;
-  }
-  return BW_OK;
-}
-
 static bw_status make(const bw_comm *comm, int cells, double a, double gradient, double retraction,
                       body_flow *f)
 {
@@ -57,8 +39,10 @@ static bw_status make(const bw_comm *comm, int cells, double a, double gradient,
   BW_TRY(body_flow_box(comm, &box, f));
   f->dt = 0.9 * bw_ns_channel_dt_max(f->fluid);
   body_surface s = {0};
-  bw_status st = sphere(comm, a - back * box.h, box.h, &s);
-  BW_THEN(st, body_set_markers(f, &s));
+  const double R = a - back * box.h;
+  BW_TRY(body_surface_alloc(comm, body_sphere_size(R, box.h), &s));
+  body_sphere(&s, CENTRE, R, box.h);
+  const bw_status st = body_set_markers(f, &s);
   body_surface_free(&s);
   return st;
 }

@@ -71,8 +71,18 @@ static int32_t row_at(const crowd *g, const int32_t site[3])
   return bw_pd_map_get(&g->row, home);
 }
 
+static void choose_axes(bw_pd_bond *pd, size_t n, const int32_t site[])
+{
+  int32_t lower[3], upper[3];
+  int64_t size[3];
+  extent(n, site, lower, upper);
+  for (int k = 0; k < 3; k++)
+    size[k] = (int64_t)upper[k] - lower[k] + 1;
+  bw_pd_bond__axes(size, pd->stencil.reach, pd->axis);
+}
+
 /* Rows of this rank in lattice order. */
-static bw_status own_rows(const bw_pd_bond *pd, const crowd *g, size_t *n, int32_t **row)
+static bw_status own_rows(bw_pd_bond *pd, const crowd *g, size_t *n, int32_t **row)
 {
   const int me = bw_comm_rank(pd->comm);
   int32_t *mine = NULL, *site = NULL, *order = NULL;
@@ -90,7 +100,8 @@ static bw_status own_rows(const bw_pd_bond *pd, const crowd *g, size_t *n, int32
         memcpy(site + 3 * at, g->site + 3 * q, 3 * sizeof *site);
         mine[at++] = (int32_t)q;
       }
-    st = bw_pd_bond__lattice_order(*n, site, order);
+    choose_axes(pd, *n, site);
+    st = bw_pd_bond__lattice_order(pd->axis, *n, site, order);
   }
   for (size_t q = 0; q < *n && st == BW_OK; q++)
     (*row)[q] = mine[order[q]];
@@ -173,7 +184,7 @@ static bw_status extended_arrays(bw_pd_bond *pd, const crowd *g, const uint8_t k
   BW_THEN(st, BW_ALLOCATE(&pd->kind, all));
   BW_THEN(st, BW_ALLOCATE(&pd->place, all));
   BW_THEN(st, BW_ALLOCATE(&order, copies->n));
-  BW_THEN(st, bw_pd_bond__lattice_order(copies->n, copies->site, order));
+  BW_THEN(st, bw_pd_bond__lattice_order(pd->axis, copies->n, copies->site, order));
   for (size_t e = 0; e < all && st == BW_OK; e++) {
     const size_t c = e < n ? 0 : (size_t)order[e - n];
     const int32_t row = e < n ? own[e] : copies->row[c];

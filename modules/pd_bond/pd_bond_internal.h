@@ -1,14 +1,14 @@
 /* pd_bond_internal.h -- shared by the sources of pd_bond only.
  *
  * Storage. Own particles and copies of others' (halo and periodic images) lie in one numbering,
- * the storage, in lattice order (x fastest): the bounding box of their sites with holes where it is
- * well filled, without holes otherwise. Displacements are stored there, so the neighbours of
- * successive owners in one lattice direction are contiguous nearly always.
- * Bonds. A block is BW_PD_LANES successive storage places, some of them own particles. A slot is
- * one direction of a block: where the neighbours start and which of the bonds exist (family) and
- * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
- * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
- * a family runs in the same order on any number of ranks. */
+ * the storage, in lattice order: the bounding box of their sites with holes where it is well
+ * filled, without holes otherwise. Which axis is fastest, bw_pd_bond__axes says. Displacements are
+ * stored there, so the neighbours of successive owners in one lattice direction are contiguous
+ * nearly always. Bonds. A block is BW_PD_LANES successive storage places, some of them own
+ * particles. A slot is one direction of a block: where the neighbours start and which of the bonds
+ * exist (family) and hold (mask). Where neighbours of one direction are not contiguous, the block
+ * has several slots of that direction with disjoint families. A block's slots are in stencil order,
+ * so the sum over a family runs in the same order on any number of ranks. */
 #pragma once
 #include "bw_exchange.h"
 #include "bw_pd_bond.h"
@@ -115,6 +115,7 @@ struct bw_pd_bond {
   bool breakage;
   bw_pd_stencil stencil;
 
+  int axis[3];          /* of the lattice order, fastest first */
   size_t n, n_extended; /* own; own and copies */
   int64_t total;
   int32_t *site;  /* (n_extended,3), images shifted */
@@ -205,9 +206,12 @@ int32_t bw_pd_map_get(const bw_pd_map *map, const int32_t site[3]);
 bw_status bw_pd_map_put(bw_pd_map *map, const int32_t site[3], int32_t value, int32_t *found);
 void bw_pd_map_replace(bw_pd_map *map, const int32_t site[3], int32_t value);
 
-/* pd_bond_partition.c: part[n] of `parts` compact blocks of equal counts */
+/* pd_bond_partition.c: part[n] of `parts` compact blocks of equal counts; the axes of the lattice
+ * order of a body of so many sites each way, fastest first */
 bw_status bw_pd_bond__partition(int parts, size_t n, const int32_t site[], int32_t part[]);
-bw_status bw_pd_bond__lattice_order(size_t n, const int32_t site[], int32_t order[]);
+void bw_pd_bond__axes(const int64_t size[3], int reach, int axis[3]);
+bw_status bw_pd_bond__lattice_order(const int axis[3], size_t n, const int32_t site[],
+                                    int32_t order[]);
 
 /* pd_bond_halo.c */
 bw_status bw_pd_bond__distribute(bw_pd_bond *pd, size_t n, const int32_t site[],

@@ -11,9 +11,12 @@ enum { PLACES_PER_PARTICLE = 4, PLACES_FREE = 1 << 16 };
 static bw_status number_box(bw_pd_bond *pd, const int32_t lower[3], const int64_t size[3])
 {
   for (size_t e = 0; e < pd->n_extended; e++) {
-    const int32_t *s = pd->site + 3 * e;
-    pd->place[e] =
-        (int32_t)((s[0] - lower[0]) + size[0] * ((s[1] - lower[1]) + size[1] * (s[2] - lower[2])));
+    int64_t place = 0;
+    for (int k = 2; k >= 0; k--) {
+      const int d = pd->axis[k];
+      place = place * size[d] + (pd->site[3 * e + (size_t)d] - lower[d]);
+    }
+    pd->place[e] = (int32_t)place;
   }
   return BW_OK;
 }
@@ -22,7 +25,7 @@ static bw_status number_packed(bw_pd_bond *pd)
 {
   int32_t *order = NULL;
   BW_TRY(BW_ALLOCATE(&order, pd->n_extended));
-  const bw_status st = bw_pd_bond__lattice_order(pd->n_extended, pd->site, order);
+  const bw_status st = bw_pd_bond__lattice_order(pd->axis, pd->n_extended, pd->site, order);
   for (size_t q = 0; q < pd->n_extended && st == BW_OK; q++)
     pd->place[order[q]] = (int32_t)q;
   bw_release(&order);

@@ -86,6 +86,26 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
 }
 END_TEST
 
+/* A plate too wide for the cache is numbered with its thickness before its width; the parts of two
+ * ranks and more are not. */
+START_TEST(a_wide_plate_moves_as_its_parts_do)
+{
+  bw_comm *self = pd_alone();
+  pd_body body = pd_box(72, 64, 4);
+  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+  pd_set(many, NULL, shake);
+  pd_set(one, NULL, shake);
+  pd_steps(many, 5, 0.4 * bw_pd_bond_dt_max(one));
+  pd_steps(one, 5, 0.4 * bw_pd_bond_dt_max(one));
+  compare(many, one, bw_pd_bond_get_velocity, 1e3 * BW_REAL_EPSILON);
+  bw_pd_bond_destroy(&many);
+  bw_pd_bond_destroy(&one);
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
 /* Stop in the middle of cracking, go on with one rank each: the same to the last bit but for the
  * order of sums over ranks in the book. */
 START_TEST(restart_on_another_number_of_ranks)
@@ -211,8 +231,8 @@ START_TEST(orientation_does_not_matter)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
-                                      BW_TEST(restart_on_another_number_of_ranks),
-                                      BW_TEST(periods_are_an_endless_body),
-                                      BW_TEST(orientation_does_not_matter)};
+static const bw_check_test tests[] = {
+    BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
+    BW_TEST(a_wide_plate_moves_as_its_parts_do), BW_TEST(restart_on_another_number_of_ranks),
+    BW_TEST(periods_are_an_endless_body), BW_TEST(orientation_does_not_matter)};
 BW_CHECK_MAIN("pd_bond.ranks", tests)

@@ -180,6 +180,15 @@ bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
 /* Reference place of one of them, copies where they act [L]. Local. */
 void bw_pd_bond_get_place(const bw_pd_bond *pd, size_t extended, double X0[3]);
 
+/* The motion of own particles and copies, to be read where the solid keeps it: that of the extended
+ * particle e at place[e]. u: displacement [L]; v: velocity [L/T], only if asked for (an exchange).
+ * Borrowed until the next step. Collective (updates the copies). */
+typedef struct {
+  const int32_t *place;
+  const bw_real *u[3], *v[3];
+} bw_pd_bond_motion;
+bw_pd_bond_motion bw_pd_bond_get_motion(bw_pd_bond *pd, bool velocity);
+
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
  * Collective. */
 void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);

@@ -82,6 +82,17 @@ bw_pd_bond_extended bw_pd_bond_get_extended(bw_pd_bond *pd)
   return (bw_pd_bond_extended){.n = pd->n_extended, .id = pd->id, .X = pd->extended_X};
 }
 
+bw_pd_bond_motion bw_pd_bond_get_motion(bw_pd_bond *pd, bool velocity)
+{
+  if (velocity || !pd->current) bw_pd_bond__refresh(pd, velocity);
+  bw_pd_bond_motion m = {.place = pd->place};
+  for (int k = 0; k < 3; k++) {
+    m.u[k] = pd->u[k];
+    m.v[k] = velocity ? pd->vs[k] : NULL;
+  }
+  return m;
+}
+
 /* In pieces that fit the halo's buffers: nothing is allocated here. */
 void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all)
 {

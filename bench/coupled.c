@@ -9,14 +9,13 @@
  * BUILD modules=coupler
  * TEST ranks=2 */
 #include "bw_bench.h"
+#include "bw_bench_porous.h"
 #include "bw_coupler.h"
-#include "bw_memory.h"
-#include "bw_pd_shape.h"
 
 #include <math.h>
 
-enum { REPETITIONS = 7, STEPS = 2, NX = 128, NY = 64, NZ = 64 };
-static const double HEIGHT = 0.1, DT = 5.0e-5;
+enum { REPETITIONS = 7, STEPS = 2, NX = 128, NY = BW_BENCH_CELLS, NZ = 64 };
+static const double DT = 5.0e-5;
 
 typedef struct {
   bw_grid *grid;
@@ -30,7 +29,7 @@ static bw_status build_fluid(const bw_comm *comm, scene *s)
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config flow = bw_ns_channel_config_default();
   grid.n[0] = NX, grid.n[1] = NY, grid.n[2] = NZ;
-  grid.length[0] = 2.0 * HEIGHT, grid.length[1] = grid.length[2] = HEIGHT;
+  grid.length[0] = 2.0 * bw_bench_height, grid.length[1] = grid.length[2] = bw_bench_height;
   grid.periodic[2] = true;
   grid.halo = 2;
   flow.nu = 1.0e-3;
@@ -40,33 +39,6 @@ static bw_status build_fluid(const bw_comm *comm, scene *s)
   flow.side[2][0].kind = flow.side[2][1].kind = BW_SIDE_PERIODIC;
   BW_TRY(bw_grid_create(comm, &grid, &s->grid));
   return bw_ns_channel_create(s->grid, &flow, &s->fluid);
-}
-
-static bw_status build_solid(const bw_comm *comm, scene *s)
-{
-  const double h = HEIGHT, ds = h / NY, pitch = h / 4;
-  const bw_shape body[] = {
-      {.kind = BW_SHAPE_BOX, .lower = {0.25 * h, 0, 0}, .upper = {h, h, h}},
-      {.kind = BW_SHAPE_PORES_SC,
-       .remove = true,
-       .radius = 0.5825 * pitch,
-       .pitch = pitch,
-       .centre = {0.25 * h + 0.5 * pitch, 0.5 * pitch, 0.5 * pitch}},
-      {.kind = BW_SHAPE_BOX,
-       .lower = {0.25 * h, -3 * ds, 0},
-       .upper = {h, 0, h},
-       .particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE},
-  };
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  c.ds = ds, c.rho = 3000, c.E = 1.0e8, c.G0 = 0.05, c.contact = true, c.period[2] = h;
-  int64_t n = 0;
-  int32_t *site = NULL;
-  uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(3, body, ds, c.origin, false, &n, &site, &kind);
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
-  bw_release(&site);
-  bw_release(&kind);
-  return st;
 }
 
 static bw_status build_coupler(scene *s, bw_coupler_load_kind load)
@@ -160,7 +132,7 @@ static bw_status run_scene(bw_bench *b, const char *name, bw_coupler_load_kind l
   const bw_comm *comm = bw_bench_comm(b);
   scene s = {.grid = NULL};
   bw_status st = build_fluid(comm, &s);
-  BW_THEN(st, build_solid(comm, &s));
+  BW_THEN(st, bw_bench_porous(comm, &s.solid));
   BW_THEN(st, build_coupler(&s, load));
   BW_THEN(st, bw_coupler_step(s.coupler, DT)); /* warms up */
   BW_THEN(st, report(b, &s, name));

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X)
+bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  bw_pd_interface__locate(pi, h, X);
+  bw_pd_interface__locate(pi, h, now);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi);
   if (pi->outside[h] || !bw_pd_interface__is_open(s, empty, pi->config.n_empty)) return false;
   bw_pd_interface__tell_normal(pi, h, empty);
@@ -32,12 +32,12 @@ static void classify(bw_pd_interface *pi, size_t h)
 /* Particles whose bonds broke since the last look, and those that left a wall or met it again.
  * Where nothing broke nothing but the places at the walls is read. Returns whether there are any.
  */
-static bool follow_changes(bw_pd_interface *pi, const bw_real *X)
+static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
 {
   bool changed = false;
   for (size_t q = 0; q < pi->n_leaning; q++) {
     const size_t h = (size_t)pi->leaning[q];
-    const bool off = bw_pd_interface__moved_off(pi, h, X);
+    const bool off = bw_pd_interface__moved_off(pi, h, now);
     if (off == pi->off[h]) continue;
     pi->off[h] = off;
     classify(pi, h);
@@ -61,14 +61,14 @@ static bool follow_changes(bw_pd_interface *pi, const bw_real *X)
 }
 
 /* Returns whether a gap has opened or closed far enough to show. */
-static bool follow_gaps(bw_pd_interface *pi, const bw_real *X)
+static bool follow_gaps(bw_pd_interface *pi, const bw_pd_bond_motion *now)
 {
   bool changed = false;
   for (size_t q = 0; q < pi->n_gap; q++) {
     const size_t h = (size_t)pi->gap[q];
     const bool before = pi->surface[h];
     bw_pd_interface__resolve(pi, h, false);
-    pi->surface[h] = bw_pd_interface__judge(pi, h, X);
+    pi->surface[h] = bw_pd_interface__judge(pi, h, now);
     changed = changed || pi->surface[h] != before;
   }
   return changed;
@@ -129,21 +129,21 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
-  const bw_pd_bond_extended all = bw_pd_bond_get_extended(pi->pd);
-  bw_pd_bond_get_velocity(pi->pd, pi->all_velocity);
-  const bool broken = follow_changes(pi, all.X), shown = follow_gaps(pi, all.X);
+  const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
+  const bool broken = follow_changes(pi, &now), shown = follow_gaps(pi, &now);
   int64_t changed = pi->fresh_start || broken || shown;
   if (changed) bw_pd_interface__renew(pi, false);
   pi->fresh_start = false;
   bw_comm_max_int(bw_pd_bond_comm(pi->pd), 1, &changed);
-  if (changed) bw_pd_interface__settle_normals(pi);
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row];
-    for (size_t d = 0; d < 3; d++) {
-      pi->position[3 * row + d] = (double)all.X[3 * h + d];
-      pi->velocity[3 * row + d] = pi->all_velocity[3 * h + d];
-    }
-    bw_pd_interface__follow(pi, row, all.X);
+  if (changed) {
+    bw_pd_interface__settle_normals(pi);
+    bw_pd_interface__lay_lines(pi, &now);
   }
+  for (size_t row = 0; row < pi->n_list; row++) {
+    const size_t h = (size_t)pi->list[row], place = (size_t)now.place[h];
+    for (size_t d = 0; d < 3; d++)
+      pi->position[3 * row + d] = pi->X0[3 * h + d] + (double)now.u[d][place];
+  }
+  bw_pd_interface__carry_normals(pi, &now);
   return BW_OK;
 }

@@ -28,7 +28,7 @@ typedef struct {
   tag *own, *all;  /* (n) and (n_all) */
   tag *of_root;    /* (n) rows of roots */
   cross_bond *cross;
-  double *X, *all_X; /* (n,3), (n_all,3) not shifted */
+  double *X, *V, *all_X; /* (n,3), (n,3), (n_all,3) not shifted */
 } joiner;
 
 /* What a rank knows of one piece, in two rounds: sums, then moments about the common centre. */
@@ -309,6 +309,7 @@ static bw_status prepare(joiner *j)
   BW_TRY(BW_ALLOCATE(&j->of_root, j->n));
   BW_TRY(BW_ALLOCATE(&j->all, j->n_all));
   BW_TRY(BW_ALLOCATE(&j->X, 3 * j->n));
+  BW_TRY(BW_ALLOCATE(&j->V, 3 * j->n));
   BW_TRY(BW_ALLOCATE(&j->all_X, 3 * j->n_all));
   for (size_t h = 0; h < j->n; h++)
     j->parent[h] = (int32_t)h;
@@ -326,12 +327,12 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t
   bw_status st = bw_comm_agree(bw_pd_bond_comm(pi->pd), prepare(&j));
   if (st == BW_OK) {
     bw_pd_bond_get_position(pi->pd, j.X);
-    bw_pd_bond_get_velocity(pi->pd, pi->all_velocity);
+    bw_pd_bond_get_velocity(pi->pd, j.V);
     find_images(&j, all.X);
     spread_labels(&j, bw_pd_bond_id(pi->pd));
     for (size_t h = 0; label != NULL && h < j.n; h++)
       label[h] = j.own[h].label;
-    st = measure(&j, pi->all_velocity, n, fragment);
+    st = measure(&j, j.V, n, fragment);
   }
   bw_release(&j.parent);
   bw_release(&j.own);
@@ -339,6 +340,7 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t
   bw_release(&j.all);
   bw_release(&j.cross);
   bw_release(&j.X);
+  bw_release(&j.V);
   bw_release(&j.all_X);
   return st;
 }

@@ -40,6 +40,7 @@ static bw_status check_config(const bw_pd_interface_config *c, int sectors, doub
 
 static bw_status allocate_arrays(bw_pd_interface *pi)
 {
+  enum { ROWS = BW_PD_INTERFACE__ROWS };
   const size_t n = pi->n, slots = (size_t)pi->stencil.slots;
   bw_status st = BW_ALLOCATE(&pi->surface, n);
   BW_THEN(st, BW_ALLOCATE(&pi->first, n));
@@ -59,16 +60,16 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->position, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->velocity, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->all_velocity, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->own_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
-  BW_THEN(st, BW_ALLOCATE(&pi->hold, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->extended_velocity, 3 * pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->steps, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
+  if (bw_pd_bond_settings(pi->pd)->disorder > 0)
+    BW_THEN(st, BW_ALLOCATE(&pi->off_lattice, 9 * (n + ROWS)));
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->near, slots));
@@ -168,18 +169,17 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {
-      (void **)&p->surface,     (void **)&p->first,        (void **)&p->outside,
-      (void **)&p->leans,       (void **)&p->broken,       (void **)&p->fresh,
-      (void **)&p->undecided,   (void **)&p->gap,          (void **)&p->row,
-      (void **)&p->row_n,       (void **)&p->row_room,     (void **)&p->stale,
-      (void **)&p->near,        (void **)&p->hold,         (void **)&p->anchor,
-      (void **)&p->pool,        (void **)&p->leaning,      (void **)&p->list,
-      (void **)&p->X0,          (void **)&p->normal,       (void **)&p->position,
-      (void **)&p->velocity,    (void **)&p->all_velocity, (void **)&p->area,
-      (void **)&p->list_normal, (void **)&p->link,         (void **)&p->state,
-      (void **)&p->place,       (void **)&p->off,          (void **)&p->area_first,
-      (void **)&p->own_normal,  (void **)&p->all_normal,   (void **)&p->extended_velocity};
+  void **array[] = {(void **)&p->surface,    (void **)&p->first,      (void **)&p->outside,
+                    (void **)&p->leans,      (void **)&p->broken,     (void **)&p->fresh,
+                    (void **)&p->undecided,  (void **)&p->gap,        (void **)&p->row,
+                    (void **)&p->row_n,      (void **)&p->row_room,   (void **)&p->stale,
+                    (void **)&p->near,       (void **)&p->lines,      (void **)&p->anchor,
+                    (void **)&p->pool,       (void **)&p->leaning,    (void **)&p->list,
+                    (void **)&p->X0,         (void **)&p->normal,     (void **)&p->position,
+                    (void **)&p->steps,      (void **)&p->area,       (void **)&p->list_normal,
+                    (void **)&p->link,       (void **)&p->state,      (void **)&p->place,
+                    (void **)&p->off,        (void **)&p->area_first, (void **)&p->own_normal,
+                    (void **)&p->all_normal, (void **)&p->off_lattice};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   bw_release(pi);
@@ -190,7 +190,6 @@ bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi)
   return (bw_pd_surface){.n = pi->n_list,
                          .particle = pi->list,
                          .X = pi->position,
-                         .V = pi->velocity,
                          .N = pi->list_normal,
                          .A = pi->area};
 }

@@ -57,13 +57,13 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi) BW_MUST_CHECK;
 typedef struct {
   size_t n;
   const int32_t *particle; /* (n) index into pd's own particles, rising */
-  const double *X, *V, *N; /* (n,3) position [L], velocity [L/T], unit outward normal */
+  const double *X, *N;     /* (n,3) position [L], unit outward normal */
   const double *A;         /* (n) area [L^2] */
 } bw_pd_surface;
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
-/* spin (n,3) of that surface [1/T]: the rigid rotation that fits the present velocities of each
- * particle's family best; 0 where none can be told. A point at X + a N moves with V + a spin x N.
- * After an update. Collective. */
+/* spin (n,3) of that surface [1/T]: half the curl of the present velocities around each particle,
+ * from the line elements that carry its normal; exact for rigid motion, 0 where none can be told. A
+ * point at X + a N moves with V + a spin x N. After an update. Collective. */
 void bw_pd_interface_turn(bw_pd_interface *pi, double spin[]);
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
 

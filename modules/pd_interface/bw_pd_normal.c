@@ -1,13 +1,11 @@
-/* Normals: told in the reference shape, from what holds together now; carried along by the body.
+/* Normals: told in the reference shape, from what holds together now.
  *
  * 3.45 sees the steps of the lattice: a terrace longer than the family looks flat. Smoothed, a
  * linear function of the two coordinates along the surface is fitted to the normals 3.45 of the
  * surface particles that h has intact bonds with, and its value at h is taken, PASSES times. A mean
  * would bend towards where more of them are; a linear function does not. Normals more than 60
  * degrees apart do not meet, but the rounding of an edge by 3.45 itself is spread farther: for
- * smooth bodies. A material surface moves as n.a = n0.a0 for any line element a0 that becomes a
- * (Nanson). Three of them, between partners on both sides of h along the lattice directions, give n
- * exactly where the deformation is homogeneous between them. */
+ * smooth bodies. */
 #include "pd_interface_internal.h"
 #include <math.h>
 #include <string.h>
@@ -118,59 +116,6 @@ static void fit(const bw_pd_interface *pi, size_t h, double out[3])
     out[d] = sum[d] / length;
 }
 
-/* Line element r of h between its anchors; X NULL: in the reference shape. False: none. */
-static bool element(const bw_pd_interface *pi, size_t h, int r, const bw_real *X, double a[3])
-{
-  const int32_t *end = &pi->anchor[6 * h + 2 * (size_t)r];
-  if (end[0] == end[1]) return false;
-  double from[3], to[3];
-  if (X == NULL) {
-    bw_pd_bond_get_place(pi->pd, (size_t)end[0], to);
-    bw_pd_bond_get_place(pi->pd, (size_t)end[1], from);
-  }
-  for (size_t d = 0; d < 3; d++)
-    a[d] = X == NULL ? to[d] - from[d]
-                     : (double)X[3 * (size_t)end[0] + d] - (double)X[3 * (size_t)end[1] + d];
-  return true;
-}
-
-/* Three line elements; one that is missing is the others' product. False: two are (rods). */
-static bool elements(const bw_pd_interface *pi, size_t h, const bw_real *X, double a[3][3])
-{
-  int missing = -1, found = 0;
-  for (int r = 0; r < 3; r++)
-    if (element(pi, h, r, X, a[r]))
-      found++;
-    else
-      missing = r;
-  if (found == 2) cross(a[(missing + 1) % 3], a[(missing + 2) % 3], a[missing]);
-  return found >= 2;
-}
-
-/* The farthest partner that holds along a lattice direction, two steps at most; else h. */
-static int32_t partner_along(const bw_pd_interface *pi, size_t h, int r, int side)
-{
-  const bw_pd_interface__stencil *s = &pi->stencil;
-  for (int steps = 2; steps > 0; steps--) {
-    double xi[3];
-    for (int d = 0; d < 3; d++)
-      xi[d] = side * steps * s->ds * s->axes[r][d];
-    const int q = bw_pd_interface__slot_of(s, xi);
-    if (q >= 0 && pi->state[q] == BW_PD_INTERFACE__INTACT && pi->near[q].cross == 0 &&
-        pi->near[q].partner >= 0)
-      return pi->near[q].partner;
-  }
-  return (int32_t)h;
-}
-
-void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
-{
-  for (int r = 0; r < 3; r++)
-    for (int side = 0; side < 2; side++)
-      pi->anchor[6 * h + 2 * (size_t)r + (size_t)side] =
-          r < pi->stencil.dims ? partner_along(pi, h, r, side == 0 ? 1 : -1) : (int32_t)h;
-}
-
 void bw_pd_interface__settle_normals(bw_pd_interface *pi)
 {
   memset(pi->own_normal, 0, 3 * pi->n * sizeof *pi->own_normal);
@@ -181,30 +126,4 @@ void bw_pd_interface__settle_normals(bw_pd_interface *pi)
     for (size_t row = 0; row < pi->n_list; row++)
       fit(pi, (size_t)pi->list[row], &pi->own_normal[3 * pi->list[row]]);
   }
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row];
-    double a[3][3];
-    memset(&pi->hold[3 * row], 0, 3 * sizeof *pi->hold);
-    if (!elements(pi, h, NULL, a)) continue;
-    for (size_t r = 0; r < 3; r++)
-      pi->hold[3 * row + r] = dot(&pi->own_normal[3 * h], a[r]);
-  }
-}
-
-void bw_pd_interface__follow(bw_pd_interface *pi, size_t row, const bw_real *X)
-{
-  const size_t h = (size_t)pi->list[row];
-  const double *hold = &pi->hold[3 * row];
-  double a[3][3], c[3], n[3] = {0.0, 0.0, 0.0};
-  if (elements(pi, h, X, a))
-    for (int r = 0; r < 3; r++) {
-      cross(a[(r + 1) % 3], a[(r + 2) % 3], c);
-      for (int d = 0; d < 3; d++)
-        n[d] += hold[r] * c[d];
-    }
-  cross(a[1], a[2], c);
-  const double squared = dot(n, n), sign = dot(a[0], c) < 0.0 ? -1.0 : 1.0;
-  for (size_t d = 0; d < 3; d++)
-    pi->list_normal[3 * row + d] =
-        squared > 0.0 ? sign * n[d] / sqrt(squared) : pi->own_normal[3 * h + d];
 }

@@ -56,12 +56,12 @@ static void fill_images(bw_pd_interface *pi, size_t h)
   }
 }
 
-bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X)
+bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
 {
   const bw_pd_interface_config *c = &pi->config;
   bool off = false;
   for (size_t d = 0; d < 3; d++) {
-    const double moved = (double)X[3 * h + d] - pi->X0[3 * h + d];
+    const double moved = (double)now->u[d][now->place[h]];
     off = off || (c->walled[d][0] && moved > pi->opening);
     off = off || (c->walled[d][1] && moved < -pi->opening);
   }
@@ -82,35 +82,30 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
   if (pi->leans[h] && (reference || !pi->off[h])) fill_images(pi, h);
 }
 
-/* Position of a partner relative to h, which is at Xh. */
-static void locate_one(const bw_pd_interface *pi, const double Xh[3], const bw_real *X,
+/* Place of a partner relative to h: at rest, and what both moved since (images the other way). */
+static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now,
                        const bw_pd_interface__near *near, double x[3])
 {
+  memcpy(x, &pi->stencil.xi[3 * near->slot], 3 * sizeof *x);
+  if (now == NULL || near->partner < 0) return;
+  const size_t l = (size_t)near->partner;
+  if (pi->off_lattice != NULL) {
+    bw_pd_bond_get_place(pi->pd, l, x);
+    for (size_t d = 0; d < 3; d++)
+      x[d] -= pi->X0[3 * h + d];
+  }
   for (size_t d = 0; d < 3; d++) {
-    if (X == NULL || near->partner < 0) {
-      x[d] = pi->stencil.xi[3 * near->slot + (int)d];
-      continue;
-    }
-    const unsigned wall = (unsigned)near->cross >> (2 * d) & 3u;
-    const double there = (double)X[3 * (size_t)near->partner + d];
-    const double plane = wall == 1u ? pi->config.lower[d] : pi->config.upper[d];
-    x[d] = (wall == 0u ? there : 2.0 * plane - there) - Xh[d];
+    const bool image = (near->cross >> (2 * d) & 3) != 0;
+    const double moved = (double)now->u[d][now->place[l]];
+    x[d] += (image ? -moved : moved) - (double)now->u[d][now->place[h]];
   }
 }
 
-static void position_of(const bw_pd_interface *pi, size_t h, const bw_real *X, double Xh[3])
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
 {
-  for (size_t d = 0; d < 3; d++)
-    Xh[d] = X == NULL ? pi->X0[3 * h + d] : (double)X[3 * h + d];
-}
-
-void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_real *X)
-{
-  double Xh[3];
-  position_of(pi, h, X, Xh);
   for (int q = 0; q < pi->stencil.slots; q++)
     if (pi->state[q] != BW_PD_INTERFACE__ABSENT)
-      locate_one(pi, Xh, X, &pi->near[q], &pi->place[3 * q]);
+      locate_one(pi, h, now, &pi->near[q], &pi->place[3 * q]);
 }
 
 void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never)

@@ -38,6 +38,15 @@ typedef struct {
   uint8_t cross;
 } bw_pd_interface__near;
 
+/* The line elements that carry eight successive rows of the list (bw_pd_lines.c). */
+enum { BW_PD_INTERFACE__ROWS = 8 };
+typedef struct {
+  int32_t end[3][2][BW_PD_INTERFACE__ROWS]; /* storage places: to, from */
+  double hold[3][BW_PD_INTERFACE__ROWS];    /* n0.a0: what stays along each [L] */
+  uint8_t steps[3][BW_PD_INTERFACE__ROWS];  /* lattice steps between the ends; 0: missing */
+  bool whole;                               /* none is missing in any row */
+} bw_pd_interface__lines;
+
 struct bw_pd_interface {
   bw_pd_bond *pd; /* borrowed */
   bw_pd_interface_config config;
@@ -53,6 +62,7 @@ struct bw_pd_interface {
   double *normal;       /* (n,3) last unit normal 3.45 of those that are or were surface, in the
                            reference shape; else 0 */
   int32_t *anchor;      /* (n,6) ends of three line elements: extended particles, or h twice */
+  uint8_t *steps;       /* (n,3) lattice steps between them */
 
   bool *outside;    /* (n) beyond a wall: never surface */
   bool *leans;      /* (n) its family reaches beyond a wall */
@@ -80,13 +90,13 @@ struct bw_pd_interface {
 
   int32_t *list; /* (n_list) the surface, and its rows: (.,3) but area */
   size_t n_list;
-  double *position, *velocity, *list_normal, *area;
-  double *all_velocity;      /* (n,3) */
-  double *own_normal;        /* (n,3) of the surface in the reference shape, 0 elsewhere */
-  double *all_normal;        /* (n_extended,3) */
-  double *hold;              /* (n_list,3) smooth reference normal along the line elements */
-  bool fresh_start;          /* nothing is known of the present shape yet */
-  double *extended_velocity; /* (n_extended,3) scratch of turn */
+  double *position, *list_normal, *area;
+  double *own_normal;            /* (n,3) of the surface in the reference shape, 0 elsewhere */
+  double *all_normal;            /* (n_extended,3) */
+  bw_pd_interface__lines *lines; /* (n_list / 8, rounded up) */
+  double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
+                          [L]; NULL: a lattice */
+  bool fresh_start;    /* nothing is known of the present shape yet */
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
@@ -95,8 +105,8 @@ enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN
  * a wall it leans on are filled with images. */
 void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference);
 
-/* Fills place of the particle resolved last, h, from X (extended array). */
-void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_real *X);
+/* Fills place of the particle resolved last, h; now NULL: in the reference shape. */
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
 
 /* Of the particle resolved last: bits of the sectors where nothing intact is, and of those where
  * nothing ever was; located too: bits of its empty sectors (3.42). Local. */
@@ -115,19 +125,23 @@ double bw_pd_interface__open_area(const bw_pd_interface *pi);
 double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]);
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
-bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_real *X);
+bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
 
 /* bw_pd_normal.c. Of h, resolved last: its normal 3.45 (where partners balance the one before, at
- * first that of its empty sectors), and where its line elements end. */
+ * first that of its empty sectors). */
 void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty);
-void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);
-/* own_normal of the listed surface, smoothed if asked, and what its line elements hold of it.
- * Collective. */
+/* own_normal of the listed surface, smoothed if asked. Collective. */
 void bw_pd_interface__settle_normals(bw_pd_interface *pi);
-/* list_normal of a row, turned with the body. */
-void bw_pd_interface__follow(bw_pd_interface *pi, size_t row, const bw_real *X);
 
-/* bw_pd_follow.c: surface or not, of h resolved last (X NULL: reference); renews its normal. */
-bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_real *X);
+/* bw_pd_lines.c. Of h, resolved last: where its line elements end. */
+void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);
+/* The lines of the listed surface and what they hold of own_normal. */
+void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *now);
+/* list_normal: own_normal turned with the body. */
+void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion *now);
+
+/* bw_pd_follow.c: surface or not, of h resolved last (now NULL: in the reference shape); renews its
+ * normal. */
+bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
 /* The list of surface particles, its areas, and rows, normals 3.45, anchors of the stale ones. */
 void bw_pd_interface__renew(bw_pd_interface *pi, bool reference);

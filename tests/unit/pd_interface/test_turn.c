@@ -1,9 +1,16 @@
 /* The spin of a surface: that of a body that turns and moves, whatever else it is. Its normals
- * turn. TEST ranks=1,2,3,4 */
+ * turn.
+ * TEST ranks=1,2,3,4 */
 #include "body.h"
+#include <math.h>
 
+static const double turned[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}};
+static const double turned_in_plane[3][3] = {{0.8, -0.6, 0}, {0.6, 0.8, 0}, {0, 0, 1}};
+
+/* Of a body that has turned already. */
 static void check_spin(bool planar, const bw_shape *shape, const double spin[3], double scale)
 {
+  const double(*R)[3] = planar ? turned_in_plane : turned;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   const bw_pd_bond_config c = body_config(planar);
   body b = body_create(1, shape, &c, &ic);
@@ -12,7 +19,10 @@ static void check_spin(bool planar, const bw_shape *shape, const double spin[3],
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&found, 3 * n));
-  bw_pd_bond_get_reference(b.pd, X);
+  bw_pd_bond_get_reference(b.pd, V);
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++)
+      X[3 * i + d] = R[d][0] * V[3 * i] + R[d][1] * V[3 * i + 1] + R[d][2] * V[3 * i + 2];
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++) {
       const size_t e = (d + 1) % 3, f = (d + 2) % 3;
@@ -47,13 +57,43 @@ START_TEST(no_inertia_no_spin)
                  pair = {.kind = BW_SHAPE_BOX, .upper = {2, 1, 1}},
                  lone = {.kind = BW_SHAPE_BOX, .upper = {1, 1, 1}};
   check_spin(false, &rod, (double[3]){0.2, 0.0, 0.0}, 0.0);
+  check_spin(true, &rod, (double[3]){0.0, 0.0, 0.4}, 1.0); /* in a plane there is */
   check_spin(false, &pair, (double[3]){0.2, 0.1, 0.3}, 0.0);
   check_spin(false, &lone, (double[3]){0.2, 0.1, 0.3}, 0.0);
 }
 END_TEST
 
+/* Velocities that alternate from site to site, the lattice's shortest wave. */
+START_TEST(the_shortest_wave_is_no_rotation)
+{
+  const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {6, 5, 4}};
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  const bw_pd_bond_config c = body_config(false);
+  body b = body_create(1, &block, &c, &ic);
+  const size_t n = bw_pd_bond_count(b.pd);
+  double *X = NULL, *V = NULL, *found = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&found, 3 * n));
+  bw_pd_bond_get_reference(b.pd, X);
+  for (size_t i = 0; i < n; i++) {
+    const int sum = (int)floor(X[3 * i]) + (int)floor(X[3 * i + 1]) + (int)floor(X[3 * i + 2]);
+    V[3 * i] = sum % 2 ? 1.0 : -1.0, V[3 * i + 1] = -0.3 * V[3 * i], V[3 * i + 2] = 2.0 * V[3 * i];
+  }
+  bw_pd_bond_set_state(b.pd, X, V);
+  bw_check_ok(bw_pd_interface_update(b.pi));
+  bw_pd_interface_turn(b.pi, found);
+  for (size_t q = 0; q < 3 * bw_pd_interface_surface(b.pi).n; q++)
+    bw_check_near(found[q], 0.0, 1e4 * BW_REAL_EPSILON);
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&found);
+  body_destroy(&b);
+}
+END_TEST
+
 /* x = F X: normals of a material surface go with the cofactors of F (Nanson), whatever the body. */
-static void check_normals(bool planar, const bw_shape *shape, double F[3][3])
+static void check_normals(bool planar, const bw_shape *shape, const double F[3][3])
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   const bw_pd_bond_config c = body_config(planar);
@@ -95,9 +135,8 @@ START_TEST(normals_go_with_the_body)
 {
   const bw_shape ball = {.kind = BW_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 5};
   const bw_shape sheet = {.kind = BW_SHAPE_BOX, .upper = {8, 6, 1}};
-  double turned[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}};
-  double skewed[3][3] = {{1.1, 0.2, 0.0}, {0.0, 0.9, -0.1}, {0.1, 0.0, 1.0}};
-  double plane[3][3] = {{0.6, -0.8, 0.0}, {1.0, 0.6, 0.0}, {0.0, 0.0, 1.0}};
+  const double skewed[3][3] = {{1.1, 0.2, 0.0}, {0.0, 0.9, -0.1}, {0.1, 0.0, 1.0}};
+  const double plane[3][3] = {{0.6, -0.8, 0.0}, {1.0, 0.6, 0.0}, {0.0, 0.0, 1.0}};
   check_normals(false, &ball, turned);
   check_normals(false, &ball, skewed);
   check_normals(false, &sheet, turned);
@@ -107,5 +146,6 @@ START_TEST(normals_go_with_the_body)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(rigid_rotation_is_exact), BW_TEST(no_inertia_no_spin),
+                                      BW_TEST(the_shortest_wave_is_no_rotation),
                                       BW_TEST(normals_go_with_the_body)};
 BW_CHECK_MAIN("pd_interface.turn", tests)

@@ -41,7 +41,7 @@ static bw_status advance(bending_run *p)
   return st;
 }
 
-static bw_status simulate(bending_run *p, const bw_comm *comm)
+static bw_status run_case(bending_run *p, const bw_comm *comm)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
   BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
@@ -57,18 +57,20 @@ static bw_status simulate(bending_run *p, const bw_comm *comm)
   return bw_timer_report(bw_coupler_timer(p->flow.coupler), comm, bw_case_log(p->run));
 }
 
+static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
+{
+  bending_run p = {.config = config, .run = run};
+  bw_status st = run_case(&p, comm);
+  const bw_status closed = bw_history_close(comm, &p.history);
+  BW_THEN(st, closed);
+  bending_destroy(&p.flow);
+  return st;
+}
+
 int main(int argc, char **argv)
 {
   bending_case config = bending_case_default();
   const bw_case_about about = {"bending_plate", "an elastic plate bent by a channel flow",
                                bending_case_fields, sizeof config};
-  bw_comm *world = NULL;
-  bending_run p = {.config = &config};
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &p.run));
-  if (st == BW_OK && !bw_case_args_of(p.run)->stop) st = simulate(&p, world);
-  if (p.history != NULL) BW_THEN(st, bw_history_close(world, &p.history));
-  bending_destroy(&p.flow);
-  st = bw_case_end(world, &p.run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -44,7 +44,7 @@ static bw_status run_to_end(box_run *b)
   return st;
 }
 
-static bw_status simulate(box_run *b, const bw_comm *comm, box_config *config)
+static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
 {
   const bw_case_args *args = bw_case_args_of(b->run);
   bw_grid_config grid;
@@ -64,21 +64,20 @@ static bw_status simulate(box_run *b, const bw_comm *comm, box_config *config)
   return run_to_end(b);
 }
 
+static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
+{
+  box_run b = {.config = config, .run = run};
+  bw_status st = run_case(&b, comm, config);
+  const bw_status closed = bw_history_close(comm, &b.history);
+  BW_THEN(st, closed);
+  box_destroy(&b);
+  return st;
+}
+
 int main(int argc, char **argv)
 {
   box_config config = box_config_default();
   const bw_case_about about = {"box_flow", "incompressible flow in a box", box_fields,
                                sizeof config};
-  bw_comm *world = NULL;
-  box_run b = {.config = &config};
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &b.run));
-  if (st == BW_OK && !bw_case_args_of(b.run)->stop) st = simulate(&b, world, &config);
-  if (b.history != NULL) {
-    const bw_status closed = bw_history_close(world, &b.history);
-    BW_THEN(st, closed);
-  }
-  box_destroy(&b);
-  st = bw_case_end(world, &b.run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

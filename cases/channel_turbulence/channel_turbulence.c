@@ -59,8 +59,9 @@ static bw_status run_to_end(channel_flow *f, const channel_case *c, const bw_cas
   return st;
 }
 
-static bw_status simulate(const bw_comm *comm, const channel_case *c, const bw_case *run)
+static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
 {
+  const channel_case *c = context;
   const bw_case_args *args = bw_case_args_of(run);
   const channel_config config = channel_config_of(c);
   bw_history *history = NULL;
@@ -85,11 +86,5 @@ int main(int argc, char **argv)
   channel_case config = channel_case_default();
   const bw_case_about about = {"channel_turbulence", "turbulent flow between two walls",
                                channel_fields, sizeof config};
-  bw_comm *world = NULL;
-  bw_case *run = NULL;
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &run));
-  if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(world, &config, run);
-  st = bw_case_end(world, &run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

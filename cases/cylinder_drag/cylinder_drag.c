@@ -40,8 +40,9 @@ static void report(cylinder_flow *f, bw_log *log)
               d.probe[1], d.slip);
 }
 
-static bw_status simulate(const bw_comm *comm, const cylinder_case *c, const bw_case *run)
+static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
 {
+  const cylinder_case *c = config;
   const bw_case_args *args = bw_case_args_of(run);
   bw_history *history = NULL;
   cylinder_flow f;
@@ -67,11 +68,5 @@ int main(int argc, char **argv)
   cylinder_case config = cylinder_case_default();
   const bw_case_about about = {"cylinder_drag", "the drag of a cylinder in a channel, three ways",
                                cylinder_case_fields, sizeof config};
-  bw_comm *world = NULL;
-  bw_case *run = NULL;
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &run));
-  if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(world, &config, run);
-  st = bw_case_end(world, &run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

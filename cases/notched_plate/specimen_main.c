@@ -23,8 +23,9 @@ static bw_status advance(specimen *p, const bw_case *run, bw_history *history)
   return st;
 }
 
-static bw_status simulate(const bw_comm *comm, const specimen_config *config, const bw_case *run)
+static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
 {
+  const specimen_config *config = context;
   const bw_case_args *args = bw_case_args_of(run);
   bw_history *history = NULL;
   specimen p;
@@ -48,11 +49,5 @@ int specimen_main(int argc, char **argv, const char *name, const char *title)
 {
   specimen_config config = specimen_default();
   const bw_case_about about = {name, title, specimen_fields, sizeof config};
-  bw_comm *world = NULL;
-  bw_case *run = NULL;
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &run));
-  if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(world, &config, run);
-  st = bw_case_end(world, &run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -56,7 +56,7 @@ static bw_status end_phase(porous_run *p)
   return porous_checkpoint(p, name, false);
 }
 
-static bw_status simulate(porous_run *p)
+static bw_status run_case(porous_run *p)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
   BW_TRY(porous_build(p));
@@ -76,19 +76,20 @@ static bw_status simulate(porous_run *p)
   return st;
 }
 
+static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
+{
+  porous_run p = {.config = config, .run = run, .comm = comm};
+  bw_status st = run_case(&p);
+  const bw_status closed = bw_history_close(comm, &p.history);
+  BW_THEN(st, closed);
+  porous_destroy(&p);
+  return st;
+}
+
 int main(int argc, char **argv)
 {
   porous_config config = porous_config_default();
   const bw_case_about about = {"porous_breakup", "a porous medium that breaks in a channel flow",
                                porous_fields, sizeof config};
-  bw_comm *world = NULL;
-  porous_run p = {.config = &config};
-  bw_status st = bw_init(&argc, &argv, &world);
-  BW_THEN(st, bw_case_begin(world, argc, argv, &about, &config, &p.run));
-  p.comm = world;
-  if (st == BW_OK && !bw_case_args_of(p.run)->stop) st = simulate(&p);
-  if (p.history != NULL) BW_THEN(st, bw_history_close(world, &p.history));
-  porous_destroy(&p);
-  st = bw_case_end(world, &p.run, st);
-  return bw_finish(&world, st);
+  return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -115,3 +115,15 @@ bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine)
   release(run);
   return st;
 }
+
+int bw_case_main(int argc, char **argv, const bw_case_about *about, void *config,
+                 bw_status (*simulate)(const bw_comm *, void *, bw_case *))
+{
+  bw_comm *world = NULL;
+  bw_case *run = NULL;
+  bw_status st = bw_init(&argc, &argv, &world);
+  BW_THEN(st, bw_case_begin(world, argc, argv, about, config, &run));
+  if (st == BW_OK && !run->args.stop) st = simulate(world, config, run);
+  st = bw_case_end(world, &run, st);
+  return bw_finish(&world, st);
+}

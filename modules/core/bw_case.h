@@ -1,13 +1,13 @@
 /* bw_case.h -- the command line, output folder and record (run.yaml) that every case shares.
  *
- *   my_case c = my_case_default();
- *   static const bw_case_about about = {"porous_breakup", "what it computes", fields, sizeof c};
- *   bw_comm *world = NULL; bw_case *run = NULL;
- *   bw_status st = bw_init(&argc, &argv, &world);
- *   BW_THEN(st, bw_case_begin(world, argc, argv, &about, &c, &run));
- *   if (st == BW_OK && !bw_case_args_of(run)->stop) st = simulate(run, &c);
- *   st = bw_case_end(world, &run, st);
- *   return bw_finish(&world, st);
+ *   static bw_status simulate(const bw_comm *comm, void *config, bw_case *run);
+ *
+ *   int main(int argc, char **argv)
+ *   {
+ *     my_case c = my_case_default();
+ *     const bw_case_about about = {"porous_breakup", "what it computes", fields, sizeof c};
+ *     return bw_case_main(argc, argv, &about, &c, simulate);
+ *   }
  *
  * Command line: CASE.yaml [--set key.path=value]... [--out DIR] [--restart FILE] [--check]
  * [--quiet] [--help] [--version]. */
@@ -58,3 +58,9 @@ bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUS
 /* Ranks agree on `mine`; end time and status are added to run.yaml; *run is freed (NULL inside is
  * fine). Returns the agreed status; bw_finish prints its message. Collective. */
 bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine) BW_MUST_CHECK;
+
+/* main of a case: start MPI, begin, simulate unless --help or --version were all that was asked,
+ * end. `simulate` gets the configuration read; it releases what it made whatever comes. Returns the
+ * exit code. Collective. */
+int bw_case_main(int argc, char **argv, const bw_case_about *about, void *config,
+                 bw_status (*simulate)(const bw_comm *comm, void *config, bw_case *run));

@@ -63,13 +63,15 @@ static void remember(const bw_pd_bond *pd, bw_pd_contact *c)
   c->built = true;
 }
 
-/* Present positions of the particles at surfaces, other ranks' too. */
+/* Present positions of the particles in pairs, other ranks' too. */
 static void positions(bw_pd_bond *pd, bw_pd_contact *c)
 {
   for (size_t q = 0; q < c->n_sent; q++)
     bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
-  for (size_t q = 0; q < c->n_mine; q++)
+  for (size_t b = 0; b < c->n_busy; b++) {
+    const size_t q = (size_t)c->busy[b];
     bw_pd_contact__position(pd, (size_t)c->mine[q], c->y + 3 * q);
+  }
   bw_exchange_forward(c->plan, 3 * sizeof(double), c->send, c->y + 3 * c->n_mine);
 }
 
@@ -151,7 +153,8 @@ static double other_contact(bw_pd_bond *pd, bw_pd_law *w, bool force)
 {
   const bw_pd_contact *c = pd->contact;
   double energy = 0;
-  for (size_t q = 0; q < c->n_mine; q++) {
+  for (size_t b = 0; b < c->n_busy; b++) {
+    const size_t q = (size_t)c->busy[b];
     double sum[3] = {0}, d[3];
     for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
       bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * (size_t)c->pair[p], d);

@@ -1,9 +1,9 @@
 /* pd_bond_contact.h -- state of the contact between particles that no bond joins, and with walls.
  *
  * Two kinds of pairs. Family pairs whose bond broke are found where their slots are: no search.
- * All others start further apart than the horizon; among the particles at a surface (family
- * incomplete or a bond broken) a cell search lists those nearer than reach + skin, anew when
- * something moved by half the skin since. Positions are in lattice axes, where periods act. */
+ * All others start further apart than the horizon; a cell search lists those nearer than reach +
+ * skin, anew when something moved by half the skin since. So the force is one of positions and
+ * broken bonds alone. Positions are in lattice axes, where periods act. */
 #pragma once
 #include "pd_bond_internal.h"
 
@@ -20,7 +20,7 @@ struct bw_pd_contact {
   bw_real *u_built[3]; /* (n) displacement at the last search */
 
   size_t n_mine, n_theirs, n_sent;
-  int32_t *mine; /* (n_mine) own particles at a surface */
+  int32_t *mine; /* (n_mine) own particles */
   int32_t *sent; /* (n_sent) own particle of each item of the plan */
   bw_exchange *plan;
   double *send, *y;   /* (n_sent,3); (n_mine + n_theirs,3) present positions */
@@ -28,6 +28,8 @@ struct bw_pd_contact {
   double *shift;      /* (n_mine + n_theirs,3) from the site, in a cloud; else NULL */
   size_t *pair_start; /* (n_mine + 1) */
   int32_t *pair;      /* index into y */
+  size_t n_busy;
+  int32_t *busy; /* (n_busy) those of mine that have pairs */
 
   size_t n_near;
   bw_pd_near *near;      /* (n_near) own particles near walls, at the last search */

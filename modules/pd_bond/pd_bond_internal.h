@@ -57,7 +57,6 @@ typedef struct {
 typedef struct {
   int n;            /* directions */
   int reach;        /* largest component of an offset */
-  int n_sure;       /* directions in which there always is a bond; on a lattice all */
   int32_t *offset;  /* (n,3) lattice steps */
   double *xi;       /* (n,3) from site to site [L] */
   double *r0;       /* (n) |xi| [L] */

@@ -1,4 +1,9 @@
-/* Pairs of surface particles outside each other's family: candidates, copies, cells. */
+/* Pairs of particles outside each other's family: candidates, copies, cells.
+ *
+ * Every particle is a candidate, buried ones too: a list of those at surfaces would switch pairs on
+ * when the one becomes a surface with the other in it already, out of nothing. To be near each
+ * other, two that began a family's reach apart must have moved apart by the rest, so that where
+ * displacements are alike nobody is looked for. */
 #include "bw_memory.h"
 #include "pd_bond_contact.h"
 
@@ -27,30 +32,17 @@ void bw_pd_contact__forget(bw_pd_contact *c)
   bw_release(&c->shift);
   bw_release(&c->pair_start);
   bw_release(&c->pair);
-  c->n_mine = c->n_theirs = c->n_sent = 0;
+  bw_release(&c->busy);
+  c->n_mine = c->n_theirs = c->n_sent = c->n_busy = 0;
 }
 
-/* Own particles with an incomplete family or a broken bond. */
+/* Own particles that are not retired. */
 static bw_status candidates(const bw_pd_bond *pd, bw_pd_contact *c)
 {
-  int32_t *held = NULL;
-  BW_TRY(BW_ALLOCATE(&held, pd->n));
-  for (size_t b = 0; b < pd->n_block; b++)
-    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
-      const bw_pd_slot *slot = &pd->slot[q];
-      const bool sure = pd->stencil.sure[slot->direction];
-      for (int lane = 0; lane < BW_PD_LANES; lane++) {
-        const int32_t h = bw_pd_bond__owner(&pd->block[b], lane);
-        if (sure && (slot->mask >> lane & 1)) held[h]++;
-        if ((slot->family & ~slot->mask) >> lane & 1) held[h] -= pd->stencil.n;
-      }
-    }
-  bw_status st = BW_ALLOCATE(&c->mine, pd->n);
-  for (size_t i = 0; i < pd->n && st == BW_OK; i++)
-    if (held[i] < pd->stencil.n_sure && !(pd->kind[i] & BW_PD_RETIRED))
-      c->mine[c->n_mine++] = (int32_t)i;
-  bw_release(&held);
-  return st;
+  BW_TRY(BW_ALLOCATE(&c->mine, pd->n));
+  for (size_t i = 0; i < pd->n; i++)
+    if (!(pd->kind[i] & BW_PD_RETIRED)) c->mine[c->n_mine++] = (int32_t)i;
+  return BW_OK;
 }
 
 /* Boxes of all ranks' candidates, (size,6) lower and upper corners. */
@@ -111,6 +103,7 @@ typedef struct {
   int32_t count[3]; /* cells in a periodic direction, 0: not periodic */
   size_t buckets;
   int32_t *head, *next, *cell; /* (buckets), (n), (n,3) */
+  double *moved;               /* (buckets,2,3) least and largest displacement in a bucket [L] */
 } cells;
 
 static void cell_of(const cells *g, const double y[3], int32_t cell[3])
@@ -131,6 +124,32 @@ static size_t bucket_of(const cells *g, const int32_t cell[3])
   return (size_t)(key >> 24) & (g->buckets - 1);
 }
 
+/* From its site, but for what is the same for all. */
+static void displacement(const bw_pd_bond *pd, const bw_pd_contact *c, size_t q, double u[3])
+{
+  for (size_t k = 0; k < 3; k++) {
+    u[k] = c->y[3 * q + k] - pd->config.ds * c->site[3 * q + k];
+    if (c->shift != NULL) u[k] -= c->shift[3 * q + k];
+  }
+}
+
+/* Candidate q goes where it belongs. */
+static void insert(const bw_pd_bond *pd, const bw_pd_contact *c, cells *g, size_t q)
+{
+  double u[3];
+  cell_of(g, c->y + 3 * q, g->cell + 3 * q);
+  const size_t b = bucket_of(g, g->cell + 3 * q);
+  double *least = g->moved + 6 * b, *most = least + 3;
+  displacement(pd, c, q, u);
+  const bool first = g->head[b] < 0;
+  for (int k = 0; k < 3; k++) {
+    if (first || u[k] < least[k]) least[k] = u[k];
+    if (first || u[k] > most[k]) most[k] = u[k];
+  }
+  g->next[q] = g->head[b];
+  g->head[b] = (int32_t)q;
+}
+
 static bw_status make_cells(const bw_pd_bond *pd, const bw_pd_contact *c, cells *g)
 {
   const size_t n = c->n_mine + c->n_theirs;
@@ -140,19 +159,55 @@ static bw_status make_cells(const bw_pd_bond *pd, const bw_pd_contact *c, cells 
     g->count[k] = p > 0 ? (int32_t)fmax(1, floor(p / least)) : 0;
     g->edge[k] = p > 0 ? p / g->count[k] : least;
   }
-  for (g->buckets = 64; g->buckets < 2 * n;)
+  for (g->buckets = 64; g->buckets < n;)
     g->buckets *= 2;
   BW_TRY(BW_ALLOCATE(&g->head, g->buckets));
+  BW_TRY(BW_ALLOCATE(&g->moved, 6 * g->buckets));
   BW_TRY(BW_ALLOCATE(&g->next, n));
   BW_TRY(BW_ALLOCATE(&g->cell, 3 * n));
   memset(g->head, 0xff, g->buckets * sizeof *g->head); /* all -1 */
-  for (size_t q = 0; q < n; q++) {
-    cell_of(g, c->y + 3 * q, g->cell + 3 * q);
-    const size_t b = bucket_of(g, g->cell + 3 * q);
-    g->next[q] = g->head[b];
-    g->head[b] = (int32_t)q;
-  }
+  for (size_t q = 0; q < n; q++)
+    insert(pd, c, g, q);
   return BW_OK;
+}
+
+/* The cells around one and itself, every one once. */
+static int around(const cells *g, const int32_t cell[3], int32_t out[27][3])
+{
+  int first[3], last[3], step[3], n = 0;
+  for (int k = 0; k < 3; k++) {
+    first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
+    last[k] = g->count[k] == 1 ? 0 : 1;
+  }
+  for (step[2] = first[2]; step[2] <= last[2]; step[2]++)
+    for (step[1] = first[1]; step[1] <= last[1]; step[1]++)
+      for (step[0] = first[0]; step[0] <= last[0]; step[0]++, n++)
+        for (int k = 0; k < 3; k++) {
+          out[n][k] = cell[k] + step[k];
+          if (g->count[k] > 0) out[n][k] = (out[n][k] + g->count[k]) % g->count[k];
+        }
+  return n;
+}
+
+/* Have all in these n cells moved so much alike that only a family can be near each other? */
+static bool calm(const bw_pd_bond *pd, const bw_pd_contact *c, const cells *g, int n,
+                 int32_t cell[][3])
+{
+  const double limit = pd->config.ds * bw_pd_bond__family_reach(&pd->config) - (c->reach + c->skin);
+  double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int q = 0; q < n; q++) {
+    const size_t b = bucket_of(g, cell[q]);
+    if (g->head[b] < 0) continue;
+    const double *u = g->moved + 6 * b;
+    for (int k = 0; k < 3; k++) {
+      least[k] = u[k] < least[k] ? u[k] : least[k];
+      most[k] = u[3 + k] > most[k] ? u[3 + k] : most[k];
+    }
+  }
+  double range2 = 0;
+  for (int k = 0; k < 3; k++)
+    range2 += (most[k] - least[k]) * (most[k] - least[k]);
+  return limit > 0 && range2 < limit * limit;
 }
 
 /* Whether y[a] and y[b] are in each other's family: those pairs need no search. */
@@ -200,25 +255,36 @@ static bw_status pairs_in_cell(const bw_pd_bond *pd, bw_pd_contact *c, const cel
   return BW_OK;
 }
 
-/* Partners of candidate q in the 27 cells around it, every cell once. */
+/* Partners of candidate q in the cells around it; quiet: the last cell found calm. */
 static bw_status pairs_of(const bw_pd_bond *pd, bw_pd_contact *c, const cells *g, size_t q,
-                          size_t *n, size_t *capacity)
+                          const int32_t **quiet, size_t *n, size_t *capacity)
 {
-  int first[3], last[3], step[3];
-  for (int k = 0; k < 3; k++) {
-    first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
-    last[k] = g->count[k] == 1 ? 0 : 1;
+  const int32_t *own = g->cell + 3 * q;
+  int32_t cell[27][3];
+  if (*quiet != NULL && memcmp(*quiet, own, sizeof *cell) == 0) return BW_OK;
+  const int count = around(g, own, cell);
+  if (calm(pd, c, g, count, cell)) {
+    *quiet = own;
+    return BW_OK;
   }
-  for (step[2] = first[2]; step[2] <= last[2]; step[2]++)
-    for (step[1] = first[1]; step[1] <= last[1]; step[1]++)
-      for (step[0] = first[0]; step[0] <= last[0]; step[0]++) {
-        int32_t cell[3];
-        for (int k = 0; k < 3; k++) {
-          cell[k] = g->cell[3 * q + (size_t)k] + step[k];
-          if (g->count[k] > 0) cell[k] = (cell[k] + g->count[k]) % g->count[k];
-        }
-        BW_TRY(pairs_in_cell(pd, c, g, q, cell, n, capacity));
-      }
+  for (int k = 0; k < count; k++)
+    BW_TRY(pairs_in_cell(pd, c, g, q, cell[k], n, capacity));
+  return BW_OK;
+}
+
+/* Candidates that have a pair. */
+static bw_status list_busy(bw_pd_contact *c)
+{
+  for (int pass = 0; pass < 2; pass++) {
+    size_t n = 0;
+    for (size_t q = 0; q < c->n_mine; q++) {
+      if (c->pair_start[q] == c->pair_start[q + 1]) continue;
+      if (pass == 1) c->busy[n] = (int32_t)q;
+      n++;
+    }
+    if (pass == 0) BW_TRY(BW_ALLOCATE(&c->busy, n));
+    c->n_busy = n;
+  }
   return BW_OK;
 }
 
@@ -228,12 +294,15 @@ static bw_status list_pairs(const bw_pd_bond *pd, bw_pd_contact *c)
   bw_status st = make_cells(pd, c, &g);
   BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
   size_t n = 0, capacity = 0;
+  const int32_t *quiet = NULL;
   for (size_t q = 0; q < c->n_mine && st == BW_OK; q++) {
     c->pair_start[q] = n;
-    st = pairs_of(pd, c, &g, q, &n, &capacity);
+    st = pairs_of(pd, c, &g, q, &quiet, &n, &capacity);
   }
   if (st == BW_OK) c->pair_start[c->n_mine] = n;
+  BW_THEN(st, list_busy(c));
   bw_release(&g.head);
+  bw_release(&g.moved);
   bw_release(&g.next);
   bw_release(&g.cell);
   return st;

@@ -125,7 +125,6 @@ bw_status bw_pd_bond__stencil(bw_pd_bond *pd)
     }
     s->r0[q] = c->ds * sqrt(r2);
     s->sure[q] = in_reach(c, o, -2 * c->disorder);
-    s->n_sure += s->sure[q];
     s->bulk[q] = 1;
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
         (int16_t)q;

@@ -75,6 +75,14 @@ START_TEST(a_body_at_the_outlet)
 }
 END_TEST
 
+/* Half of it is on either side of the seam. */
+START_TEST(a_body_across_the_periodic_seam)
+{
+  check_runs((bodies_set_up){
+      .length = 32, .periodic = true, .ratio = 3.0, .n_block = 1, .block = {{30, 6, 34, 10}}});
+}
+END_TEST
+
 /* All bonds gone: a heap of grains that only contact keeps apart. */
 START_TEST(all_bonds_broken)
 {
@@ -148,6 +156,7 @@ static const bw_check_test tests[] = {BW_TEST(a_fragment_of_one_particle),
                                       BW_TEST(a_body_on_the_wall),
                                       BW_TEST(a_body_at_the_inlet),
                                       BW_TEST(a_body_at_the_outlet),
+                                      BW_TEST(a_body_across_the_periodic_seam),
                                       BW_TEST(all_bonds_broken),
                                       BW_TEST(a_crack_through_the_foundation),
                                       BW_TEST(a_free_body_beyond_a_wall_is_refused)};

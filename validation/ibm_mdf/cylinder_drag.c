@@ -11,6 +11,8 @@
  *            reaction against the reference: 0.1 h of doubt about where the smeared wall is
  *            (Breugem 2012 has 0.2 to 0.4 best, by shape) moves the drag as 0.2 h/d of blockage
  *            and size do, 1.6 % at 15 cells; with errors of the grid 0.3 h/d: 2, 1 and 0.5 %.
+ *            Three routes: probes within 3 % of the other two from 30 cells on, as was asked for.
+ *            Order with retraction: reported; what is left is what the reference is good for, 1e-3.
  *            Not retracted: at least half as much too high as 0.3 h would take off, 0.35 h/d.
  *            Probes: friction is 35 % of this drag (the reference's wall table); the parabola
  *            loses (dl/delta)^2/2 of it, delta = d/sqrt(Re), and gives 5 % too much where nothing
@@ -92,6 +94,9 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
       {"Cd_probe", d.probe[1], Cd, claimed && c->n_iter > 1 ? FRICTION_SHARE * second : none,
        BW_INDEPENDENT_CODE, fem},
       {"Cd_probe_linear", d.probe[0], Cd, none, BW_INDEPENDENT_CODE, fem},
+      {"probe_off", d.probe[1] / d.reaction - 1.0, 0.0,
+       claimed && c->n_iter > 1 && cells >= 30 ? 0.03 : none, BW_CONSERVATION,
+       "three routes to one force: probes against reaction and box"},
       {"slip", d.slip, 0.0, none, BW_ANALYTIC, "no slip, in U_b"}};
   for (size_t q = 0; q < sizeof rows / sizeof *rows; q++) {
     const char *kernel = bw_kernel_delta_get((bw_kernel_delta_id)c->kernel)->name;
@@ -170,11 +175,11 @@ static bw_status kernels(bw_validation *v, cylinder_config c)
   return BW_OK;
 }
 
-static void order_row(bw_validation *v, const char *claim, double coarse, double fine, double want)
+static void order_row(bw_validation *v, const char *claim, double coarse, double fine, double doubt)
 {
-  bw_validation_row(v,
-                    &(bw_claim){claim, "order", bw_validation_order(2.0, coarse, 1.0, fine), want,
-                                0.3, BW_ORDER, "error is a fixed number of spacings", NULL});
+  const double order = bw_validation_order(2.0, fabs(coarse), 1.0, fabs(fine));
+  bw_validation_row(v, &(bw_claim){claim, "order", order, 1.0, doubt, BW_ORDER,
+                                   "error is a fixed number of spacings", NULL});
 }
 
 /* The documents' variations: finer grids, kernels, iterations. */
@@ -189,8 +194,9 @@ static bw_status full(bw_validation *v, cylinder_config c)
   }
   for (int q = 0; q < 2; q++) {
     order_row(v, "without retraction the error is first order", without[q][0], without[q + 1][0],
-              1.0);
-    order_row(v, "the linear profile is first order", with[q][1], with[q + 1][1], 1.0);
+              0.3);
+    order_row(v, "with retraction", with[q][0], with[q + 1][0], INFINITY);
+    order_row(v, "the linear profile is first order", with[q][1], with[q + 1][1], 0.3);
   }
   c.reynolds = 25.0;
   BW_TRY(retracted(v, c, unused));

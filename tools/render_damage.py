@@ -132,7 +132,8 @@ def look(renderer, box):
     camera.SetPosition(*[c + v for c, v in zip(centre, direction)])
     camera.SetViewUp(0, 1, 0)
     renderer.ResetCamera(box)
-    camera.Zoom(1.25)
+    sides = sorted(box[2 * d + 1] - box[2 * d] for d in range(3))
+    camera.Zoom(1.25 if sides[2] > 1.5 * sides[1] else 1.0)  # the ball around a long box is mostly empty
     renderer.ResetCameraClippingRange()
 
 

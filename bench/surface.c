@@ -65,7 +65,7 @@ static bw_status run(bw_bench *b)
   follower f = {NULL, NULL, BW_OK};
   c.walled[1][0] = c.walled[1][1] = true;
   c.lower[1] = 0.0, c.upper[1] = bw_bench_height;
-  bw_status st = bw_bench_porous(comm, &pd);
+  bw_status st = bw_bench_porous(comm, 0.05, &pd);
   BW_THEN(st, bw_pd_interface_create(pd, &c, &f.interface));
   BW_THEN(st, BW_ALLOCATE(&f.spin, 3 * bw_pd_bond_count(pd)));
   BW_THEN(st, report(b, pd, &f));

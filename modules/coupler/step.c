@@ -6,8 +6,8 @@
 
 int bw_coupler_substeps(const bw_coupler *c, double dt)
 {
-  const double least =
-      c->config.solid_safety * bw_pd_bond_dt_max(c->solid); /* no bonds: infinite */
+  const double stable = c->config.solid_safety * bw_pd_bond_dt_max(c->solid);
+  const double least = fmin(stable, bw_pd_bond_dt_contact(c->solid)); /* no bonds: infinite */
   return (int)fmax(1.0, ceil(dt / least));
 }
 

@@ -167,10 +167,14 @@ static double other_contact(bw_pd_bond *pd, bw_pd_law *w, bool force)
   return energy;
 }
 
+double bw_pd_contact__stiffness(const bw_pd_bond *pd)
+{
+  return K_CONTACT * pd->c0 * pd->dv / pd->config.rho;
+}
+
 static bw_pd_law law_of(const bw_pd_bond *pd)
 {
-  return (bw_pd_law){pd->config.ds, K_CONTACT * pd->c0 * pd->dv / pd->config.rho,
-                     pd->contact->closest};
+  return (bw_pd_law){pd->config.ds, bw_pd_contact__stiffness(pd), pd->contact->closest};
 }
 
 void bw_pd_bond__contact_force(bw_pd_bond *pd)

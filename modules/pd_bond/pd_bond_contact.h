@@ -45,6 +45,8 @@ typedef struct {
 } bw_pd_law;
 double bw_pd_contact__repel(bw_pd_law *law, const double d[3], double r2, double sum[3]);
 
+double bw_pd_contact__stiffness(const bw_pd_bond *pd); /* k_c dV/rho */
+
 /* pd_bond_wall.c. act returns energy over rho dV; with force adds to extra and sets wall_force. */
 bw_status bw_pd_contact__wall_search(bw_pd_bond *pd);
 bw_status bw_pd_contact__wall_update(bw_pd_bond *pd);

@@ -90,8 +90,7 @@ static bw_status build(bw_pd_bond *pd, int64_t n, const int32_t site[], const ui
   BW_TRY(bw_pd_bond__surface_factors(pd));
   if (pd->config.surface_correction == BW_PD_SURFACE_TENSOR) BW_TRY(bw_pd_bond__tensor(pd));
   bw_pd_bond__constants(pd);
-  bw_pd_bond__bounds(pd);
-  return BW_OK;
+  return bw_pd_bond__bounds(pd);
 }
 
 bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,

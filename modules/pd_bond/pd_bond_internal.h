@@ -108,8 +108,8 @@ struct bw_pd_bond {
     double volume, moment, crossing; /* sums over a full family of Gamma dV times 1, |xi| and, for
                                         xi.n > 0, |xi| xi.n */
   } full;
-  double sum_stiffness; /* max over particles of sum_l c0 alpha Gamma V/|xi| (ERRATA 6) */
-  double sum_weight;    /* max of sum_l Gamma V */
+  /* Largest eigenvalue over particles of sum_l e e times c0 alpha Gamma dV/|xi|, Gamma dV. */
+  double most_stiffness, most_weight;
   double damping_pair, damping_mean, damping_absolute;
   bool breakage;
   bw_pd_stencil stencil;
@@ -220,10 +220,12 @@ void bw_pd_bond__fill_places(bw_pd_bond *pd, bw_real *places);
 
 /* pd_bond_slots.c */
 bw_status bw_pd_bond__slots(bw_pd_bond *pd, const bw_pd_map *near);
-void bw_pd_bond__bounds(bw_pd_bond *pd);
 bw_status bw_pd_bond__surface_factors(bw_pd_bond *pd);
 double bw_pd_bond__alpha(const bw_pd_bond *pd, const bw_pd_block *block, const bw_pd_slot *slot,
                          int lane);
+
+/* pd_bond_bounds.c: most_stiffness, most_weight. Collective. */
+bw_status bw_pd_bond__bounds(bw_pd_bond *pd);
 
 /* pd_bond_tensor.c: pd->alpha, stencil.bulk. Collective. */
 bw_status bw_pd_bond__tensor(bw_pd_bond *pd);

@@ -1,4 +1,4 @@
-/* Storage numbering, runs, blocks and slots of bonds; surface factors and stability sums. */
+/* Storage numbering, runs, blocks and slots of bonds; surface factors. */
 #include "bw_memory.h"
 #include "pd_bond_internal.h"
 
@@ -212,28 +212,4 @@ double bw_pd_bond__alpha(const bw_pd_bond *pd, const bw_pd_block *block, const b
   default:
     return 1;
   }
-}
-
-/* Largest sums over a family that bound the time step (ERRATA 6 and damping). Collective. */
-void bw_pd_bond__bounds(bw_pd_bond *pd)
-{
-  double most[2] = {0};
-  for (size_t b = 0; b < pd->n_block; b++)
-    for (int lane = 0; lane < BW_PD_LANES; lane++) {
-      double stiffness = 0, weight = 0;
-      for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
-        const bw_pd_slot *slot = &pd->slot[q];
-        if (!(slot->family >> lane & 1)) continue;
-        const int32_t h = pd->block[b].first + lane, l = slot->base + lane;
-        const bw_pd_rest rest = bw_pd_bond__rest(pd, slot->direction, h, l);
-        const double w = rest.fraction * pd->dv;
-        stiffness += pd->c0 * bw_pd_bond__alpha(pd, &pd->block[b], slot, lane) * w / rest.r0;
-        weight += w;
-      }
-      most[0] = fmax(most[0], stiffness);
-      most[1] = fmax(most[1], weight);
-    }
-  bw_comm_max(pd->comm, 2, most);
-  pd->sum_stiffness = most[0];
-  pd->sum_weight = most[1];
 }

@@ -10,18 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-double bw_pd_bond_dt_max(const bw_pd_bond *pd)
-{
-  if (pd->sum_stiffness == 0) return INFINITY;
-  /* Largest frequency and damping rate (Gershgorin). Verlet with lagged damping is stable for
-   * w^2 dt^2 + 2 g dt < 4; the stability region of RK3 holds the triangle i sqrt(3), -2.51. */
-  const double rho = pd->config.rho, w = sqrt(2 * pd->sum_stiffness / rho);
-  const double g =
-      (2 * pd->damping_pair * pd->sum_weight + 2 * pd->damping_mean + pd->damping_absolute) / rho;
-  if (pd->config.integrator == BW_PD_RK3) return 1 / (w / sqrt(3.0) + g / 2.51);
-  return 4 / (g + sqrt(g * g + 4 * w * w));
-}
-
 /* Prescribed particles have their velocity; the book takes the energy of the jump. */
 void bw_pd_bond__impose(bw_pd_bond *pd)
 {

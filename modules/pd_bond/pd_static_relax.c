@@ -37,7 +37,7 @@ void bw_pd_static__masses(const bw_pd_bond *pd, double mass[])
         sum += bw_pd_bond__alpha(pd, block, slot, lane) * rest.fraction / rest.r0;
       }
       sum *= 0.5 * pd->c0 * pd->dv;
-      mass[bw_pd_bond__owner(block, lane)] = sum > 0 ? sum : 0.5 * pd->sum_stiffness + 1e-300;
+      mass[bw_pd_bond__owner(block, lane)] = sum > 0 ? sum : 0.5 * pd->most_stiffness + 1e-300;
     }
 }
 

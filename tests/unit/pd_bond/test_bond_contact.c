@@ -99,6 +99,42 @@ START_TEST(bodies_meet_through_a_period)
 }
 END_TEST
 
+static void meet(const double X0[3], double v[3])
+{
+  v[0] = X0[0] < 1 ? 0.02 : -0.02;
+}
+
+/* Two particles collide in steps of dt_contact, begun at ten places within a step: w dt = 1 with
+ * w^2 = 2 k_c dV/(rho ds), and they part with 0.9 to 1.1 of their speed. */
+START_TEST(the_step_of_contact_resolves_a_collision)
+{
+  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  c.horizon_ratio = 1;
+  pd_body two = pd_box(2, 1, 1);
+  two.site[3] = 2; /* no family */
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &two);
+  ck_assert(isinf(bw_pd_bond_dt_contact(pd)));
+  bw_pd_bond_destroy(&pd);
+  c.contact = true;
+  for (int q = 0; q < 10; q++) {
+    pd = pd_make(bw_check_world(), &c, &two);
+    const double dt = bw_pd_bond_dt_contact(pd);
+    const double w2 = 2 * 15 * bw_pd_bond_micromodulus(pd) * 0.125 / (c.rho * c.ds);
+    bw_check_near(dt * sqrt(w2), 1, 1e-12);
+    pd_set(pd, NULL, meet);
+    const double start = bw_pd_bond_account(pd).kinetic;
+    pd_steps(pd, 1, (0.1 * q + 0.05) * dt);
+    pd_steps(pd, (int)(0.6 / (0.04 * dt)) + 8, dt);
+    const bw_pd_bond_ledger end = bw_pd_bond_account(pd);
+    ck_assert_double_eq(end.contact, 0);
+    ck_assert_double_lt(end.closest, 1);
+    bw_check_near(end.kinetic / start, 1, 0.2);
+    bw_pd_bond_destroy(&pd);
+  }
+  pd_body_release(&two);
+}
+END_TEST
+
 static double approach;
 
 static void close_up(const double X0[3], double u[3])
@@ -136,6 +172,7 @@ START_TEST(a_broken_bond_repels_in_closed_form)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(bodies_bounce), BW_TEST(bodies_meet_through_a_period),
-                                      BW_TEST(a_broken_bond_repels_in_closed_form)};
+static const bw_check_test tests[] = {
+    BW_TEST(bodies_bounce), BW_TEST(the_step_of_contact_resolves_a_collision),
+    BW_TEST(bodies_meet_through_a_period), BW_TEST(a_broken_bond_repels_in_closed_form)};
 BW_CHECK_MAIN("pd_bond.contact", tests)

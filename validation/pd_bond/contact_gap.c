@@ -21,11 +21,11 @@
  *            less than ds beside it.
  * Tolerance  none below 1 - 2 x 0.71 v/c, twice the static value, as a load that comes at once
  *            overshoots by at most two; plus 2 % of ds for particles that meet between rows.
- *            Energy: at a quarter of its limit Verlet is off by up to (w dt)^2/8 = 3 % of the
- *            elastic and contact energy, which is half of the whole at most.
+ *            Energy: at half the step that resolves contact, w dt = 1/2, Verlet is off by up to
+ *            (w dt)^2/8 = 3 % of the contact energy, which is half of the whole at most.
  *            Debris: a bond that breaks in a step is booked with what it stores at the end, F ds/2
  *            more than Verlet took for it (the half kick that is missing): at most the energy of
- *            fracture. Verlet at a tenth of its limit: 0.5 % of what contact stored at most.
+ *            fracture. Verlet at w dt = 1/5: 0.5 % of what contact stored at most.
  * BUILD modules=pd_bond */
 #include "body.h"
 
@@ -79,7 +79,7 @@ static bw_status measure(bw_validation *v, double mach)
   BW_TRY(body_rows_make(pd, &r));
   const double speed = sqrt(1.125 * E / RHO), given = mach * speed;
   BW_TRY(bw_pd_load_velocity(pd, towards, &given));
-  const double dt = 0.25 * bw_pd_bond_dt_max(pd), end = GAP / given + 4 * EDGE / speed;
+  const double dt = 0.5 * bw_pd_bond_dt_contact(pd), end = GAP / given + 4 * EDGE / speed;
   const double start = energy_of(pd);
   double least = 1e9, mean[2];
   for (int64_t step = 1; (double)step * dt < end; step++) {
@@ -165,7 +165,7 @@ static bw_status between_rows(bw_validation *v, bw_pd_geometry geometry, double 
                    space ? two_cubes : two_squares, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
   set_up_between_rows(pd, &r, middle, mach * speed);
-  const double dt = 0.1 * bw_pd_bond_dt_max(pd), end = GAP / (mach * speed) + 8 * edge / speed;
+  const double dt = 0.2 * bw_pd_bond_dt_contact(pd), end = GAP / (mach * speed) + 8 * edge / speed;
   for (int64_t step = 1; (double)step * dt < end; step++)
     BW_TRY(bw_pd_bond_step(pd, dt));
   const int64_t pairs = in_wrong_order(pd, &r, middle);
@@ -202,7 +202,7 @@ static bw_status debris(bw_validation *v, bool between)
     set_up_between_rows(pd, &r, middle, given);
   else
     BW_TRY(bw_pd_load_velocity(pd, towards, &given));
-  const double dt = 0.1 * bw_pd_bond_dt_max(pd), end = 3 * (GAP / given + 4 * EDGE / speed);
+  const double dt = 0.2 * bw_pd_bond_dt_contact(pd), end = 3 * (GAP / given + 4 * EDGE / speed);
   const double start = energy_of(pd);
   double most = 1, stored = 0;
   for (int64_t step = 1; (double)step * dt < end; step++) {

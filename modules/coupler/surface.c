@@ -131,6 +131,7 @@ static bw_status mark_inside(bw_coupler *c)
     for (size_t q = 0; q < bw_exchange_received(plan); q++)
       c->inside[cell_of(g, receive + 3 * q)] = 1;
     bw_halo_update(grid, 1, &c->inside);
+    st = bw_comm_agree(bw_grid_comm(grid), bw_probe_set_obstacles(c->probe, c->inside));
     memcpy(c->root_inside, c->root, 3 * c->n_surface * sizeof *c->root);
     memcpy(c->particle_inside, c->particle, c->n_surface * sizeof *c->particle);
     c->n_inside = c->n_surface;
@@ -202,7 +203,6 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   const bw_real *p = c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
-  bw_probe_set_obstacles(c->probe, c->inside);
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
   surface_motion(c, dt);
   bw_probe_set_velocity(c->probe, c->root_V, c->spin);

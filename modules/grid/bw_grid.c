@@ -167,11 +167,13 @@ int bw_grid_owner(const bw_grid *grid, const double x[3])
   int block[3];
   for (int d = 0; d < 3; d++) {
     double at = x[d];
-    if (v->periodic[d]) at -= v->length[d] * floor(at / v->length[d]);
+    if (v->periodic[d] && !(at >= 0.0 && at < v->length[d]))
+      at -= v->length[d] * floor(at / v->length[d]);
     if (!(at >= 0.0 && at <= v->length[d])) return -1; /* NaN too */
     int cell = d == 1 ? cell_in_y(v, at) : 1 + (int)(at / v->spacing[d]);
     if (cell > v->n[d]) cell = v->n[d]; /* the upper boundary belongs to the last cell */
-    block[d] = block_of(v->n[d], v->ranks[d], cell);
+    const bool here = cell > v->lo[d] && cell <= v->lo[d] + v->m[d];
+    block[d] = here ? v->coord[d] : block_of(v->n[d], v->ranks[d], cell);
   }
   return block[1] + v->ranks[1] * block[2];
 }

@@ -57,6 +57,7 @@ void bw_probe_destroy(bw_probe **probe)
   bw_release(&b->normal);
   bw_release(&b->length);
   bw_release(&b->flag);
+  bw_release(&b->obstacles);
   for (int t = 0; t < PROBE_SETS; t++) {
     bw_probe__tips *tips = &b->tips[t];
     bw_exchange_destroy(&tips->plan);
@@ -69,9 +70,15 @@ void bw_probe_destroy(bw_probe **probe)
   bw_release(probe);
 }
 
-void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid)
+bw_status bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid)
 {
-  probe->obstacles = solid;
+  const size_t size = probe->g->size;
+  probe->in_the_way = solid != NULL;
+  if (solid == NULL) return BW_OK;
+  if (probe->obstacles == NULL) BW_TRY(BW_ALLOCATE(&probe->obstacles, size));
+  for (size_t i = 0; i < size; i++)
+    probe->obstacles[i] = solid[i] > (bw_real)0.5;
+  return BW_OK;
 }
 
 void bw_probe_set_velocity(bw_probe *probe, const double V[], const double spin[])

@@ -48,11 +48,10 @@ typedef enum {
   BW_PROBE_CROWDED    /* dl = h and something is within 1.75 h: the traction may be too small */
 } bw_probe_flag;
 
-/* What the next bw_probe_set_points has to avoid: a cell-centred field with valid halos, 1 in
- * cells of a solid and 0 in the fluid (above 1/2 counts). Looked at from h off the surface on.
- * NULL: nothing is in the way. Borrowed until replaced; read by bw_probe_set_points only. All
- * ranks give a field or none does. Local. */
-void bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid);
+/* What bw_probe_set_points has to avoid from now on: a cell-centred field with valid halos, 1 in
+ * cells of a solid and 0 in the fluid (above 1/2 counts); copied. Looked at from h off the surface
+ * on. NULL: nothing is in the way. All ranks give a field or none does. BW_EMEM. Local. */
+bw_status bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid) BW_MUST_CHECK;
 
 /* Replace the surface points: position X [L], unit normal N into the fluid (n,3); copied.
  * Decides which probes are shortened or blocked. BW_EINPUT for normals that are not of length 1

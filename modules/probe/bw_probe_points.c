@@ -80,6 +80,7 @@ static bool place_tip(const bw_grid_view *g, const double x[3], const double n[3
     if (d == 2 && g->n[2] == 1) {
       tip[d] = 0.5 * g->length[d];
     } else if (g->periodic[d]) {
+      if (tip[d] >= 0.0 && tip[d] < g->length[d]) continue;
       tip[d] -= g->length[d] * floor(tip[d] / g->length[d]);
       if (tip[d] >= g->length[d]) tip[d] = 0.0; /* -1e-20 + length rounds to length */
     } else if (tip[d] - half < 0.0 || tip[d] + half > g->length[d]) {
@@ -135,27 +136,43 @@ static bw_status route(bw_probe *b, bw_probe__tips *t)
   return BW_OK;
 }
 
-/* Whether there is an obstacle along the normal, at -LOOKS..LOOKS quarters of h from a tip of this
- * rank: bits 0..2 LOOKS. Further than 1.5 h another rank would have to be asked. */
-enum { LOOKS = 6 };
+/* Places along the normal at -LOOKS..LOOKS quarters of h from a tip of this rank; further than 1.5
+ * h another rank would have to be asked. LANES: of which 2 LOOKS + 1 count, a whole vector. */
+enum { LOOKS = 6, LANES = 16 };
 
-static unsigned look_along(const bw_probe *b, const bw_probe__item *item)
+typedef struct {
+  ptrdiff_t cell[LANES]; /* offset in a field, direction by direction */
+  int inside[LANES];     /* the box */
+} places;
+
+static void add_direction(const bw_probe *b, const bw_probe__item *item, int d, places *at)
 {
   const bw_grid_view *g = b->g;
-  const int dims = g->n[2] == 1 ? 2 : 3;
-  unsigned seen = 0;
-  for (int q = -LOOKS; q <= LOOKS; q++) {
-    int cell[3] = {1, 1, 1};
-    bool inside = true;
-    for (int d = 0; d < dims; d++) {
-      const double x = item->tip[d] + 0.25 * q * b->h * item->normal[d];
-      const int i = (int)floor(x / g->spacing[d]) + 1 - g->lo[d], most = g->m[d] + g->halo[d];
-      inside &= g->periodic[d] || (x >= 0.0 && x <= g->length[d]);
-      cell[d] = i < 1 - g->halo[d] ? 1 - g->halo[d] : i > most ? most : i;
-    }
-    const double solid = (double)b->obstacles[bw_at(g, cell[0], cell[1], cell[2])];
-    seen |= (unsigned)(inside && solid > 0.5) << (q + LOOKS);
+  const double centre = item->tip[d] / g->spacing[d];
+  const double step = 0.25 * b->h * item->normal[d] / g->spacing[d];
+  const double low = g->periodic[d] ? -HUGE_VAL : 0.0, high = g->periodic[d] ? HUGE_VAL : g->n[d];
+  const int least = 1 - g->halo[d], most = g->m[d] + g->halo[d], lo = g->lo[d];
+  const int stride = (int)g->stride[d];
+  for (int q = 0; q < LANES; q++) {
+    const double s = centre + (q - LOOKS) * step;
+    const int i = (int)floor(s) + 1 - lo, c = i < least ? least : i > most ? most : i;
+    at->cell[q] += (ptrdiff_t)stride * c;
+    at->inside[q] &= (s >= low) & (s <= high);
   }
+}
+
+/* Whether there is an obstacle at each place: bits 0..2 LOOKS. */
+static unsigned look_along(const bw_probe *b, const bw_probe__item *item)
+{
+  const int dims = b->g->n[2] == 1 ? 2 : 3;
+  unsigned seen = 0;
+  places at;
+  for (int q = 0; q < LANES; q++)
+    at.cell[q] = bw_at(b->g, 0, 0, dims == 2), at.inside[q] = 1;
+  for (int d = 0; d < dims; d++)
+    add_direction(b, item, d, &at);
+  for (int q = 0; q <= 2 * LOOKS; q++)
+    seen |= (unsigned)(at.inside[q] & b->obstacles[at.cell[q]]) << q;
   return seen;
 }
 
@@ -170,6 +187,7 @@ static void look(bw_probe *b, bw_probe__tips *t)
 /* Distance from the root of the first obstacle that a tip at dl has seen from h on. */
 static double first_seen(const bw_probe *b, unsigned seen, double dl)
 {
+  if (seen == 0) return HUGE_VAL;
   for (int q = -LOOKS; q <= LOOKS; q++) {
     const double at = dl + 0.25 * q * b->h;
     if ((seen >> (q + LOOKS) & 1u) != 0 && at > b->h * (1.0 - 1.0e-9)) return at;
@@ -247,7 +265,7 @@ bw_status bw_probe_set_points(bw_probe *b, size_t n, const double X[], const dou
   if (n > 0) memcpy(b->normal, N, 3 * n * sizeof *N);
   fit_into_box(b, X);
   BW_TRY(route(b, &b->tips[PROBE_LONGEST]));
-  if (b->obstacles != NULL) return avoid_obstacles(b, X);
+  if (b->in_the_way) return avoid_obstacles(b, X);
   forget(&b->tips[PROBE_NEAR]);
   forget(&b->tips[PROBE_SHORTER]);
   return BW_OK;

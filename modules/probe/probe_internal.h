@@ -72,7 +72,8 @@ struct bw_probe {
   const bw_kernel_delta *kernel;
   double h, full, rho, nu; /* full: dl of a free probe [L] */
   bw_probe_profile profile;
-  const bw_real *obstacles; /* borrowed, NULL: none */
+  bool in_the_way;          /* there are obstacles ... */
+  unsigned char *obstacles; /* ... (cells with halos) 1: solid; NULL before the first */
   const double *V, *spin;   /* borrowed, NULL: at rest */
 
   size_t n, room;      /* points of this rank */

@@ -162,7 +162,7 @@ static bw_status make(const bw_comm *comm, scene *s)
 /* The probes' shear against G H/2, with obstacles or without. */
 static bw_status look(scene *s, bool obstacles, outcome *o)
 {
-  bw_probe_set_obstacles(s->probe, obstacles ? s->solid : NULL);
+  BW_TRY(bw_probe_set_obstacles(s->probe, obstacles ? s->solid : NULL));
   BW_TRY(bw_probe_set_points(s->probe, s->wall.n, s->wall.X, s->wall.N));
   bw_probe_traction(s->probe, bw_ns_channel_velocity(s->flow.fluid), s->flow.pressure, NULL,
                     s->traction, s->flag);

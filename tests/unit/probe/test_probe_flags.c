@@ -90,11 +90,11 @@ START_TEST(obstacles_shorten_and_block)
         for (int i = 7; i <= last; i++)
           solid[bw_at(f.g, i, j, k)] = 1;
     bw_halo_update(f.grid, 1, &solid);
-    bw_probe_set_obstacles(f.probe, solid);
-    bw_probe_set_obstacles(longer, solid);
+    bw_check_ok(bw_probe_set_obstacles(f.probe, solid));
+    bw_check_ok(bw_probe_set_obstacles(longer, solid));
     expect_flags(&f, f.probe, two);
     expect_flags(&f, longer, four);
-    bw_probe_set_obstacles(f.probe, NULL);
+    bw_check_ok(bw_probe_set_obstacles(f.probe, NULL));
     expect_flags(&f, f.probe, none);
     bw_probe_destroy(&longer);
     bw_release(&solid);

@@ -10,9 +10,7 @@ bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_moti
   const bw_pd_interface__stencil *s = &pi->stencil;
   bw_pd_interface__locate(pi, h, now);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi);
-  if (pi->outside[h] || !bw_pd_interface__is_open(s, empty, pi->config.n_empty)) return false;
-  bw_pd_interface__tell_normal(pi, h, empty);
-  return true;
+  return !pi->outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
 }
 
 /* Is h surface whatever the gaps, or never, or does it depend on them? */
@@ -103,8 +101,13 @@ static void write_row(bw_pd_interface *pi, size_t h)
     pi->pool_n += count;
   }
   size_t at = pi->row[h];
-  for (int q = 0; q < pi->stencil.slots; q++)
-    if (pi->state[q] == BW_PD_INTERFACE__INTACT) pi->pool[at++] = pi->near[q];
+  pi->border[h] = false;
+  for (int q = 0; q < pi->stencil.slots; q++) {
+    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+    const bw_pd_interface__near near = pi->near[q];
+    pi->border[h] = pi->border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n;
+    pi->pool[at++] = near;
+  }
   pi->row_n[h] = (uint16_t)count;
   pi->stale[h] = false;
 }
@@ -113,6 +116,7 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 {
   pi->n_list = 0;
   for (size_t h = 0; h < pi->n; h++) {
+    pi->changed[h] = pi->surface[h] && pi->stale[h];
     if (!pi->surface[h]) continue;
     if (pi->stale[h]) {
       uint32_t not_held, never;
@@ -132,10 +136,10 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi)
   const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
   const bool broken = follow_changes(pi, &now), shown = follow_gaps(pi, &now);
   int64_t changed = pi->fresh_start || broken || shown;
-  if (changed) bw_pd_interface__renew(pi, false);
   pi->fresh_start = false;
   bw_comm_max_int(bw_pd_bond_comm(pi->pd), 1, &changed);
   if (changed) {
+    bw_pd_interface__renew(pi, false);
     bw_pd_interface__settle_normals(pi);
     bw_pd_interface__lay_lines(pi, &now);
   }

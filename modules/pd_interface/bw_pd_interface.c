@@ -59,12 +59,17 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->list, n));
   BW_THEN(st, BW_ALLOCATE(&pi->X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->normal, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->first_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->position, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->own_normal, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->all_normal, pi->config.smooth_normals ? 3 * pi->n_extended : 0));
+  for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
+    BW_THEN(st, BW_ALLOCATE(&pi->told[pass], 3 * pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->changed, pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->touched, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->border, n));
   BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->steps, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
@@ -111,6 +116,7 @@ static void measure_reference(bw_pd_interface *pi)
     if (!pi->outside[h]) total[0] += bw_pd_interface__open_area(pi);
   }
   bw_pd_interface__renew(pi, true);
+  memcpy(pi->first_normal, pi->normal, 3 * pi->n * sizeof *pi->normal);
   bw_pd_interface__settle_normals(pi);
   for (size_t row = 0; row < pi->n_list; row++) {
     const size_t h = (size_t)pi->list[row];
@@ -169,19 +175,22 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,    (void **)&p->first,      (void **)&p->outside,
-                    (void **)&p->leans,      (void **)&p->broken,     (void **)&p->fresh,
-                    (void **)&p->undecided,  (void **)&p->gap,        (void **)&p->row,
-                    (void **)&p->row_n,      (void **)&p->row_room,   (void **)&p->stale,
-                    (void **)&p->near,       (void **)&p->lines,      (void **)&p->anchor,
-                    (void **)&p->pool,       (void **)&p->leaning,    (void **)&p->list,
-                    (void **)&p->X0,         (void **)&p->normal,     (void **)&p->position,
-                    (void **)&p->steps,      (void **)&p->area,       (void **)&p->list_normal,
-                    (void **)&p->link,       (void **)&p->state,      (void **)&p->place,
-                    (void **)&p->off,        (void **)&p->area_first, (void **)&p->own_normal,
-                    (void **)&p->all_normal, (void **)&p->off_lattice};
+  void **array[] = {(void **)&p->surface,     (void **)&p->first,      (void **)&p->outside,
+                    (void **)&p->leans,       (void **)&p->broken,     (void **)&p->fresh,
+                    (void **)&p->undecided,   (void **)&p->gap,        (void **)&p->row,
+                    (void **)&p->row_n,       (void **)&p->row_room,   (void **)&p->stale,
+                    (void **)&p->near,        (void **)&p->lines,      (void **)&p->anchor,
+                    (void **)&p->pool,        (void **)&p->leaning,    (void **)&p->list,
+                    (void **)&p->X0,          (void **)&p->normal,     (void **)&p->first_normal,
+                    (void **)&p->position,    (void **)&p->steps,      (void **)&p->area,
+                    (void **)&p->list_normal, (void **)&p->link,       (void **)&p->state,
+                    (void **)&p->place,       (void **)&p->off,        (void **)&p->area_first,
+                    (void **)&p->own_normal,  (void **)&p->touched,    (void **)&p->border,
+                    (void **)&p->changed,     (void **)&p->off_lattice};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
+  for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
+    bw_release(&p->told[pass]);
   bw_release(pi);
 }
 

@@ -7,24 +7,24 @@
  * when no intact bond points into it and the mean distance 3.42 to the partners of its broken
  * bonds, if it has any, exceeds the threshold (the horizon by default). A particle is surface
  * when `n_empty` neighbouring sectors are empty; in a body that never broke these are the
- * particles with an open side on the lattice. Normals (outward: into the
- * fluid): 3.45-3.46 in the reference shape over the partners that still hold, turned with the body
- * as a material surface is; smoothed on request. Where the neighbours balance (thin sheets, single
- * particles) 3.45 is the last one that could be told, at the start the direction of the empty
- * sectors.
+ * particles with an open side on the lattice.
+ * Normals (outward: into the fluid): 3.45-3.46 in the reference shape over the partners that still
+ * hold, where the surface is smooth their fit along it, turned with the body as a material surface
+ * is. Where the neighbours balance (thin sheets, single particles) 3.45 is that of the body before
+ * anything broke, or the direction of the empty sectors.
  * Areas of particles that were surface in the reference shape, one of
  *   open sides (default): ds^2 sum over the open lattice faces f of e_f.n_h, at least ds^2/4, so
  *     that sum A n is a closed surface (uniform pressure gives no net force) and sum A n.x each
  *     time the volume (figures in README);
  *   equal: as with POROUS 3.96, the body's area over their number.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
- * Sides of the domain against which the solid leans (a wall of the channel) are not surface:
- * (refused for a disordered cloud, which no plane mirrors) give them as planes in the config. There
+ * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
+ * them as planes in the config (refused for a disordered cloud, which no plane mirrors). There
  * partners are taken as mirrored in the plane, until the particle has moved from the wall by more
  * than the threshold or its bonds across it broke. Particles beyond such a plane (ghost layers) are
  * never surface. A disordered cloud has the sectors, weights, first surface, areas and first
- * normals of its sites. MPI: results are of the rank's own particles. Updates
- * cost only the copying of positions and the normals when no bond broke. */
+ * normals of its sites. MPI: results are of the rank's own particles. Updates cost only positions
+ * and the turning of normals when no bond broke. */
 #pragma once
 #include "bw_pd_bond.h"
 
@@ -33,13 +33,11 @@ typedef struct bw_pd_interface bw_pd_interface;
 typedef enum { BW_PD_AREA_OPEN_SIDES, BW_PD_AREA_EQUAL } bw_pd_area;
 
 typedef struct {
-  double threshold;    /* mean distance over horizon that opens a sector [-]   default 1 */
-  int n_empty;         /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
-                          POROUS), 1 in 3D                                     default 0 */
-  bw_pd_area area;     /* of surface particles, above                  default open sides */
-  bool smooth_normals; /* fit over the surface within the horizon: for bodies without edges, which
-                          it rounds over twice that. Default false */
-  bool walled[3][2];   /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
+  double threshold;  /* mean distance over horizon that opens a sector [-]   default 1 */
+  int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
+                        POROUS), 1 in 3D                                     default 0 */
+  bw_pd_area area;   /* of surface particles, above                  default open sides */
+  bool walled[3][2]; /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
   double lower[3], upper[3];
 } bw_pd_interface_config;
 

@@ -1,16 +1,20 @@
-/* Normals: told in the reference shape, from what holds together now.
+/* Normals, told in the reference shape from what holds together now.
  *
- * 3.45 sees the steps of the lattice: a terrace longer than the family looks flat. Smoothed, a
- * linear function of the two coordinates along the surface is fitted to the normals 3.45 of the
- * surface particles that h has intact bonds with, and its value at h is taken, PASSES times. A mean
- * would bend towards where more of them are; a linear function does not. Normals more than 60
- * degrees apart do not meet, but the rounding of an edge by 3.45 itself is spread farther: for
- * smooth bodies. */
+ * 3.45 sees the steps of the lattice: a terrace longer than the family looks flat, a step of one ds
+ * moves the centroid by 6 degrees. Where the surface is smooth normals vary linearly along it over
+ * a horizon, and their fit is better than each: a linear function of the two coordinates along the
+ * surface, through the normals of the surface particles that h has intact bonds with (a mean would
+ * bend towards the side with more of them), of those once more.
+ * Where is it smooth? What a first fit of all gives is linear to SMOOTH: a second fit leaves at
+ * most 4 degrees rms on balls, cylinders, discs of any radius from two horizons on, at least 4.8
+ * beside the edge of a cube, 10 and more on the ridges between pores. The others keep 3.45, which
+ * keeps edges and areas closed, and are not seen by the fits that count. Images in a wall take
+ * part. Only what changed is told anew, so that this is a function of the bonds that hold. */
 #include "pd_interface_internal.h"
 #include <math.h>
 #include <string.h>
 
-enum { PASSES = 2 };
+static const double SMOOTH = 0.07; /* rms [rad] */
 
 /* A stand-in where the neighbours balance: the middle of the lowest group of empty sectors (one
  * of the sides of a sheet), or of the lowest one when they surround the particle. */
@@ -34,8 +38,12 @@ static void guess_normal(const bw_pd_interface__stencil *s, uint32_t empty, doub
 void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty)
 {
   double *n = &pi->normal[3 * h];
-  const bool known = n[0] != 0.0 || n[1] != 0.0 || n[2] != 0.0;
-  if (!bw_pd_interface__normal_of(pi, n) && !known) guess_normal(&pi->stencil, empty, n);
+  const double *first = &pi->first_normal[3 * h];
+  if (bw_pd_interface__normal_of(pi, n)) return;
+  if (first[0] != 0.0 || first[1] != 0.0 || first[2] != 0.0)
+    memcpy(n, first, 3 * sizeof *n);
+  else
+    guess_normal(&pi->stencil, empty, n);
 }
 
 static void cross(const double a[3], const double b[3], double c[3])
@@ -47,19 +55,6 @@ static void cross(const double a[3], const double b[3], double c[3])
 static double dot(const double a[3], const double b[3])
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Weights 1, s, t of the members of a fit whose sum of weight x (1, s, t) is (1, 0, 0). */
-static bool fit_weights(double m[3][3], double y[3])
-{
-  double c[3];
-  const double more = 1e-6 * (m[1][1] + m[2][2]); /* a line of members has no slope across */
-  m[1][1] += more, m[2][2] += more;
-  cross(m[1], m[2], c);
-  const double det = dot(m[0], c);
-  for (int d = 0; d < 3; d++)
-    y[d] = c[d] / det;
-  return det > 0.0;
 }
 
 /* Two unit vectors along the surface. */
@@ -77,53 +72,119 @@ static void tangents(const double n[3], double t[2][3])
   cross(n, t[0], t[1]);
 }
 
-/* Is the partner one of the surface that looks about the same way? */
-static bool meets(const bw_pd_interface *pi, const bw_pd_interface__near *near, const double n[3])
+/* Sums over the surface particles about h that look about the same way; f = 1, s, t along it. */
+typedef struct {
+  double ff[3][3], fn[3][3]; /* f_a f_b; f_a n */
+} fit_sums;
+
+/* Normal of a partner, an image's mirrored. */
+static void partner_normal(const bw_pd_interface__near *near, const double all[], double n[3])
 {
-  return near->cross == 0 && near->partner >= 0 &&
-         dot(n, &pi->all_normal[3 * (size_t)near->partner]) > 0.5;
+  for (unsigned d = 0; d < 3; d++) {
+    const double value = all[3 * (size_t)near->partner + d];
+    n[d] = (near->cross >> (2 * d) & 3u) != 0 ? -value : value;
+  }
 }
 
-/* The fit at h, to out; as it was where too few meet. */
-static void fit(const bw_pd_interface *pi, size_t h, double out[3])
+static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit_sums *sums)
 {
   const bw_pd_interface__near *near = &pi->pool[pi->row[h]];
-  const double *n = &pi->all_normal[3 * h];
+  const double *n = &all[3 * h];
   const size_t count = pi->stale[h] ? 0 : pi->row_n[h];
-  double t[2][3], m[3][3] = {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, y[3], sum[3];
+  double t[2][3], other[3];
   tangents(n, t);
+  *sums = (fit_sums){{{1.0}}, {{n[0], n[1], n[2]}}}; /* h itself */
   for (size_t q = 0; q < count; q++) {
-    if (!meets(pi, &near[q], n)) continue;
+    if (near[q].partner < 0) continue;
+    partner_normal(&near[q], all, other);
+    if (!(dot(n, other) > 0.5)) continue; /* 60 degrees; 0 where there is no surface */
     const double *xi = &pi->stencil.xi[3 * near[q].slot];
     const double f[3] = {1.0, dot(t[0], xi), dot(t[1], xi)};
     for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++)
-        m[a][b] += f[a] * f[b];
+      for (int b = 0; b < 3; b++) {
+        sums->ff[a][b] += f[a] * f[b];
+        sums->fn[a][b] += f[a] * other[b];
+      }
   }
-  memcpy(out, n, 3 * sizeof *out);
-  if (m[0][0] < 5.0 || !fit_weights(m, y)) return;
+}
+
+/* The fit at h, to value. Returns its rms residual; INFINITY, and value as it was: no fit. */
+static double solve_fit(fit_sums *sums, int dims, double value[3])
+{
+  double(*m)[3] = sums->ff, inverse[3][3], c[3][3] = {{0.0}}, explained = 0.0;
+  const double members = m[0][0], more = 1e-6 * (m[1][1] + m[2][2]);
+  m[1][1] += more, m[2][2] += more; /* a line of members has no slope across */
+  for (int a = 0; a < 3; a++)
+    cross(m[(a + 1) % 3], m[(a + 2) % 3], inverse[a]);
+  const double det = dot(m[0], inverse[0]);
+  if (members < 5.0 || !(det > 0.0)) return INFINITY;
+  for (int a = 0; a < 3; a++) {
+    for (int b = 0; b < 3; b++)
+      for (int d = 0; d < 3; d++)
+        c[a][d] += inverse[a][b] / det * sums->fn[b][d];
+    explained += dot(c[a], sums->fn[a]);
+  }
+  const double length = sqrt(dot(c[0], c[0]));
+  if (!(length > 0.5)) return INFINITY;
   for (int d = 0; d < 3; d++)
-    sum[d] = y[0] * n[d];
-  for (size_t q = 0; q < count; q++) {
-    if (!meets(pi, &near[q], n)) continue;
-    const double *xi = &pi->stencil.xi[3 * near[q].slot];
-    const double weight = y[0] + y[1] * dot(t[0], xi) + y[2] * dot(t[1], xi);
-    for (size_t d = 0; d < 3; d++)
-      sum[d] += weight * pi->all_normal[3 * (size_t)near[q].partner + d];
+    value[d] = c[0][d] / length;
+  return sqrt(fmax(members - explained, 0.0) / (members - dims));
+}
+
+/* Row h of an array becomes n; a change is noted. */
+static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
+{
+  double *row = &rows[3 * h];
+  pi->changed[h] = pi->changed[h] || row[0] != n[0] || row[1] != n[1] || row[2] != n[2];
+  memcpy(row, n, 3 * sizeof *row);
+}
+
+/* touched: own particles that changed, or have a partner that did. Partners know each other, but
+ * for copies and images. Collective. */
+static void spread_change(bw_pd_interface *pi)
+{
+  bw_pd_bond_fill_extended(pi->pd, sizeof *pi->changed, pi->changed, pi->changed);
+  memcpy(pi->touched, pi->changed, pi->n * sizeof *pi->touched);
+  for (size_t h = 0; h < pi->n; h++) {
+    const bw_pd_interface__near *near = &pi->pool[pi->row[h]];
+    const size_t count = pi->changed[h] || pi->border[h] ? pi->row_n[h] : 0;
+    for (size_t q = 0; q < count; q++) {
+      const int32_t l = near[q].partner;
+      if (l < 0) continue;
+      if (pi->changed[l]) pi->touched[h] = true;
+      if (pi->changed[h] && (size_t)l < pi->n) pi->touched[l] = true;
+    }
   }
-  const double length = sqrt(dot(sum, sum));
-  for (int d = 0; d < 3 && length > 0.5; d++)
-    out[d] = sum[d] / length;
+}
+
+/* What the fits at `from` give, to `to`; none where there is none. To judge: 3.45 where they leave
+ * no more than SMOOTH, none elsewhere. */
+static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
+{
+  const double none[3] = {0.0, 0.0, 0.0};
+  bw_pd_bond_fill_extended(pi->pd, 3 * sizeof *from, from, from);
+  spread_change(pi);
+  for (size_t h = 0; h < pi->n; h++) {
+    const bool there = dot(&from[3 * h], &from[3 * h]) > 0.0;
+    double n[3];
+    fit_sums sums;
+    if (!pi->touched[h]) continue;
+    memcpy(n, there ? &pi->normal[3 * h] : none, sizeof n);
+    if (there) sum_fit(pi, h, from, &sums);
+    const double rms = there ? solve_fit(&sums, pi->stencil.dims, n) : INFINITY;
+    put(pi, to, h, !judge ? n : rms <= SMOOTH ? &pi->normal[3 * h] : none);
+  }
 }
 
 void bw_pd_interface__settle_normals(bw_pd_interface *pi)
 {
-  memset(pi->own_normal, 0, 3 * pi->n * sizeof *pi->own_normal);
-  for (size_t row = 0; row < pi->n_list; row++)
-    memcpy(&pi->own_normal[3 * pi->list[row]], &pi->normal[3 * pi->list[row]], 3 * sizeof(double));
-  for (int pass = 0; pi->config.smooth_normals && pass < PASSES; pass++) {
-    bw_pd_bond_fill_extended(pi->pd, 3 * sizeof(double), pi->own_normal, pi->all_normal);
-    for (size_t row = 0; row < pi->n_list; row++)
-      fit(pi, (size_t)pi->list[row], &pi->own_normal[3 * pi->list[row]]);
+  const double none[3] = {0.0, 0.0, 0.0};
+  for (size_t h = 0; h < pi->n; h++)
+    put(pi, pi->told[0], h, pi->surface[h] ? &pi->normal[3 * h] : none);
+  for (int pass = 0; pass < BW_PD_INTERFACE__PASSES; pass++)
+    fit_all(pi, pi->told[pass], pi->told[pass + 1], pass == 1);
+  for (size_t h = 0; h < pi->n; h++) {
+    const double *n = &pi->told[BW_PD_INTERFACE__PASSES][3 * h];
+    memcpy(&pi->own_normal[3 * h], dot(n, n) > 0.0 ? n : &pi->told[0][3 * h], 3 * sizeof *n);
   }
 }

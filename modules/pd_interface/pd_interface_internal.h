@@ -47,6 +47,8 @@ typedef struct {
   bool whole;                               /* none is missing in any row */
 } bw_pd_interface__lines;
 
+enum { BW_PD_INTERFACE__PASSES = 4 };
+
 struct bw_pd_interface {
   bw_pd_bond *pd; /* borrowed */
   bw_pd_interface_config config;
@@ -59,8 +61,9 @@ struct bw_pd_interface {
   bool *surface;        /* (n) now */
   bool *first;          /* (n) in the reference shape */
   double *X0;           /* (n,3) */
-  double *normal;       /* (n,3) last unit normal 3.45 of those that are or were surface, in the
-                           reference shape; else 0 */
+  double *normal;       /* (n,3) unit normal 3.45 in the reference shape, of those that are or
+                           were surface; else 0 */
+  double *first_normal; /* (n,3) the same before anything broke */
   int32_t *anchor;      /* (n,6) ends of three line elements: extended particles, or h twice */
   uint8_t *steps;       /* (n,3) lattice steps between them */
 
@@ -91,8 +94,11 @@ struct bw_pd_interface {
   int32_t *list; /* (n_list) the surface, and its rows: (.,3) but area */
   size_t n_list;
   double *position, *list_normal, *area;
-  double *own_normal;            /* (n,3) of the surface in the reference shape, 0 elsewhere */
-  double *all_normal;            /* (n_extended,3) */
+  double *own_normal; /* (n,3) of the surface in the reference shape, 0 elsewhere */
+  double *told[BW_PD_INTERFACE__PASSES + 1]; /* (n_extended,3) the same by 3.45 and after each pass
+                                                of fits over it */
+  bool *changed;                             /* (n_extended) since they were settled last */
+  bool *touched, *border;        /* (n) a partner changed; it has copies or images as partners */
   bw_pd_interface__lines *lines; /* (n_list / 8, rounded up) */
   double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
                           [L]; NULL: a lattice */
@@ -127,10 +133,10 @@ double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
 
-/* bw_pd_normal.c. Of h, resolved last: its normal 3.45 (where partners balance the one before, at
- * first that of its empty sectors). */
+/* bw_pd_normal.c. Of h, resolved last: its normal 3.45 (where partners balance that of the
+ * reference shape, if there is none that of its empty sectors). */
 void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty);
-/* own_normal of the listed surface, smoothed if asked. Collective. */
+/* own_normal of the surface: 3.45, or its fit where that is smooth. Collective. */
 void bw_pd_interface__settle_normals(bw_pd_interface *pi);
 
 /* bw_pd_lines.c. Of h, resolved last: where its line elements end. */
@@ -140,8 +146,7 @@ void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *no
 /* list_normal: own_normal turned with the body. */
 void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion *now);
 
-/* bw_pd_follow.c: surface or not, of h resolved last (now NULL: in the reference shape); renews its
- * normal. */
+/* bw_pd_follow.c: is h, resolved last, surface? now NULL: in the reference shape. */
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
 /* The list of surface particles, its areas, and rows, normals 3.45, anchors of the stale ones. */
 void bw_pd_interface__renew(bw_pd_interface *pi, bool reference);

@@ -197,6 +197,9 @@ bw_pd_bond_motion bw_pd_bond_get_motion(bw_pd_bond *pd, bool velocity);
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
  * Collective. */
 void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);
+/* The way back: adds the copies' vectors of all (n_extended,3) to those of their owners, which come
+ * first. Collective. */
+void bw_pd_bond_sum_extended(bw_pd_bond *pd, double *all);
 
 /* Bytes of this rank's bond lists (slots and blocks). Local. */
 size_t bw_pd_bond_list_bytes(const bw_pd_bond *pd);

@@ -109,3 +109,15 @@ void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, voi
       memcpy(to + (pd->n + c) * bytes + at, answer + c * piece, piece);
   }
 }
+
+/* In bw_real: that is what the halo's buffers hold. */
+void bw_pd_bond_sum_extended(bw_pd_bond *pd, double *all)
+{
+  const size_t copies = pd->n_extended - pd->n;
+  for (size_t c = 0; c < 3 * copies; c++)
+    pd->answer[c] = (bw_real)all[3 * pd->n + c];
+  bw_exchange_forward(pd->halo, 3 * sizeof(bw_real), pd->answer, pd->reply);
+  for (size_t q = 0; q < pd->n_asked; q++)
+    for (size_t k = 0; k < 3; k++)
+      all[3 * (size_t)pd->asked[q] + k] += (double)pd->reply[3 * q + k];
+}

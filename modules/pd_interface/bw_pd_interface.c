@@ -70,6 +70,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->changed, pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->touched, n));
   BW_THEN(st, BW_ALLOCATE(&pi->border, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->borne, 3 * pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->steps, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
@@ -175,18 +176,18 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
   if (pi == NULL || *pi == NULL) return;
   bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,     (void **)&p->first,      (void **)&p->outside,
-                    (void **)&p->leans,       (void **)&p->broken,     (void **)&p->fresh,
-                    (void **)&p->undecided,   (void **)&p->gap,        (void **)&p->row,
-                    (void **)&p->row_n,       (void **)&p->row_room,   (void **)&p->stale,
-                    (void **)&p->near,        (void **)&p->lines,      (void **)&p->anchor,
-                    (void **)&p->pool,        (void **)&p->leaning,    (void **)&p->list,
-                    (void **)&p->X0,          (void **)&p->normal,     (void **)&p->first_normal,
-                    (void **)&p->position,    (void **)&p->steps,      (void **)&p->area,
-                    (void **)&p->list_normal, (void **)&p->link,       (void **)&p->state,
-                    (void **)&p->place,       (void **)&p->off,        (void **)&p->area_first,
-                    (void **)&p->own_normal,  (void **)&p->touched,    (void **)&p->border,
-                    (void **)&p->changed,     (void **)&p->off_lattice};
+  void **array[] = {(void **)&p->surface,     (void **)&p->first,       (void **)&p->outside,
+                    (void **)&p->leans,       (void **)&p->broken,      (void **)&p->fresh,
+                    (void **)&p->undecided,   (void **)&p->gap,         (void **)&p->row,
+                    (void **)&p->row_n,       (void **)&p->row_room,    (void **)&p->stale,
+                    (void **)&p->near,        (void **)&p->lines,       (void **)&p->anchor,
+                    (void **)&p->pool,        (void **)&p->leaning,     (void **)&p->list,
+                    (void **)&p->X0,          (void **)&p->normal,      (void **)&p->first_normal,
+                    (void **)&p->position,    (void **)&p->steps,       (void **)&p->area,
+                    (void **)&p->list_normal, (void **)&p->link,        (void **)&p->state,
+                    (void **)&p->place,       (void **)&p->off,         (void **)&p->area_first,
+                    (void **)&p->own_normal,  (void **)&p->touched,     (void **)&p->border,
+                    (void **)&p->changed,     (void **)&p->off_lattice, (void **)&p->borne};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)

@@ -63,6 +63,11 @@ bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
  * from the line elements that carry its normal; exact for rigid motion, 0 where none can be told. A
  * point at X + a N moves with V + a spin x N. After an update. Collective. */
 void bw_pd_interface_turn(bw_pd_interface *pi, double spin[]);
+/* Moments (n,3) [M L^2/T^2] on that surface, as couples of forces on the ends of the same line
+ * elements, added to force (count of pd, 3): without a resultant, with exactly their sum as moment,
+ * and their power is that of the spin, sum moment.spin = sum force.V (the adjoint of turn). A force
+ * F at X + a N is F on the particle and the moment a N x F. After an update. Collective. */
+void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double force[]);
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
 
 /* Area of the reference shape [L^2], all ranks: ds^2 sum over its open lattice faces f of

@@ -6,9 +6,10 @@
  *   n ~ sum_r (n0.a0_r) c_r / det,  c_r = a_{r+1} x a_{r+2},  det = a_r.c_r.
  * The same three give the rotation of the velocity field, exact for a rigid motion:
  *   spin = 1/2 curl v = 1/2 sum_r c_r x a'_r / det.
- * Ends an even number of spacings apart do not see the lattice's shortest wave. One that is missing
- * (sheets) is the product of the two others; with two missing (rods, lone particles; det = 0) there
- * is nothing to tell. */
+ * A moment M is borne by what has the power M.spin for every v: by forces g_r and -g_r on their
+ * ends, g_r = M x c_r / (2 det),  sum_r a_r x g_r = M. Ends an even number of spacings apart do not
+ * see the lattice's shortest wave. One that is missing (sheets) is the product of the two others;
+ * with two missing (rods, lone particles; det = 0) there is nothing to tell. */
 #include "pd_interface_internal.h"
 #include <math.h>
 #include <string.h>
@@ -234,4 +235,66 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
       for (size_t d = 0; d < 3; d++)
         spin[3 * row + d] = half[row % ROWS] * w[d][row % ROWS];
   }
+}
+
+/* The forces of the elements that are missing (complete) go to the two others. */
+static void hand_over(const bw_pd_interface__lines *l, lanes a[3][3], lanes g[3][3])
+{
+  for (int r = 0; r < 3 && !l->whole; r++) {
+    const int e = (r + 1) % 3, f = (r + 2) % 3;
+    lanes lost[3];
+    for (int d = 0; d < 3; d++)
+      for (int k = 0; k < ROWS; k++) {
+        lost[d][k] = l->steps[r][k] == 0 ? g[r][d][k] : 0.0;
+        g[r][d][k] -= lost[d][k];
+      }
+    add_cross(a[f], lost, g[e]);
+    add_cross(lost, a[e], g[f]);
+  }
+}
+
+/* g_r on the ends of a block's elements. */
+static void add_forces(const bw_pd_interface *pi, size_t block, lanes g[3][3], double *force)
+{
+  for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+    for (size_t r = 0; r < 3; r++) {
+      const int32_t *end = &pi->anchor[6 * (size_t)pi->list[row] + 2 * r];
+      for (size_t d = 0; d < 3; d++) {
+        force[3 * (size_t)end[0] + d] += g[r][d][row % ROWS];
+        force[3 * (size_t)end[1] + d] -= g[r][d][row % ROWS];
+      }
+    }
+}
+
+void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double force[])
+{
+  const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
+  double *all = pi->borne;
+  memset(all, 0, 3 * pi->n_extended * sizeof *all);
+  for (size_t block = 0; block * ROWS < pi->n_list; block++) {
+    const bw_pd_interface__lines *l = &pi->lines[block];
+    lanes a[3][3], g[3][3] = {{{0}}}, M[3] = {{0}}, half;
+    for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+      for (size_t d = 0; d < 3; d++)
+        M[d][row % ROWS] = moment[3 * row + d];
+    at_rest(pi, block, a);
+    add_between(l, now.u, a);
+    complete(l, a, NULL);
+    for (int r = 0; r < 3; r++) {
+      lanes c[3] = {{0}};
+      add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c);
+      if (r == 0) dot(a[0], c, half);
+      add_cross(M, c, g[r]);
+    }
+    half_inverse(a, half);
+    for (int r = 0; r < 3; r++)
+      for (int d = 0; d < 3; d++)
+        for (int k = 0; k < ROWS; k++)
+          g[r][d][k] *= half[k];
+    hand_over(l, a, g);
+    add_forces(pi, block, g, all);
+  }
+  bw_pd_bond_sum_extended(pi->pd, all);
+  for (size_t i = 0; i < 3 * pi->n; i++)
+    force[i] += all[i];
 }

@@ -99,6 +99,7 @@ struct bw_pd_interface {
                                                 of fits over it */
   bool *changed;                             /* (n_extended) since they were settled last */
   bool *touched, *border;        /* (n) a partner changed; it has copies or images as partners */
+  double *borne;                 /* (n_extended,3) scratch: forces that bear moments */
   bw_pd_interface__lines *lines; /* (n_list / 8, rounded up) */
   double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
                           [L]; NULL: a lattice */

@@ -63,6 +63,66 @@ START_TEST(no_inertia_no_spin)
 }
 END_TEST
 
+/* Random moments and velocities: what bears the moments has no resultant, their sum as moment, and
+ * their power. */
+static void check_twist(bool planar, const bw_shape *shape)
+{
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  const bw_pd_bond_config c = body_config(planar);
+  body b = body_create(1, shape, &c, &ic);
+  const size_t n = bw_pd_bond_count(b.pd), rows = bw_pd_interface_surface(b.pi).n;
+  double *X = NULL, *V = NULL, *M = NULL, *spin = NULL, *F = NULL, sum[2][7] = {{0.0}};
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&F, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&M, 3 * rows));
+  bw_check_ok(BW_ALLOCATE(&spin, 3 * rows));
+  bw_pd_bond_get_reference(b.pd, V);
+  for (size_t i = 0; i < 3 * n; i++)
+    X[i] = V[i] + (i % 3 == 2 && planar ? 0.0 : 0.05 * sin(3.0 * V[i]));
+  for (size_t i = 0; i < 3 * n; i++)
+    V[i] = i % 3 == 2 && planar ? 0.0 : cos(17.0 * X[i] + 5.0 * X[3 * (i / 3)]);
+  bw_pd_bond_set_state(b.pd, X, V);
+  bw_check_ok(bw_pd_interface_update(b.pi));
+  const bw_pd_surface s = bw_pd_interface_surface(b.pi);
+  for (size_t q = 0; q < 3 * rows; q++)
+    M[q] = q % 3 < 2 && planar ? 0.0 : sin(7.0 * s.X[3 * (q / 3)] + (double)(q % 3));
+  bw_pd_interface_turn(b.pi, spin);
+  bw_pd_interface_twist(b.pi, M, F);
+  for (size_t q = 0; q < 3 * rows; q++)
+    sum[0][3 + q % 3] += M[q], sum[0][6] += M[q] * spin[q];
+  for (size_t i = 0; i < n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      const size_t e = 3 * i + (d + 1) % 3, f = 3 * i + (d + 2) % 3;
+      sum[1][d] += F[3 * i + d];
+      sum[1][3 + d] += X[e] * F[f] - X[f] * F[e];
+      sum[1][6] += F[3 * i + d] * V[3 * i + d];
+    }
+  bw_comm_sum(bw_check_world(), 14, sum[0]);
+  ck_assert_double_gt(fabs(sum[0][6]), 1e-3);
+  for (int q = 0; q < 7; q++)
+    ck_assert_double_lt(fabs(sum[1][q] - sum[0][q]), 1e4 * BW_REAL_EPSILON);
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&F);
+  bw_release(&M);
+  bw_release(&spin);
+  body_destroy(&b);
+}
+
+START_TEST(moments_are_borne_as_the_surface_turns)
+{
+  const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {6, 5, 4}},
+                 sheet = {.kind = BW_SHAPE_BOX, .upper = {7, 7, 1}},
+                 disc = {.kind = BW_SHAPE_CYLINDER, .centre = {5, 5}, .radius = 4, .axis = 2},
+                 beam = {.kind = BW_SHAPE_BOX, .upper = {7, 1, 1}};
+  check_twist(false, &block);
+  check_twist(false, &sheet);
+  check_twist(true, &disc);
+  check_twist(true, &beam);
+}
+END_TEST
+
 /* Velocities that alternate from site to site, the lattice's shortest wave. */
 START_TEST(the_shortest_wave_is_no_rotation)
 {
@@ -146,6 +206,7 @@ START_TEST(normals_go_with_the_body)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(rigid_rotation_is_exact), BW_TEST(no_inertia_no_spin),
+                                      BW_TEST(moments_are_borne_as_the_surface_turns),
                                       BW_TEST(the_shortest_wave_is_no_rotation),
                                       BW_TEST(normals_go_with_the_body)};
 BW_CHECK_MAIN("pd_interface.turn", tests)

@@ -65,13 +65,13 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 17 };
+enum { N_VECTORS = 19 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
-      &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
-      &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
-      &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V};
+      &c->F,        &c->V,      &c->V_before,  &c->X,    &c->root_inside, &c->marker_X, &c->root,
+      &c->marker_V, &c->normal, &c->marker_dV, &c->area, &c->accel,       &c->traction, &c->force,
+      &c->turn,     &c->spin,   &c->root_V,    &c->load, &c->moment};
   memcpy(vector, all, sizeof all);
 }
 
@@ -101,9 +101,7 @@ static bw_status create_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
-  for (int q = 0; q < 3 && c->config.coupling_iterations > 1; q++)
-    BW_TRY(BW_ALLOCATE(&c->iterate[q], 3 * n));
-  if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__state_create(c, &c->start));
+  if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__iteration_create(c));
   BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &c->p_mean));
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
 }
@@ -153,9 +151,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_release(&c->p_mean);
   bw_release(&c->inside);
   bw_coupler__state_release(&c->kept);
-  bw_coupler__state_release(&c->start);
-  for (int q = 0; q < 3; q++)
-    bw_release(&c->iterate[q]);
+  bw_coupler__iteration_release(c);
   bw_coupler__blocks_release(&c->blocks);
   bw_coupler__bodies_release(c);
   bw_pd_interface_destroy(&c->interface);

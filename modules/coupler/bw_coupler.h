@@ -15,10 +15,10 @@
  * Waves of the lattice are fed by the late load: damp them (damping_mean; README).
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
- * same state, with the markers moving at the velocity that the solid reached at the end of the last
- * try, under-relaxed by Aitken's rule (Kuettler & Wall 2008; the first factor is load_relaxation),
- * until the velocity of the surface changes by less than the residual. The load is then the whole
- * load of the same step. Markers stay where the surface was at the beginning of the step.
+ * same state, until the surface moves as the markers were told to, to the residual. The next try's
+ * velocity is that of a quasi-Newton step (IQN-ILS, iterate.c); what earlier tries do not tell is
+ * relaxed by load_relaxation (0.1; smaller for light plates, whose first tries overshoot most). The
+ * load is the whole load of the same step. Markers stay where the surface was at its beginning.
  *
  * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
  * pressure swings between the sub-steps; what acted over the step is sum_r gamma_r p_r, and that is

@@ -37,6 +37,17 @@ typedef struct {
   int64_t *block;                    /* (particles) reference site over k, packed */
 } bw_coupler__blocks;
 
+/* Iterated coupling (iterate.c): state at the beginning of the step, positions then (n,3);
+ * velocity with which the solid answers (n,3); guess of the markers' and its residual
+ * (n_surface,3); what earlier tries of the step taught, (n_surface,3) a column. */
+enum { BW_COUPLER__COLUMNS = 30 };
+typedef struct {
+  bw_coupler__state start;
+  double *X, *answer, *guess, *residual;
+  int columns, room; /* used, and how many there may be */
+  double *q[BW_COUPLER__COLUMNS], *d[BW_COUPLER__COLUMNS];
+} bw_coupler__iteration;
+
 struct bw_coupler {
   bw_coupler_config config;
   bw_ns_channel *fluid;
@@ -48,12 +59,15 @@ struct bw_coupler {
   size_t n;                /* particles of this rank */
   double h;                /* grid spacing [L] */
   double *F;               /* (n,3) fluid load on particles [M/(L^2 T^2)] */
-  double *V, *V_before;    /* (n,3) velocity now and at the end of the step before */
+  double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
+                              what the markers were told (iterated) */
   size_t n_surface;        /* surface particles inside the box: rows used of the arrays below */
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
   double *root, *normal, *area;            /* probe points (n,3), normals (n,3), areas (n) */
   double *accel, *traction, *force;        /* (n,3) each: of the surface points */
+  double *load;                            /* (n,3) of c->force, on the particles [M L/T^2] */
+  double *moment;                          /* (n,3) of the interface's rows [M L^2/T^2] */
   double *turn;                            /* (n,3) spin of the interface's rows */
   double *spin, *root_V;                   /* (n,3) of the surface points */
   unsigned char *flag;                     /* (n) bw_probe_flag */
@@ -81,10 +95,7 @@ struct bw_coupler {
   bw_pd_bond_link *link;        /* (family) scratch */
   bw_coupler__work work;
   bw_coupler__state kept;
-  /* Iterated coupling: state at the beginning of the step; guess of the surface's velocity, its
-   * residual and the one before (n,3) each. */
-  bw_coupler__state start;
-  double *iterate[3];
+  bw_coupler__iteration iteration;
   int iterations;
   double residual;
   int64_t unconverged;
@@ -96,6 +107,9 @@ bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
  * markers, by the solid's present velocities; c->spin and c->V are current after. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[]);
 void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
+/* Sets c->V of the surface particles to what makes the markers move at V (n_surface,3). Collective.
+ */
+void bw_coupler__tell_surface(bw_coupler *c, const double V[]);
 /* Hand the markers over if the surface has moved. At the beginning of a step, so that the forces
  * of the last one can be asked for until then. Collective. */
 bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
@@ -124,7 +138,11 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__blocks_reaction(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
-/* c->force, relaxed, to the force density F of the particles. Local. */
+/* How far outside the particles' centres markers sit. Local. */
+double bw_coupler__marker_offset(const bw_coupler *c);
+/* c->force to the particles, c->load (Collective); that, relaxed, to their force density F (Local).
+ */
+void bw_coupler__carry_force(bw_coupler *c, double out);
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation);
 void bw_coupler__state_release(bw_coupler__state *s);
 bw_status bw_coupler__state_create(const bw_coupler *c,
@@ -138,3 +156,5 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
 bw_status bw_coupler__advance_solid(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
+bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
+void bw_coupler__iteration_release(bw_coupler *c);

@@ -1,62 +1,183 @@
-/* Iterated coupling: a step is repeated until the surface moves as the fluid was told. */
+/* Iterated coupling: a step is repeated until the surface moves as the fluid was told.
+ *
+ * V  the markers' velocity during the step; r(V) = velocity with which the solid answers, less V:
+ *      theta (X_{n+1} - X_n)/dt + (1 - theta) V_{n+1}.
+ *    The displacement sees every motion, also elastic ones shorter than the step, which the
+ * velocity at its end does not. But a light body pushed by F_n moves at a mean velocity that
+ * changes by dt/(2 m) (F_n + F_{n-1}), and rings for ever like the trapezoidal rule; the velocity
+ * at the end changes by dt/m F_n. Together: (1 - theta/2) F_n + theta/2 F_{n-1}, and what rings is
+ * left with -theta/(2 - theta) of itself in every step.
+ *
+ * Interface quasi-Newton with the inverse Jacobian from least squares (Degroote, Bathe &
+ * Vierendeels 2009; as a rule of relaxation, Anderson 1965): of two tries of the step the change dV
+ * of V and the change dr of r are known. What lies of r in the span of these dr is taken away by
+ * the combination of the dV that belongs to it, the rest is relaxed: V <- V - sum_i (q_i.r) d_i +
+ * omega (r - sum_i (q_i.r) q_i), q_i the dr made orthonormal, d_i the dV in the same combination. A
+ * dr that hardly leaves the span of those before says nothing new and is left out. */
+#include "bw_memory.h"
 #include "coupler_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { GUESS, RESIDUAL, BEFORE };
+static const double LEAST_NEW = 1e-6; /* of a dr */
+static const double THETA = 0.8;      /* ringing: -2/3 */
+
+bw_status bw_coupler__iteration_create(bw_coupler *c)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  const int most = c->config.coupling_iterations - 1;
+  t->room = most < BW_COUPLER__COLUMNS ? most : BW_COUPLER__COLUMNS;
+  BW_TRY(bw_coupler__state_create(c, &t->start));
+  BW_TRY(BW_ALLOCATE(&t->X, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&t->answer, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&t->guess, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&t->residual, 3 * c->n));
+  for (int i = 0; i < t->room; i++) {
+    BW_TRY(BW_ALLOCATE(&t->q[i], 3 * c->n));
+    BW_TRY(BW_ALLOCATE(&t->d[i], 3 * c->n));
+  }
+  return BW_OK;
+}
+
+void bw_coupler__iteration_release(bw_coupler *c)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  bw_coupler__state_release(&t->start);
+  bw_release(&t->X);
+  bw_release(&t->answer);
+  bw_release(&t->guess);
+  bw_release(&t->residual);
+  for (int i = 0; i < t->room; i++) {
+    bw_release(&t->q[i]);
+    bw_release(&t->d[i]);
+  }
+}
 
 /* The markers move at the guess; where they are does not change. */
 static bw_status give_guess(bw_coupler *c)
 {
-  memcpy(c->marker_V, c->iterate[GUESS], 3 * c->n_surface * sizeof *c->marker_V);
+  bw_coupler__tell_surface(c, c->iteration.guess);
+  memcpy(c->marker_V, c->iteration.guess, 3 * c->n_surface * sizeof *c->marker_V);
   c->markers_moved = true;
   return c->block > 1 ? bw_coupler__blocks_follow(c) : BW_OK;
 }
 
-/* Residual: velocity that the solid reached less the guess. sums: its square, the square of that
- * velocity, residual before times difference of the residuals, square of this difference. */
-static void compare(bw_coupler *c, double sums[4])
+/* The solid's answer to the guess, less the guess; its norm over that of the answer. */
+static double compare(bw_coupler *c, double dt)
 {
-  double *r = c->iterate[RESIDUAL], *r0 = c->iterate[BEFORE];
-  const double *guess = c->iterate[GUESS];
-  memset(sums, 0, 4 * sizeof *sums);
-  double *V = c->accel; /* scratch */
+  bw_coupler__iteration *t = &c->iteration;
+  double *V = c->accel, sums[2] = {0.0, 0.0}; /* scratch */
+  bw_pd_bond_get_position(c->solid, c->X);
   bw_coupler__marker_velocity(c, V);
-  for (size_t i = 0; i < 3 * c->n_surface; i++) {
-    r0[i] = r[i];
-    r[i] = V[i] - guess[i];
-    sums[0] += r[i] * r[i];
-    sums[1] += V[i] * V[i];
-    sums[2] += r0[i] * (r[i] - r0[i]);
-    sums[3] += (r[i] - r0[i]) * (r[i] - r0[i]);
+  for (size_t i = 0; i < 3 * c->n; i++)
+    t->answer[i] = THETA * (c->X[i] - t->X[i]) / dt + (1.0 - THETA) * c->V[i];
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (size_t d = 0; d < 3; d++) {
+      const size_t i = 3 * q + d, p = 3 * (size_t)c->particle[q] + d;
+      const double answer = V[i] + t->answer[p] - c->V[p];
+      t->residual[i] = answer - t->guess[i];
+      sums[0] += t->residual[i] * t->residual[i];
+      sums[1] += answer * answer;
+    }
+  bw_comm_sum(bw_pd_bond_comm(c->solid), 2, sums);
+  return sums[0] > 0.0 ? sqrt(sums[0] / fmax(sums[1], 1e-300)) : 0.0;
+}
+
+/* out[i] = q_i.a for each column, and a.a behind them, over all ranks. */
+static void project(const bw_coupler *c, const double a[], double out[])
+{
+  const bw_coupler__iteration *t = &c->iteration;
+  for (int i = 0; i <= t->columns; i++) {
+    const double *b = i < t->columns ? t->q[i] : a;
+    out[i] = 0.0;
+    for (size_t k = 0; k < 3 * c->n_surface; k++)
+      out[i] += a[k] * b[k];
   }
-  bw_comm_sum(bw_pd_bond_comm(c->solid), 4, sums);
+  bw_comm_sum(bw_pd_bond_comm(c->solid), t->columns + 1, out);
+}
+
+/* a -= sum_i f_i b_i */
+static void subtract(const bw_coupler *c, const double f[], double *const b[], double a[])
+{
+  for (int i = 0; i < c->iteration.columns; i++)
+    for (size_t k = 0; k < 3 * c->n_surface; k++)
+      a[k] -= f[i] * b[i][k];
+}
+
+/* Behind the last column stand dV and the residual before: they join the columns. */
+static void learn(bw_coupler *c)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  double f[BW_COUPLER__COLUMNS + 1], whole = 0.0, *q = t->q[t->columns], *d = t->d[t->columns];
+  for (size_t k = 0; k < 3 * c->n_surface; k++)
+    q[k] = t->residual[k] - q[k];
+  for (int pass = 0; pass < 2; pass++) { /* Gram and Schmidt; once more for their rounding */
+    project(c, q, f);
+    if (pass == 0) whole = sqrt(f[t->columns]);
+    subtract(c, f, t->q, q);
+    subtract(c, f, t->d, d);
+  }
+  project(c, q, f);
+  const double left = sqrt(f[t->columns]);
+  if (!(left > LEAST_NEW * whole)) return;
+  for (size_t k = 0; k < 3 * c->n_surface; k++)
+    q[k] /= left, d[k] /= left;
+  t->columns++;
+}
+
+/* Makes room for a column: the oldest goes. */
+static void forget(bw_coupler__iteration *t)
+{
+  if (t->columns < t->room) return;
+  double *q = t->q[0], *d = t->d[0];
+  t->columns--;
+  memmove(t->q, t->q + 1, (size_t)t->columns * sizeof *t->q);
+  memmove(t->d, t->d + 1, (size_t)t->columns * sizeof *t->d);
+  t->q[t->columns] = q, t->d[t->columns] = d;
+}
+
+/* The next guess. */
+static void improve(bw_coupler *c)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  const double omega = c->config.load_relaxation;
+  double f[BW_COUPLER__COLUMNS + 1];
+  forget(t);
+  double *rest = t->q[t->columns], *dV = t->d[t->columns];
+  project(c, t->residual, f);
+  memcpy(rest, t->residual, 3 * c->n_surface * sizeof *rest);
+  subtract(c, f, t->q, rest);
+  for (size_t k = 0; k < 3 * c->n_surface; k++)
+    dV[k] = omega * rest[k];
+  subtract(c, f, t->d, dV);
+  for (size_t k = 0; k < 3 * c->n_surface; k++)
+    t->guess[k] += dV[k];
+  memcpy(rest, t->residual, 3 * c->n_surface * sizeof *rest);
 }
 
 bw_status bw_coupler__iterate(bw_coupler *c, double dt)
 {
-  const int most = c->config.coupling_iterations;
+  bw_coupler__iteration *t = &c->iteration;
   const bw_coupler__work work = c->work;
-  double omega = c->config.load_relaxation, sums[4];
-  bw_coupler__state_capture(c, &c->start);
-  memcpy(c->iterate[GUESS], c->marker_V, 3 * c->n_surface * sizeof *c->marker_V);
-  for (int k = 1;; k++) {
+  bw_coupler__state_capture(c, &t->start);
+  bw_pd_bond_get_position(c->solid, t->X);
+  memcpy(t->guess, c->marker_V, 3 * c->n_surface * sizeof *t->guess);
+  t->columns = 0;
+  for (c->iterations = 1;; c->iterations++) {
     c->work = work;
     BW_TRY(give_guess(c));
     BW_TRY(bw_coupler__advance_fluid(c, dt));
     BW_TRY(bw_coupler__load_solid(c, dt, 1.0));
     BW_TRY(bw_coupler__advance_solid(c, dt));
-    compare(c, sums);
-    c->iterations = k;
-    c->residual = sums[0] > 0.0 ? sqrt(sums[0] / fmax(sums[1], 1e-300)) : 0.0;
-    if (c->residual <= c->config.coupling_residual) return BW_OK;
-    if (k == most) break;
-    if (k > 1 && sums[3] > 0.0) omega *= -sums[2] / sums[3]; /* Aitken */
-    for (size_t i = 0; i < 3 * c->n_surface; i++)
-      c->iterate[GUESS][i] += omega * c->iterate[RESIDUAL][i];
-    BW_TRY(bw_coupler__state_restore(c, &c->start));
+    c->residual = compare(c, dt);
+    if (c->residual <= c->config.coupling_residual) break;
+    if (c->iterations == c->config.coupling_iterations) break;
+    if (c->iterations > 1) learn(c);
+    improve(c);
+    BW_TRY(bw_coupler__state_restore(c, &t->start));
   }
-  c->unconverged++;
+  c->unconverged += c->residual > c->config.coupling_residual;
+  memcpy(c->V_before, t->answer, 3 * c->n * sizeof *c->V_before); /* what the fluid was told */
   return BW_OK;
 }

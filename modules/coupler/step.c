@@ -76,6 +76,8 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (!probes || c->config.count_work) bw_coupler__reaction_force(c);
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
+  bw_coupler__carry_force(c, probes ? 0.5 * bw_pd_bond_settings(c->solid)->ds
+                                    : bw_coupler__marker_offset(c));
   bw_coupler__relax_load(c, dt, relaxation);
   bw_coupler__push_solid(c);
   bw_timer_stop(c->timer, BW_PART_PROBES);

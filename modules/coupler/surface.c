@@ -18,7 +18,7 @@ static bool within_box(const bw_grid_view *g, const double x[3])
 }
 
 /* How far outside the particles' centres markers sit (ERRATA 21). */
-static double marker_offset(const bw_coupler *c)
+double bw_coupler__marker_offset(const bw_coupler *c)
 {
   return 0.5 * bw_pd_bond_settings(c->solid)->ds - c->config.retraction * c->h;
 }
@@ -45,7 +45,16 @@ void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
 
 void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 {
-  bw_coupler__surface_velocity(c, marker_offset(c), V);
+  bw_coupler__surface_velocity(c, bw_coupler__marker_offset(c), V);
+}
+
+void bw_coupler__tell_surface(bw_coupler *c, const double V[])
+{
+  double *before = c->root_V; /* scratch */
+  bw_coupler__marker_velocity(c, before);
+  for (size_t q = 0; q < c->n_surface; q++)
+    for (size_t d = 0; d < 3; d++)
+      c->V[3 * (size_t)c->particle[q] + d] += V[3 * q + d] - before[3 * q + d];
 }
 
 /* Surface particles inside the box: probe roots on the nominal surface, half a particle outside
@@ -54,7 +63,7 @@ static void place(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_pd_surface s = bw_pd_interface_surface(c->interface);
-  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds, in = marker_offset(c);
+  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds, in = bw_coupler__marker_offset(c);
   size_t n = 0;
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
@@ -244,6 +253,25 @@ static double power(bw_coupler *c)
   return sum * bw_pd_bond_volume(c->solid);
 }
 
+/* c->load: the surface points' forces, which act `out` outside the particles' centres, on the
+ * particles: force, moment and power are the same. */
+void bw_coupler__carry_force(bw_coupler *c, double out)
+{
+  memset(c->load, 0, 3 * c->n * sizeof *c->load);
+  memset(c->moment, 0, 3 * c->n * sizeof *c->moment);
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const double *N = c->normal + 3 * q, *force = c->force + 3 * q;
+    double *load = c->load + 3 * (size_t)c->particle[q],
+           *moment = c->moment + 3 * (size_t)c->row[q];
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      load[d] = force[d];
+      moment[d] = out * (N[e] * force[f] - N[f] * force[e]);
+    }
+  }
+  bw_pd_interface_twist(c->interface, c->moment, c->load);
+}
+
 /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h):
  * F' <- (1 - w) F' + w F keeps F - F' = (1 - w)/w (F' - F' before) back, which is booked. */
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
@@ -251,9 +279,6 @@ void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
   const double w = relaxation, volume = bw_pd_bond_volume(c->solid);
   const double before = c->config.count_work ? power(c) : 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)
-    c->F[i] *= 1.0 - w;
-  for (size_t q = 0; q < c->n_surface; q++)
-    for (int d = 0; d < 3; d++)
-      c->F[3 * (size_t)c->particle[q] + d] += w * c->force[3 * q + d] / volume;
+    c->F[i] = (1.0 - w) * c->F[i] + w * c->load[i] / volume;
   if (c->config.count_work) c->work.late += dt * (1.0 - w) / w * (power(c) - before);
 }

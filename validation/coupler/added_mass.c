@@ -11,13 +11,13 @@
  *            a free block and a free cylinder, stiff against a step, and an elastic plate on the
  *            floor; both loads.
  * Reference  the recurrence, with g measured on a block that is moved by force.
- * Tolerance  block: 10 %, bisections to 3 % each; what its elasticity (Cauchy number of the step,
- *            c dt = 4 blocks) and its turning change is left to 5 %. Cylinder: the same at the
- * ends, w = 1 and w <= 0.1; between, loaded by the reaction, it holds 10 to 26 % lower than the
- *            recurrence says, not explained yet: reported. Plate: none, as its g is that of the
- *            plate moved as a whole. Iterated coupling has no such limit in the recurrence; what is
- *            left comes from the surface's own motions: with probes a tenth of the fluid's density
- *            has to hold for block and cylinder.
+ * Tolerance  block and cylinder: 5 %, bisections to 3 % each. At four times the step they hold up
+ * to 10 % lower than that, not explained: reported. Plate: none, as its g is that of the plate
+ * moved as a whole. Iterated   coupling is m a_n = -sum_k g_k a_{n-k}, which decays for every ratio
+ * with all these g (zeros of sum g_k z^-k inside the unit circle). A tenth of the fluid's density
+ * has to hold, every step within its residual; the plate by probes is reported: there a small
+ *            motion grows by 1 % a step at the fluid's own density, where that by the reaction
+ *            rests, not explained.
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=600 */
 #include "block.h"
@@ -74,15 +74,25 @@ static bool recurrence_holds(const double g[MEMORY], double ratio, double w)
   return late <= early;
 }
 
-/* Does a small motion of a free block stay small? */
-static bw_status run_holds(const bw_comm *comm, const block_set_up *b, bool *holds)
+/* A run with a small motion: change of the mean velocity in a step, largest late over largest
+ * before; iterations a step and steps that used up theirs. */
+typedef struct {
+  double growth, iterations, unconverged;
+} outcome;
+
+static bw_status watch(const bw_comm *comm, const block_set_up *b, outcome *o)
 {
   block_scene s;
+  bw_coupler_report r;
   bw_status st = block_create(comm, b, &s);
   double early = 0.0, late = 0.0, last = SPEED;
+  *o = (outcome){.growth = INFINITY};
   for (int n = 0; st == BW_OK && n < STEPS; n++) {
     st = bw_coupler_step(s.coupler, b->dt);
+    BW_THEN(st, bw_coupler_measure(s.coupler, &r));
     if (st != BW_OK) break;
+    o->iterations += (double)r.iterations / STEPS;
+    o->unconverged = (double)r.unconverged;
     double mean = 0.0;
     bw_pd_bond_get_velocity(s.solid, s.V);
     for (size_t i = 0; i < s.n; i++)
@@ -94,7 +104,7 @@ static bw_status run_holds(const bw_comm *comm, const block_set_up *b, bool *hol
       early = fmax(early, fabs(mean - last));
     last = mean;
   }
-  *holds = st == BW_OK && late <= early;
+  if (st == BW_OK) o->growth = late / early;
   block_destroy(&s);
   return st == BW_ECFL || st == BW_EDIVERGED ? BW_OK : st; /* that is how growth ends */
 }
@@ -106,12 +116,10 @@ static bw_status critical(const bw_comm *comm, const double g[MEMORY], block_set
 {
   double low = log(0.01), high = log(100.0);
   while (high - low > 0.03) {
-    bool holds = false;
+    outcome o;
     b.ratio = exp(0.5 * (low + high));
-    if (g != NULL)
-      holds = recurrence_holds(g, b.ratio, b.w);
-    else
-      BW_TRY(run_holds(comm, &b, &holds));
+    if (g == NULL) BW_TRY(watch(comm, &b, &o));
+    const bool holds = g == NULL ? o.growth <= 1.0 : recurrence_holds(g, b.ratio, b.w);
     *(holds ? &high : &low) = 0.5 * (low + high);
   }
   *ratio = exp(0.5 * (low + high));
@@ -120,12 +128,6 @@ static bw_status critical(const bw_comm *comm, const double g[MEMORY], block_set
 
 static const char *const body_name[] = {"block", "cylinder", "plate"};
 static const char *const name[] = {[BW_LOAD_PROBES] = "probes", [BW_LOAD_REACTION] = "reaction"};
-
-static bool is_claimed(const block_set_up *b)
-{
-  if (b->body == A_CYLINDER) return b->w == 1.0 || b->w <= 0.1;
-  return b->body == A_BLOCK;
-}
 
 static bw_status explicit_row(bw_validation *v, const double g[MEMORY], const block_set_up *b,
                               double total)
@@ -142,25 +144,38 @@ static bw_status explicit_row(bw_validation *v, const double g[MEMORY], const bl
            "\"w_below_2_over_1_plus_ratio\": %.4g",
            body_name[b->body], name[b->load], b->w, b->dt, total / (2.0 / b->w - 1.0));
   bw_validation_row(v, &(bw_claim){text, "critical_density_ratio", measured, predicted,
-                                   is_claimed(b) ? 0.1 : INFINITY, BW_ANALYTIC,
+                                   b->body != A_PLATE && b->dt <= DT ? 0.05 : INFINITY, BW_ANALYTIC,
                                    "recurrence with the fluid's answer", extra});
   return BW_OK;
 }
 
-static bw_status iterated_row(bw_validation *v, block_set_up b)
+/* A tenth of the fluid's density; --full: and the limit. */
+static bw_status iterated_rows(bw_validation *v, block_set_up b)
 {
-  double measured = NAN;
-  char text[128], extra[128];
+  outcome o;
+  double limit = NAN;
+  char text[128], extra[160];
+  const double tolerance = b.body == A_PLATE && b.load == BW_LOAD_PROBES ? INFINITY : 1.0;
+  static const char holds[] = "a tenth of the fluid's density holds";
   b.iterations = 100;
-  BW_TRY(critical(bw_validation_comm(v), NULL, b, &measured));
-  const bool claimed = b.load == BW_LOAD_PROBES && b.body != A_PLATE;
+  b.ratio = 0.1;
+  BW_TRY(watch(bw_validation_comm(v), &b, &o));
+  snprintf(extra, sizeof extra,
+           "\"body\": \"%s\", \"load\": \"%s\", \"dt\": %g, \"iterations_per_step\": %.1f",
+           body_name[b.body], name[b.load], b.dt, o.iterations);
+  snprintf(text, sizeof text, "growth at density ratio 0.1, %s, %s, iterated", body_name[b.body],
+           name[b.load]);
+  bw_validation_row(
+      v, &(bw_claim){text, "growth_iterated", o.growth, 0.0, tolerance, BW_ANALYTIC, holds, extra});
+  snprintf(text, sizeof text, "steps over their residual, %s, %s", body_name[b.body], name[b.load]);
+  bw_validation_row(v, &(bw_claim){text, "unconverged", o.unconverged, 0.0, 0.0, BW_ANALYTIC,
+                                   "residual 1e-8", extra});
+  if (!bw_validation_full(v)) return BW_OK;
+  BW_TRY(critical(bw_validation_comm(v), NULL, b, &limit));
   snprintf(text, sizeof text, "smallest density ratio that holds, %s, %s, iterated",
            body_name[b.body], name[b.load]);
-  snprintf(extra, sizeof extra, "\"body\": \"%s\", \"load\": \"%s\", \"dt\": %g", body_name[b.body],
-           name[b.load], b.dt);
-  bw_validation_row(v, &(bw_claim){text, "critical_density_ratio_iterated", measured, 0.0,
-                                   claimed ? 0.1 : INFINITY, BW_ANALYTIC,
-                                   "a tenth of the fluid's density, or lighter, holds", extra});
+  bw_validation_row(v, &(bw_claim){text, "critical_density_ratio_iterated", limit, 0.0,
+                                   0.1 * tolerance, BW_ANALYTIC, holds, extra});
   return BW_OK;
 }
 
@@ -189,7 +204,7 @@ static bw_status map(bw_validation *v, block_body body, bw_coupler_load_kind loa
       b.w = relaxation[q];
       BW_TRY(explicit_row(v, g, &b, total));
     }
-    if (s == 0 && (full || (load == BW_LOAD_PROBES && body != A_PLATE))) BW_TRY(iterated_row(v, b));
+    if (s == 0) BW_TRY(iterated_rows(v, b));
   }
   return BW_OK;
 }

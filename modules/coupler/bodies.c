@@ -42,14 +42,20 @@ void bw_coupler__bodies_release(bw_coupler *c)
   bw_release(&c->link);
 }
 
-/* Load of the fluid and weight less buoyancy: the fluid's pressure has no hydrostatic part. */
+/* Load of the fluid and weight less buoyancy: the fluid's pressure has no hydrostatic part, nor has
+ * it the gradient that drives it. Probes miss both; the markers hold the fluid inside against the
+ * latter, so that their reaction has it. */
 void bw_coupler__push_solid(bw_coupler *c)
 {
-  const double *g = c->config.gravity;
+  const bool probed = c->config.load == BW_LOAD_PROBES;
   const double excess = bw_pd_bond_settings(c->solid)->rho - c->config.rho;
+  double more[3];
+  for (int d = 0; d < 3; d++)
+    more[d] = excess * c->config.gravity[d];
+  if (probed) more[0] += c->config.rho * bw_ns_channel_driving(c->fluid);
   for (size_t i = 0; i < c->n; i++)
     for (int d = 0; d < 3; d++)
-      c->V[3 * i + d] = c->F[3 * i + d] + excess * g[d];
+      c->V[3 * i + d] = c->F[3 * i + d] + more[d];
   bw_pd_bond_set_force(c->solid, c->V);
 }
 
@@ -64,6 +70,15 @@ static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
     if ((!open_only || c->open[d][1]) && x[d] > g->length[d] + half) return true;
   }
   return false;
+}
+
+double bw_coupler__wetted(bw_coupler *c)
+{
+  size_t n = 0;
+  bw_pd_bond_get_position(c->solid, c->X);
+  for (size_t i = 0; i < c->n; i++)
+    n += !is_beyond(c, c->X + 3 * i, false);
+  return (double)n * bw_pd_bond_volume(c->solid);
 }
 
 /* c->gone: particles beyond an outflow. Returns how many on all ranks. */

@@ -111,8 +111,9 @@ int bw_coupler_substeps(const bw_coupler *c, double dt);
 /* What was seen in the last step. */
 typedef struct {
   double force_reaction[3];       /* on the solid, from the markers, minus rho sum Q dV [M L/T^2] */
-  double force_probe[3];          /* on the solid, sum t A over unblocked probes; NaN after a step
-                                     that was not watched */
+  double force_probe[3];          /* on the solid, sum t A over unblocked probes, and the gradient
+                                     that drives the fluid times its volume, as p is without it;
+                                     NaN after a step that was not watched */
   double force_control_volume[3]; /* on the solid and the fluid inside it, from the momentum
                                      balance of a box around it; 0 when no box was watched */
   double work_given;              /* by the fluid through the markers since the start:

@@ -128,6 +128,7 @@ void bw_coupler__count_work(bw_coupler *c, double dt);
 bw_status bw_coupler__bodies_create(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__bodies_release(bw_coupler *c);
 void bw_coupler__push_solid(bw_coupler *c);
+double bw_coupler__wetted(bw_coupler *c); /* volume of this rank's particles in the box [L^3] */
 bw_status bw_coupler__let_go(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__count_mass(bw_coupler *c, double mass[3]);
 

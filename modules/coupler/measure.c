@@ -39,6 +39,7 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   }
   for (size_t q = 0; q < c->n_surface; q++)
     r.surface_area += c->area[q];
+  r.force_probe[0] += c->config.rho * bw_ns_channel_driving(c->fluid) * bw_coupler__wetted(c);
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);

@@ -196,14 +196,18 @@ void bw_coupler__find_reach(bw_coupler *c)
 }
 
 /* Velocity and spin of the surface at the probes' roots; its acceleration over the last step, which
- * is smoother than that of the last sub-step, with the lattice's acoustics. Collective. */
+ * is smoother than that of the last sub-step, with the lattice's acoustics, less what drives the
+ * fluid: with that alone fluid would fall along without pressure. Collective. */
 static void surface_motion(bw_coupler *c, double dt)
 {
+  const double drive[3] = {bw_ns_channel_driving(c->fluid)};
   bw_coupler__surface_velocity(c, 0.5 * bw_pd_bond_settings(c->solid)->ds, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
-    for (int d = 0; d < 3; d++)
-      c->accel[3 * q + d] = c->held ? 0.0 : (c->V[3 * p + d] - c->V_before[3 * p + d]) / dt;
+    for (int d = 0; d < 3; d++) {
+      const double a = c->held ? 0.0 : (c->V[3 * p + d] - c->V_before[3 * p + d]) / dt;
+      c->accel[3 * q + d] = a - drive[d];
+    }
   }
 }
 

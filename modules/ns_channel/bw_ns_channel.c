@@ -193,6 +193,11 @@ void bw_ns_channel_set_time(bw_ns_channel *ns, double t)
   ns->time = t;
 }
 
+double bw_ns_channel_driving(const bw_ns_channel *ns)
+{
+  return ns->applied;
+}
+
 double bw_ns_channel_gradient(const bw_ns_channel *ns)
 {
   return ns->gradient;

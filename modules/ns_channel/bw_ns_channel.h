@@ -143,6 +143,10 @@ void bw_ns_channel_control_volume(bw_ns_channel *ns, double force[3]);
  * flow); from the next predict on. No effect without forcing. Local, the same on all ranks. */
 void bw_ns_channel_set_forcing(bw_ns_channel *ns, double value);
 
+/* The mean gradient -dp/dx/rho that drove the last step [L/T^2], 0 without forcing. The pressure
+ * field is without it: the whole one falls by so much more per length. Local. */
+double bw_ns_channel_driving(const bw_ns_channel *ns);
+
 /* The gradient that the constant flow rate starts the next step from [L/T^2]: with u, v, w, p and
  * the time the whole state of the solver (a checkpoint saves it). Local. */
 double bw_ns_channel_gradient(const bw_ns_channel *ns);

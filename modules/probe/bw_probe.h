@@ -65,6 +65,7 @@ bw_status bw_probe_set_points(bw_probe *probe, size_t n, const double X[],
 void bw_probe_set_velocity(bw_probe *probe, const double V[], const double spin[]);
 
 /* traction (n,3) [M/(L T^2)] at the points, from u[3] [L/T] and p/rho (valid halos) and the
- * acceleration A (n,3) [L/T^2] of the surface (NULL: zero). flag (n) may be NULL. Collective. */
+ * acceleration A (n,3) [L/T^2] of the surface (NULL: zero), less the force per mass on the fluid
+ * that its pressure does not hold (a gradient that drives it). flag (n) may be NULL. Collective. */
 void bw_probe_traction(bw_probe *probe, bw_real *const u[3], const bw_real *p, const double A[],
                        double traction[], unsigned char flag[]);

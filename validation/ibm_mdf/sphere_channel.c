@@ -42,6 +42,7 @@ typedef struct {
   bw_probe *probe;
   body_surface wall; /* points on the nominal surface */
   double *traction;  /* (n,3) there */
+  double *drive;     /* (n,3) less the acceleration that drives the fluid: p is without it */
   double h;
 } scene;
 
@@ -54,6 +55,7 @@ static void scene_destroy(scene *s)
 {
   body_surface_free(&s->wall);
   bw_release(&s->traction);
+  bw_release(&s->drive);
   bw_probe_destroy(&s->probe);
   body_flow_destroy(&s->flow);
 }
@@ -93,6 +95,7 @@ static bw_status make_probes(const bw_comm *comm, const set_up *b, scene *s)
   config.profile = BW_PROBE_QUADRATIC;
   BW_TRY(surface(comm, b, 0.5, s->h, &s->wall));
   BW_TRY(BW_ALLOCATE(&s->traction, 3 * s->wall.n));
+  BW_TRY(BW_ALLOCATE(&s->drive, 3 * s->wall.n));
   BW_TRY(bw_probe_create(s->flow.grid, &config, &s->probe));
   return bw_probe_set_points(s->probe, s->wall.n, s->wall.X, s->wall.N);
 }
@@ -120,11 +123,14 @@ static drag measure(scene *s)
   double box[3];
   bw_ns_channel_control_volume(s->flow.fluid, box);
   d.control_volume = -box[0] / unit;
-  bw_probe_traction(s->probe, u, s->flow.pressure, NULL, s->traction, NULL);
+  const double driving = bw_ns_channel_driving(s->flow.fluid);
+  for (size_t q = 0; q < s->wall.n; q++)
+    s->drive[3 * q] = -driving;
+  bw_probe_traction(s->probe, u, s->flow.pressure, s->drive, s->traction, NULL);
   for (size_t q = 0; q < s->wall.n; q++)
     d.probe += s->traction[3 * q] * s->wall.dV[q] / s->h / unit;
   bw_comm_sum(bw_grid_comm(s->flow.grid), 1, &d.probe);
-  d.probe += bw_ns_channel_summary(s->flow.fluid).pressure_gradient * PI / 6.0 / unit;
+  d.probe += driving * PI / 6.0 / unit;
   return d;
 }
 
@@ -229,7 +235,7 @@ static bw_status run(bw_validation *v)
                                    bw_validation_order(2.0, bare[0], 1.0, bare[1]), 1.0, 0.3,
                                    BW_ORDER, "the wall is a fixed number of spacings off", NULL});
   if (!bw_validation_full(v)) return BW_OK;
-  for (int cells = 8; cells <= 16; cells += 4)
+  for (int cells = 8; cells <= 12; cells += 4)
     BW_TRY(one_case(v, &(set_up){cells, 4.0, 2.0, NAN, 0.5}, &error));
   BW_TRY(one_case(v, &(set_up){16, 2.0, 2.0, NAN, 0.25}, &error));
   return one_case(v, &(set_up){8, 2.0, 3.0, NAN, 0.5}, &error);

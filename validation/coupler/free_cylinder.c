@@ -14,11 +14,13 @@
  *            forcing knows the surface to 0.1 h (Breugem 2012): 0.7 h of the diameter.
  *            fall: reported, no claim. It goes with D^-1.37 (Faxen's series), so that 0.7 h would
  *            explain 12 % with 8 cells; where between the two the surface is felt is not derived.
- *            (By the reaction 8 and, with 16 cells, 4.6 % are measured; with the nominal surface at
- * the mean height of the particles' open sides, ds/(2 sum |n_i|), 4.3 and 2.8 %.) couette,
- * poiseuille: the lags behind a point of the fluid, 3.6 and 3 %, go with D^2: 2 (0.7/8) of them,
- * 0.6 %, and 0.4 % for slip, which is of the order of the viscous number of the step, 0.08, times
- * the lag. BUILD modules=coupler TEST  ranks=1 timeout=300 */
+ *            By the reaction 8 and, with 16 cells, 4.6 % are measured; with the nominal surface at
+ *            the mean height of the particles' open sides, ds/(2 sum |n_i|), 4.3 and 2.8 %.
+ *            couette, poiseuille: the lags behind a point of the fluid, 3.6 and 3 %, go with D^2:
+ *            2 (0.7/8) of them, 0.6 %, and 0.4 % for slip, which is of the order of the viscous
+ *            number of the step, 0.08, times the lag.
+ * BUILD modules=coupler
+ * TEST  ranks=1 timeout=300 */
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "bw_pd_shape.h"

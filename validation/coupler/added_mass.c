@@ -11,13 +11,14 @@
  *            a free block and a free cylinder, stiff against a step, and an elastic plate on the
  *            floor; both loads.
  * Reference  the recurrence, with g measured on a block that is moved by force.
- * Tolerance  block and cylinder: 5 %, bisections to 3 % each. At four times the step they hold up
- * to 10 % lower than that, not explained: reported. Plate: none, as its g is that of the plate
- * moved as a whole. Iterated   coupling is m a_n = -sum_k g_k a_{n-k}, which decays for every ratio
- * with all these g (zeros of sum g_k z^-k inside the unit circle). A tenth of the fluid's density
- * has to hold, every step within its residual; the plate by probes is reported: there a small
- *            motion grows by 1 % a step at the fluid's own density, where that by the reaction
- *            rests, not explained.
+ * Tolerance  block and cylinder: 5 %, bisections to 3 % each. At four times the step they hold
+ *            up to 10 % lower than that, not explained: reported. Plate: none, as its g is that of
+ *            the plate moved as a whole.
+ * Iterated   coupling is m a_n = -sum_k g_k a_{n-k}, which decays for every ratio with all these
+ *            g (zeros of sum g_k z^-k inside the unit circle). A tenth of the fluid's density has
+ *            to hold, every step within its residual; the plate by probes is reported: there a
+ *            small motion grows by 1 % a step at the fluid's own density, where that by the
+ *            reaction rests, not explained.
  * BUILD modules=coupler
  * TEST  ranks=1 timeout=600 */
 #include "block.h"

@@ -3,6 +3,8 @@
  * TEST ranks=1,2,3 timeout=240 */
 #include "cube_scene.h"
 
+#include <stdio.h>
+
 static const double STEP = 1.0e-3;
 
 /* The cube anew, of a tenth of the fluid's density. Stiff: the coupling is tested, not the lattice.
@@ -97,5 +99,50 @@ START_TEST(iterated_step_meets_its_residual)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(iterated_step_meets_its_residual)};
+/* Saved, gone on, loaded, gone on again: the same velocities, to round-off. */
+START_TEST(a_restart_iterates_the_same_way)
+{
+  scene s = build(0.3, 0.1);
+  const double c = make_light(&s);
+  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  const char *path = "test_iterate.h5";
+  double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
+  bw_checkpoint *ck = NULL;
+  bw_coupler_config config = bw_coupler_config_default();
+  config.rho = RHO;
+  config.nu = 0.05;
+  config.coupling_iterations = 60;
+  config.coupling_residual = fmax(1e-5, c * (double)BW_REAL_EPSILON);
+  bw_check_ok(bw_coupler_create(&config, s.fluid, s.solid, &s.coupler));
+  bw_coupler_hold_solid(s.coupler, false);
+  bw_check_ok(bw_coupler_step(s.coupler, STEP));
+  bw_check_ok(bw_checkpoint_create(bw_check_world(), path, &ck));
+  bw_check_ok(bw_coupler_save(s.coupler, ck));
+  bw_check_ok(bw_checkpoint_close(&ck));
+  for (int round = 0; round < 2; round++) {
+    for (int q = 0; q < 2; q++)
+      bw_check_ok(bw_coupler_step(s.coupler, STEP));
+    bw_check_ok(BW_ALLOCATE(&V[round], n));
+    bw_pd_bond_get_velocity(s.solid, V[round]);
+    if (round > 0) break;
+    bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
+    bw_check_ok(bw_coupler_load(s.coupler, ck));
+    bw_check_ok(bw_checkpoint_close(&ck));
+  }
+  for (size_t i = 0; i < n; i++) {
+    most[0] = fmax(most[0], fabs(V[0][i]));
+    most[1] = fmax(most[1], fabs(V[1][i] - V[0][i]));
+  }
+  bw_comm_max(bw_check_world(), 2, most);
+  ck_assert_double_gt(most[0], 0.0);
+  ck_assert_double_lt(most[1], ROUND_OFF * most[0]);
+  bw_release(&V[0]);
+  bw_release(&V[1]);
+  destroy(&s);
+  if (bw_comm_rank(bw_check_world()) == 0) remove(path);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(iterated_step_meets_its_residual),
+                                      BW_TEST(a_restart_iterates_the_same_way)};
 BW_CHECK_MAIN("iterate", tests)

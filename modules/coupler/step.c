@@ -6,9 +6,10 @@
 
 int bw_coupler_substeps(const bw_coupler *c, double dt)
 {
-  const double stable = c->config.solid_safety * bw_pd_bond_dt_max(c->solid);
-  const double least = fmin(stable, bw_pd_bond_dt_contact(c->solid)); /* no bonds: infinite */
-  return (int)fmax(1.0, ceil(dt / least));
+  /* The squares of their frequencies add: a particle held by its bonds and pressed on all sides. */
+  const double rate =
+      hypot(1.0 / bw_pd_bond_dt_max(c->solid), 1.0 / bw_pd_bond_dt_contact(c->solid));
+  return (int)fmax(1.0, ceil(dt * rate / c->config.solid_safety));
 }
 
 bool bw_coupler__probes_look(const bw_coupler *c)

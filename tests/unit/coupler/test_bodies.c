@@ -24,6 +24,8 @@ START_TEST(a_block_leaves_and_its_mass_is_known)
                                 .load = BW_LOAD_REACTION};
   bodies_scene s = bodies_build(&set_up);
   const double of_one = 2.0 * H * H * H, mass = 25 * of_one;
+  const double rate = hypot(1 / bw_pd_bond_dt_max(s.solid), 1 / bw_pd_bond_dt_contact(s.solid));
+  ck_assert_int_eq(bw_coupler_substeps(s.coupler, 3.5 * 0.8 / rate), 4); /* bonds and contact */
   double part_out = 0.0, V[2][3 * MOST];
   bw_coupler_report r = {0};
   int q = 0;

@@ -201,9 +201,9 @@ static bw_status read_history(const char *path, outcome *o)
 static bw_status full(bw_validation *v)
 {
   const char *root = getenv("BW_SOURCE_DIR");
+  outcome o = {.particles = NAN}; /* at rest: s1's, from which s2 and s3 go on */
   for (int s = 0; s < 3; s++) {
     porous_config q;
-    outcome o = {.particles = NAN};
     char path[512];
     BW_TRY(load_case(bw_validation_comm(v), run_name[s], &q));
     snprintf(path, sizeof path, "%s/out/porous-%s/history.csv", root != NULL ? root : ".",

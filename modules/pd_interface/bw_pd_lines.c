@@ -120,6 +120,21 @@ static inline void dot(lanes a[3], lanes b[3], lanes out)
     out[k] = a[0][k] * b[0][k] + a[1][k] * b[1][k] + a[2][k] * b[2][k];
 }
 
+/* Present elements a, their products c_r = a_{r+1} x a_{r+2} and det = a_r.c_r; b (NULL: not asked
+ * for) the rates of the elements. */
+static void present(const bw_pd_interface *pi, size_t block, const bw_pd_bond_motion *now,
+                    lanes a[3][3], lanes (*b)[3], lanes c[3][3], lanes det)
+{
+  const bw_pd_interface__lines *l = &pi->lines[block];
+  at_rest(pi, block, a);
+  add_between(l, now->u, a);
+  if (b != NULL) add_between(l, now->v, b);
+  complete(l, a, b);
+  for (int r = 0; r < 3; r++)
+    add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c[r]);
+  dot(a[0], c[0], det);
+}
+
 /* What the particle's line elements differ from the lattice's, in a cloud. */
 static void note_cloud(bw_pd_interface *pi, size_t row, size_t h)
 {
@@ -184,19 +199,13 @@ void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion
 {
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
     const bw_pd_interface__lines *l = &pi->lines[block];
-    lanes a[3][3], n[3] = {{0}}, det;
-    at_rest(pi, block, a);
-    add_between(l, now->u, a);
-    complete(l, a, NULL);
-    for (int r = 0; r < 3; r++) {
-      lanes c[3] = {{0}};
-      add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c);
-      if (r == 0) dot(a[0], c, det);
+    lanes a[3][3], c[3][3] = {{{0}}}, n[3] = {{0}}, det;
+    present(pi, block, now, a, NULL, c, det);
+    for (int r = 0; r < 3; r++)
       for (int d = 0; d < 3; d++)
 #pragma omp simd
         for (int k = 0; k < ROWS; k++)
-          n[d][k] += copysign(l->hold[r][k], l->hold[r][k] * det[k]) * c[d][k];
-    }
+          n[d][k] += copysign(l->hold[r][k], l->hold[r][k] * det[k]) * c[r][d][k];
     tell_block(pi, block, n);
   }
 }
@@ -218,18 +227,10 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
 {
   const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, true);
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
-    const bw_pd_interface__lines *l = &pi->lines[block];
-    lanes a[3][3], b[3][3] = {{{0}}}, w[3] = {{0}}, half;
-    at_rest(pi, block, a);
-    add_between(l, now.u, a);
-    add_between(l, now.v, b);
-    complete(l, a, b);
-    for (int r = 0; r < 3; r++) {
-      lanes c[3] = {{0}};
-      add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c);
-      if (r == 0) dot(a[0], c, half);
-      add_cross(c, b[r], w);
-    }
+    lanes a[3][3], b[3][3] = {{{0}}}, c[3][3] = {{{0}}}, w[3] = {{0}}, half;
+    present(pi, block, &now, a, b, c, half);
+    for (int r = 0; r < 3; r++)
+      add_cross(c[r], b[r], w);
     half_inverse(a, half);
     for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
@@ -272,26 +273,19 @@ void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double fo
   double *all = pi->borne;
   memset(all, 0, 3 * pi->n_extended * sizeof *all);
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
-    const bw_pd_interface__lines *l = &pi->lines[block];
-    lanes a[3][3], g[3][3] = {{{0}}}, M[3] = {{0}}, half;
+    lanes a[3][3], c[3][3] = {{{0}}}, g[3][3] = {{{0}}}, M[3] = {{0}}, half;
     for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         M[d][row % ROWS] = moment[3 * row + d];
-    at_rest(pi, block, a);
-    add_between(l, now.u, a);
-    complete(l, a, NULL);
-    for (int r = 0; r < 3; r++) {
-      lanes c[3] = {{0}};
-      add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c);
-      if (r == 0) dot(a[0], c, half);
-      add_cross(M, c, g[r]);
-    }
+    present(pi, block, &now, a, NULL, c, half);
+    for (int r = 0; r < 3; r++)
+      add_cross(M, c[r], g[r]);
     half_inverse(a, half);
     for (int r = 0; r < 3; r++)
       for (int d = 0; d < 3; d++)
         for (int k = 0; k < ROWS; k++)
           g[r][d][k] *= half[k];
-    hand_over(l, a, g);
+    hand_over(&pi->lines[block], a, g);
     add_forces(pi, block, g, all);
   }
   bw_pd_bond_sum_extended(pi->pd, all);

@@ -81,3 +81,31 @@ static inline void body_rows_release(body_rows *r)
   bw_release(&r->gradient);
   bw_release(&r->stress);
 }
+
+/* r->X holds the displacement of the prescribed particles on entry; on exit r->stress is that of
+ * the body at rest with it (linear solve). */
+static inline bw_status body_at_rest(bw_pd_bond *pd, body_rows *r)
+{
+  bw_pd_static_config config = bw_pd_static_config_default();
+  bw_pd_static_report report;
+  config.tolerance = 1e-6;
+  BW_TRY(bw_pd_static_linear(pd, &config, r->X, &report));
+  for (size_t k = 0; k < 3 * bw_pd_bond_count(pd); k++)
+    r->X[k] += r->X0[k];
+  bw_pd_bond_set_state(pd, r->X, r->V);
+  bw_pd_stress_compute(pd, NULL, r->stress);
+  return BW_OK;
+}
+
+/* A body of `side` sites in each of `dims` directions, held along its edge. */
+typedef struct {
+  int dims, side, edge;
+} body_framed;
+
+static inline int body_frame(const int32_t site[3], const void *data)
+{
+  const body_framed *q = data;
+  for (int k = 0; k < q->dims; k++)
+    if (site[k] < q->edge || site[k] >= q->side - q->edge) return BW_PD_PRESCRIBED;
+  return BW_PD_FREE;
+}

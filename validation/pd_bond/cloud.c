@@ -59,24 +59,9 @@ static void claim(bw_validation *v, const char *what, const char *quantity, doub
                                    .extra = extra});
 }
 
-/* A square with an edge that is held. */
-typedef struct {
-  int side, edge;
-} square;
-
-static int held_edge(const int32_t site[3], const void *data)
-{
-  const square *q = data;
-  for (int k = 0; k < 2; k++)
-    if (site[k] < q->edge || site[k] >= q->side - q->edge) return BW_PD_PRESCRIBED;
-  return BW_PD_FREE;
-}
-
 /* Mean stress of the middle half under the strain e (xx, yy, xy), over E. */
-static bw_status strained(bw_pd_bond *pd, const square *q, const double e[3], double stress[3])
+static bw_status strained(bw_pd_bond *pd, const body_framed *q, const double e[3], double stress[3])
 {
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
   body_rows r;
   const double low = 0.25 * q->side, high = 0.75 * q->side;
   BW_TRY(body_rows_make(pd, &r));
@@ -85,12 +70,7 @@ static bw_status strained(bw_pd_bond *pd, const square *q, const double e[3], do
     r.X[3 * i] = STRAIN * (e[0] * x + e[2] * y);
     r.X[3 * i + 1] = STRAIN * (e[2] * x + e[1] * y);
   }
-  config.tolerance = 1e-6;
-  BW_TRY(bw_pd_static_linear(pd, &config, r.X, &report));
-  for (size_t k = 0; k < 3 * bw_pd_bond_count(pd); k++)
-    r.X[k] += r.X0[k];
-  bw_pd_bond_set_state(pd, r.X, r.V);
-  bw_pd_stress_compute(pd, NULL, r.stress);
+  BW_TRY(body_at_rest(pd, &r));
   const size_t component[3] = {0, 1, 5};
   for (size_t k = 0; k < 3; k++)
     stress[k] = body_mean(pd, r.X0, (double[3]){low, low, -1}, (double[3]){high, high, 1},
@@ -105,9 +85,9 @@ static bw_status stiffness(const bw_comm *comm, const bw_pd_bond_config *c, doub
 {
   static const double strains[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}};
   const int edge = (int)(c->horizon_ratio + 2);
-  const square q = {40 + 2 * edge, edge};
+  const body_framed q = {2, 40 + 2 * edge, edge};
   bw_pd_bond *pd = NULL;
-  BW_TRY(body_make(comm, c, (int[3]){q.side, q.side, 1}, held_edge, &q, &pd));
+  BW_TRY(body_make(comm, c, (int[3]){q.side, q.side, 1}, body_frame, &q, &pd));
   for (int k = 0; k < 3; k++) {
     double stress[3];
     BW_TRY(strained(pd, &q, strains[k], stress));

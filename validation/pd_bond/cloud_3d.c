@@ -22,36 +22,17 @@
 enum { CLOUDS = 3 };
 static const double E = 5, STRAIN = 1e-6;
 
-/* A cube with an edge that is held. */
-typedef struct {
-  int side, edge;
-} cube;
-
-static int held_edge(const int32_t site[3], const void *data)
-{
-  const cube *q = data;
-  for (int k = 0; k < 3; k++)
-    if (site[k] < q->edge || site[k] >= q->side - q->edge) return BW_PD_PRESCRIBED;
-  return BW_PD_FREE;
-}
-
 /* Mean stress (xx, yy, zz, yz, xz, xy), over E and the strain, of the inner cube: stretched along
  * x, or sheared in xy by the engineer's strain. */
-static bw_status strained(bw_pd_bond *pd, const cube *q, bool shear, double stress[6])
+static bw_status strained(bw_pd_bond *pd, const body_framed *q, bool shear, double stress[6])
 {
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
   body_rows r;
   const double low = q->edge + 2, high = q->side - q->edge - 2;
   const size_t n = bw_pd_bond_count(pd);
   BW_TRY(body_rows_make(pd, &r));
   for (size_t p = 0; p < n; p++)
     r.X[3 * p] = STRAIN * r.X0[3 * p + shear];
-  BW_TRY(bw_pd_static_linear(pd, &config, r.X, &report));
-  for (size_t k = 0; k < 3 * n; k++)
-    r.X[k] += r.X0[k];
-  bw_pd_bond_set_state(pd, r.X, r.V);
-  bw_pd_stress_compute(pd, NULL, r.stress);
+  BW_TRY(body_at_rest(pd, &r));
   for (size_t k = 0; k < 6; k++)
     stress[k] = body_mean(pd, r.X0, (double[3]){low, low, low}, (double[3]){high, high, high},
                           r.stress + k, 6) /
@@ -74,10 +55,10 @@ static bw_status add_stiffness(const bw_comm *comm, double disorder, int seed, c
   c.disorder = disorder, c.disorder_seed = seed;
   c.calibration = BW_PD_CALIBRATION_LATTICE;
   c.surface_correction = BW_PD_SURFACE_NONE;
-  const cube q = {27, 5};
+  const body_framed q = {3, 27, 5};
   double stretched[6], sheared[6];
   bw_pd_bond *pd = NULL;
-  BW_TRY(body_make(comm, &c, (int[3]){q.side, q.side, q.side}, held_edge, &q, &pd));
+  BW_TRY(body_make(comm, &c, (int[3]){q.side, q.side, q.side}, body_frame, &q, &pd));
   BW_TRY(strained(pd, &q, false, stretched));
   BW_TRY(strained(pd, &q, true, sheared));
   C->c11 += stretched[0];

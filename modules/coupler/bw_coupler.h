@@ -80,8 +80,7 @@ typedef struct {
   double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
                                 that ends the iteration [-]             default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
-  bool
-      count_work; /* work_given and work_late of the report (an exchange per step)  default false */
+  bool count_work;   /* work_given, work_late of the report (an exchange a step) default false */
   bool walled[3][2]; /* sides of the box the solid leans on: no surface there */
 } bw_coupler_config;
 

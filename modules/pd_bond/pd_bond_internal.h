@@ -4,11 +4,13 @@
  * the storage, in lattice order: the bounding box of their sites with holes where it is well
  * filled, without holes otherwise. Which axis is fastest, bw_pd_bond__axes says. Displacements are
  * stored there, so the neighbours of successive owners in one lattice direction are contiguous
- * nearly always. Bonds. A block is BW_PD_LANES successive storage places, some of them own
- * particles. A slot is one direction of a block: where the neighbours start and which of the bonds
- * exist (family) and hold (mask). Where neighbours of one direction are not contiguous, the block
- * has several slots of that direction with disjoint families. A block's slots are in stencil order,
- * so the sum over a family runs in the same order on any number of ranks. */
+ * nearly always.
+ *
+ * Bonds. A block is BW_PD_LANES successive storage places, some of them own particles. A slot is
+ * one direction of a block: where the neighbours start and which of the bonds exist (family) and
+ * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
+ * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
+ * a family runs in the same order on any number of ranks. */
 #pragma once
 #include "bw_exchange.h"
 #include "bw_pd_bond.h"

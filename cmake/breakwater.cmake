@@ -1,7 +1,7 @@
 # The verbs the top-level file is written in. Programs state in a head line what they need:
 #   BUILD modules=probe,ns_channel libs=gsl          what is linked besides their own module
 #   BUILD case=porous_breakup                        all sources of that case but its main
-#   TEST  ranks=1,2 timeout=120 args="--check"       how ctest runs them (default: ranks=1)
+#   TEST  ranks=1,2 timeout=7200 args="--check"      how ctest runs them; every test says its ranks
 include(GNUInstallDirs)
 find_package(MPI REQUIRED COMPONENTS C)
 find_package(PkgConfig REQUIRED)
@@ -85,66 +85,153 @@ function(bw_stamp name source)
                ${BW_VERSION_HEADER})
 endfunction()
 
-# The words of a head line: _bw_head(file BUILD modules out)
-function(_bw_head file word key out)
-  file(STRINGS ${file} lines REGEX "^[ /*]*${word} .*${key}=" LIMIT_COUNT 1)
-  set(value "")
-  if(lines MATCHES "[ ]${key}=\"([^\"]*)\"")
-    set(value "${CMAKE_MATCH_1}")
-  elseif(lines MATCHES "[ ]${key}=([^ *]+)")
-    string(REPLACE "," ";" value "${CMAKE_MATCH_1}")
+# Stop the configuration because of a head line, or where one is missing.
+function(_bw_head_error file)
+  file(RELATIVE_PATH place ${PROJECT_SOURCE_DIR} ${file})
+  list(JOIN ARGN "" what)
+  message(FATAL_ERROR " ${place}: ${what}") # after a space CMake leaves the line whole
+endfunction()
+
+# One word KEY=VALUE of a head line: is the key known here, and the value one of its kind?
+function(_bw_head_word file word key value)
+  if(word STREQUAL "TEST" AND key STREQUAL "ranks")
+    set(kind "whole numbers with commas between, e.g. ranks=1,2,4")
+    set(pattern "^[1-9][0-9]*(,[1-9][0-9]*)*$")
+  elseif(word STREQUAL "TEST" AND key STREQUAL "timeout")
+    # a limit ends what hangs; whether a machine is busy must not matter
+    set(kind "seconds, ${BW_LEAST_TIMEOUT} at least")
+    set(pattern "^[1-9][0-9]*$")
+    if(value MATCHES "${pattern}" AND value LESS BW_LEAST_TIMEOUT)
+      _bw_head_error(${file} "TEST ${key}=${value} must be ${kind}")
+    endif()
+  elseif(word STREQUAL "TEST" AND key STREQUAL "args")
+    set(kind "what the program is started with, e.g. args=\"--check\"")
+    set(pattern ".")
+  elseif(word STREQUAL "BUILD" AND key MATCHES "^(modules|libs|case)$")
+    set(kind "names with commas between")
+    set(pattern "^[A-Za-z0-9_.-]+(,[A-Za-z0-9_.-]+)*$")
+  elseif(word STREQUAL "TEST")
+    _bw_head_error(${file} "TEST has the keys ranks, timeout and args, not ${key}")
+  else()
+    _bw_head_error(${file} "BUILD has the keys modules, libs and case, not ${key}")
   endif()
-  set(${out} "${value}" PARENT_SCOPE)
+  if(NOT value MATCHES "${pattern}")
+    _bw_head_error(${file} "${word} ${key}=${value} must be ${kind}")
+  endif()
+endfunction()
+
+# What BUILD names must be there.
+function(_bw_head_names file modules case)
+  foreach(module ${modules})
+    if(NOT TARGET bw_${module})
+      _bw_head_error(${file} "BUILD modules=${module}: there is no such module")
+    endif()
+  endforeach()
+  if(case AND NOT IS_DIRECTORY ${PROJECT_SOURCE_DIR}/cases/${case})
+    _bw_head_error(${file} "BUILD case=${case}: there is no such folder of cases/")
+  endif()
+endfunction()
+
+# Reads the head of a program: head_ranks, head_timeout, head_args, head_modules, head_libs,
+# head_case, those not said being empty. A head is a line of its own, ` * TEST key=value ...` or
+# ` * BUILD ...`, one of each at most. What cannot be read stops the configuration: a head that was
+# overlooked would be a test that does not run.
+function(_bw_read_head file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  foreach(key ranks timeout args modules libs case)
+    set(head_${key} "")
+  endforeach()
+  file(STRINGS ${file} lines REGEX "^[ /*]*(TEST|BUILD)([ ]|$)|(TEST|BUILD)[ ]+[A-Za-z]+[ ]*=")
+  set(words_seen "")
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "^[ /*]*(TEST|BUILD)([^*]*)")
+      _bw_head_error(${file} "TEST and BUILD begin a line of their own, not as in: ${line}")
+    endif()
+    set(word ${CMAKE_MATCH_1})
+    string(STRIP "${CMAKE_MATCH_2}" rest)
+    if(word IN_LIST words_seen)
+      _bw_head_error(${file} "a second line of ${word}: ${line}")
+    endif()
+    list(APPEND words_seen ${word})
+    while(NOT rest STREQUAL "")
+      if(NOT rest MATCHES "^([a-z]+)=(\"([^\"]*)\"|[^ \"]+)[ ]*(.*)$")
+        _bw_head_error(${file} "${word} is followed by words key=value, not by: ${rest}")
+      endif()
+      set(key ${CMAKE_MATCH_1})
+      set(value "${CMAKE_MATCH_2}")
+      set(rest "${CMAKE_MATCH_4}")
+      string(REPLACE "\"" "" value "${value}")
+      _bw_head_word(${file} ${word} ${key} "${value}")
+      if(NOT head_${key} STREQUAL "")
+        _bw_head_error(${file} "${word} says ${key} twice")
+      endif()
+      if(NOT key STREQUAL "args")
+        string(REPLACE "," ";" value "${value}")
+      endif()
+      set(head_${key} "${value}")
+    endwhile()
+  endforeach()
+  _bw_head_names(${file} "${head_modules}" "${head_case}")
+  foreach(key ranks timeout args modules libs case)
+    set(head_${key} "${head_${key}}" PARENT_SCOPE)
+  endforeach()
 endfunction()
 
 # A program of one or more sources, linked as the head of the first one says.
 function(_bw_program target own head)
   add_executable(${target} ${head} ${ARGN})
-  _bw_head(${head} BUILD modules modules)
-  _bw_head(${head} BUILD libs libs)
-  _bw_head(${head} BUILD case case)
-  if(case)
-    file(GLOB parts CONFIGURE_DEPENDS cases/${case}/*.c)
-    list(FILTER parts EXCLUDE REGEX "/${case}\\.c$")
+  _bw_read_head(${head})
+  if(head_case)
+    file(GLOB parts CONFIGURE_DEPENDS cases/${head_case}/*.c)
+    list(FILTER parts EXCLUDE REGEX "/${head_case}\\.c$")
     target_sources(${target} PRIVATE ${parts})
-    target_include_directories(${target} PRIVATE cases/${case})
+    target_include_directories(${target} PRIVATE cases/${head_case})
   endif()
-  list(TRANSFORM modules PREPEND bw_)
-  foreach(lib ${libs})
+  list(TRANSFORM head_modules PREPEND bw_)
+  foreach(lib ${head_libs})
     _bw_external(${lib})
   endforeach()
-  list(TRANSFORM libs PREPEND bw_ext_)
+  list(TRANSFORM head_libs PREPEND bw_ext_)
   if(own)
-    list(PREPEND modules bw_${own})
+    list(PREPEND head_modules bw_${own})
   endif()
-  target_link_libraries(${target} PRIVATE ${modules} ${libs} bw_core bw_flags)
+  target_link_libraries(${target} PRIVATE ${head_modules} ${head_libs} bw_core bw_flags)
 endfunction()
 
+file(WRITE ${CMAKE_BINARY_DIR}/programs.txt "")
 set(BW_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
     OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_hwloc_base_binding_policy=none
     BW_SOURCE_DIR=${PROJECT_SOURCE_DIR} BW_BUILD_DIR=${CMAKE_BINARY_DIR})
 
-# One ctest per number of ranks named in the head.
+# Time limits are there for what hangs: no test may fail because the machine has other work as well.
+# A test has twenty minutes, ten times and more what it takes on a quiet machine; the head of one
+# that takes longer than two asks for more.
+set(BW_LEAST_TIMEOUT 600)
+set(BW_TIMEOUT 1200)
+set(BW_SCRIPT_TIMEOUT 3600)
+
+# One ctest per number of ranks named in the head. build/programs.txt gets a line for ./run:
+# the program, the numbers of ranks with commas between.
 function(_bw_run label name target head)
-  _bw_head(${head} TEST ranks ranks)
-  _bw_head(${head} TEST timeout timeout)
-  _bw_head(${head} TEST args args)
-  separate_arguments(args UNIX_COMMAND "${args}")
-  if(NOT ranks)
-    set(ranks 1)
+  _bw_read_head(${head})
+  if(NOT head_ranks)
+    _bw_head_error(${head} "has no line ` * TEST ranks=...` that says on how many ranks it runs")
   endif()
-  if(NOT timeout)
-    set(timeout 120)
+  if(NOT head_timeout)
+    set(head_timeout ${BW_TIMEOUT})
   endif()
-  foreach(np ${ranks})
+  separate_arguments(args UNIX_COMMAND "${head_args}")
+  foreach(np ${head_ranks})
     add_test(NAME ${label}.${name}.np${np}
              COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} $<TARGET_FILE:${target}> ${args}
              WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
     set_tests_properties(${label}.${name}.np${np} PROPERTIES LABELS ${label} PROCESSORS ${np}
-                         TIMEOUT ${timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}"
+                         TIMEOUT ${head_timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}"
                          RESOURCE_LOCK ${label}.${name}) # its files are the same on any np
   endforeach()
+  list(JOIN head_ranks "," ranks)
+  file(APPEND ${CMAKE_BINARY_DIR}/programs.txt "${target} ${ranks}\n")
 endfunction()
 
 # cases/NAME/NAME.c and its companions: build/bin/NAME
@@ -241,7 +328,8 @@ function(bw_scripted_tests)
     get_filename_component(label ${folder} NAME)
     add_test(NAME ${label}.${name}
              COMMAND sh ${script} ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
-    set_tests_properties(${label}.${name} PROPERTIES LABELS ${label} PROCESSORS 2 TIMEOUT 600
+    set_tests_properties(${label}.${name} PROPERTIES LABELS ${label} PROCESSORS 2
+                         TIMEOUT ${BW_SCRIPT_TIMEOUT}
                          ENVIRONMENT "${BW_MPI_ENVIRONMENT}")
   endforeach()
 endfunction()

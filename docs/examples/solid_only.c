@@ -1,6 +1,6 @@
 /* A notched bar is pulled apart: one end held, the other drawn away, until it snaps.
  * BUILD modules=pd_bond
- * TEST ranks=1,2 */
+ * TEST  ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
 #include "bw_pd_load.h"

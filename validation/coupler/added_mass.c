@@ -20,7 +20,7 @@
  *            small motion grows by 1 % a step at the fluid's own density, where that by the
  *            reaction rests, not explained.
  * BUILD modules=coupler
- * TEST  ranks=1 timeout=600 */
+ * TEST  ranks=1 timeout=7200 */
 #include "block.h"
 #include "bw_validation.h"
 

@@ -20,7 +20,7 @@
  *            2 (0.7/8) of them, 0.6 %, and 0.4 % for slip, which is of the order of the viscous
  *            number of the step, 0.08, times the lag.
  * BUILD modules=coupler
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "bw_pd_shape.h"

@@ -21,7 +21,7 @@
  *                shorter than the step, and markers move at the velocity of its beginning.
  * broken_bond_fraction, fragments   no numbers in POROUS, where S1 stays whole: reported.
  * BUILD modules=coupler case=porous_breakup
- * TEST  ranks=1 timeout=600 */
+ * TEST  ranks=1 timeout=7200 */
 #include "bw_memory.h"
 #include "bw_validation.h"
 #include "porous_case.h"

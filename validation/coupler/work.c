@@ -19,7 +19,7 @@
  *            the impulsive start is still being handed on: given = late + received, by the same
  *            argument and to the same 1 %.
  * BUILD modules=coupler
- * TEST  ranks=1 timeout=120 */
+ * TEST  ranks=1 */
 #include "block.h"
 #include "bw_real.h"
 #include "bw_validation.h"

@@ -20,7 +20,7 @@
  *            whose slip, 3 to 4 % of U_b, they take for shear; and the documents' linear profile,
  *            whose error has to be first order in dl (--full).
  * BUILD modules=ns_channel,probe
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/cylinder_flow.h"
 #include "bw_validation.h"
 

@@ -13,7 +13,7 @@
  *            leave. Force: momentum of the box is a conservation law; 1e-9 of it, round-off of the
  *            sums over cells and steps.
  * BUILD modules=ns_channel
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/body_flow.h"
 #include "bw_validation.h"
 

@@ -18,7 +18,7 @@
  *            14, 8, 5 and 3 % with 8 to 24 cells (applied to the reference's own flow in the
  *            channel they lose 13.2, 7.8, 5.2 and 2.8 %).
  * BUILD modules=ns_channel,probe
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/body_flow.h"
 #include "bw_probe.h"
 #include "bw_validation.h"

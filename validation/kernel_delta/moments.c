@@ -10,7 +10,9 @@
  *            moment times the curvature).
  * Tolerance  round-off of four weights, each with a root: 8 epsilon, times 2 for the arm of the
  * first moment. The table is printed to nine digits. Order: 0.05, the next term is (k h)^2 smaller,
- * 6e-3 on the coarser grid. BUILD modules=kernel_delta TEST  ranks=1 */
+ * 6e-3 on the coarser grid.
+ * BUILD modules=kernel_delta
+ * TEST  ranks=1 */
 #include "bw_kernel_delta.h"
 #include "bw_validation.h"
 

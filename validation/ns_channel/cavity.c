@@ -19,7 +19,7 @@
  * Marchi's by up to 0.0085 (v_min); at Re 400 taken as the larger of the two. To each 1e-3 or 5e-3
  * as above is added. The rms over the points stands beside.
  *
- * TEST ranks=1,2 timeout=300 */
+ * TEST ranks=1,2 timeout=3600 */
 #include "flow.h"
 
 #include <stdio.h>

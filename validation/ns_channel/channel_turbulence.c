@@ -36,7 +36,7 @@
  * exact to round-off: 1e-12.
  *
  * BUILD modules=ns_channel,checkpoint
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/channel_turbulence/channel_flow.h"
 #include "bw_validation.h"
 

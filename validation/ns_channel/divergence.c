@@ -3,7 +3,8 @@
  * Measured: max |div u| dx/U over all cells and steps, 200 steps (--full 10 000), noise at the
  * start and in the inflow; net volume flux through all sides over the inflow. Tolerance: 1e-13 =
  * 450 epsilon: the correction differences p^ over dx, p^ being a sum over n = 24 modes per
- * direction, each rounded once. TEST ranks=1,2,4 */
+ * direction, each rounded once.
+ * TEST ranks=1,2,4 */
 #include "flow.h"
 
 static void noise(const double x[3], double t, void *context, double u[3])

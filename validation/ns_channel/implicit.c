@@ -24,7 +24,8 @@
  * mirror ghosts (second order, too). 0.5 % claimed. Order 2 within 5 %: the next term is of
  * relative order z^2. (2) Convection is 1e-9 of it, the solves' round-off less: 1e-8. (3) e^(-s t)
  * of the slowest mode is below 1e-12, the runs' round-off in p is divided by dt: 1e-10 of the
- * largest value. TEST ranks=1,2 */
+ * largest value.
+ * TEST ranks=1,2 */
 #include "stokes_mode.h"
 
 #include <stdio.h>

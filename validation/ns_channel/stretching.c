@@ -9,8 +9,8 @@
  * 400 steps: the time error is (s dt)^2/12 = 5e-7.
  *
  * Tolerance: order 2 within 10 % between 32 and 64 cells: the next terms are (2 pi/32)^2 = 4 %,
- * larger in the middle of a stretched grid, where cells have twice the mean height. TEST ranks=1,2
- */
+ * larger in the middle of a stretched grid, where cells have twice the mean height.
+ * TEST ranks=1,2 */
 #include "stokes_mode.h"
 
 enum { LARGEST = 64 };

@@ -17,7 +17,9 @@
  * is of order one in delta/h (pd_bond.convergence). Tolerance  1 %, as asked; tensor: (delta/h)^2/4
  * = 0.4 % of bending (pd_bond.skin), the clamp's place to delta/2, (delta/2)/L 2 = 0.8 %: together
  * 1 % or a little more. The slender limit: shear and rotation shift it by (h/L)^2, 1e-5 at L = 400
- * h; the integration by less; 1e-4. BUILD modules=pd_bond */
+ * h; the integration by less; 1e-4.
+ * BUILD modules=pd_bond
+ * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"
 

@@ -9,7 +9,7 @@
  *            the elastic energy that passes to and fro, taken of the whole; it has to fall by four
  *            (order 2) with half the step as long as nothing breaks.
  * BUILD modules=pd_bond
- * TEST ranks=1,2 */
+ * TEST  ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
 #include "bw_validation.h"

@@ -26,7 +26,8 @@
  *            Debris: a bond that breaks in a step is booked with what it stores at the end, F ds/2
  *            more than Verlet took for it (the half kick that is missing): at most the energy of
  *            fracture. Verlet at w dt = 1/5: 0.5 % of what contact stored at most.
- * BUILD modules=pd_bond */
+ * BUILD modules=pd_bond
+ * TEST  ranks=1 */
 #include "body.h"
 
 enum { EDGE = 14, CUBE = 8, GAP = 3 };

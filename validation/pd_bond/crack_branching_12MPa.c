@@ -10,7 +10,7 @@
  * = 3 % of the elastic part at most, which is 1 to 2 % of the work at the end; 1 % is asked.
  * --full: other integrators, steps, grids and corrections, reported beside.
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=120 */
+ * TEST  ranks=2 */
 #include "crack_plate.h"
 
 static const char fsi[] = "FSI paper (peridynamics and Navier-Stokes), section 3, figure 3";

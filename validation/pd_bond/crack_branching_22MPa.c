@@ -28,7 +28,7 @@
  * load, the integrator and the step do not matter (crack_branching_12MPa).
  *
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=200 */
+ * TEST  ranks=2 timeout=3600 */
 #include "crack_plate.h"
 
 typedef struct {

@@ -12,7 +12,7 @@
  * crack_branching_12MPa.
  *
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=300 */
+ * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 
 typedef struct {

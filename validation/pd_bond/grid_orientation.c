@@ -19,7 +19,7 @@
  * number of runs: a cloud does not know where its sites' axes are.
  *
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=600 */
+ * TEST  ranks=2 timeout=7200 */
 #include "specimen_run.h"
 
 enum { TURNS = 6 };

@@ -14,7 +14,7 @@
  * beside.
  *
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=300 */
+ * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 
 typedef struct {

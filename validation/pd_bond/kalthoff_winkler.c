@@ -20,7 +20,7 @@
  * a number left out.
  *
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=300 */
+ * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 
 static const char adapt[] = "ADAPT section 6.2";

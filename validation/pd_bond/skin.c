@@ -20,7 +20,7 @@
  *            that its place is known to delta/2 and the tip to 4 (delta/2)/L. What a correction
  *            by one number per particle does is reported beside, without a claim.
  * BUILD modules=pd_bond
- * TEST  ranks=1 timeout=200 */
+ * TEST  ranks=1 timeout=3600 */
 #include "body.h"
 
 #include <string.h>

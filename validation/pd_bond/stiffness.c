@@ -17,7 +17,9 @@
  * bonds of other directions. Correction `tensor`: bulk 1e-3 (strain 1e-5, factors in steps of
  * 6e-5); bar 1 % as the conditions at flat faces are met to that; in 3D as much again for the
  * edges, where a quarter of a family would need factors beyond the bounds: a third is missed there,
- * on 4 edges one particle wide, 4/3/14^2 = 0.7 %. BUILD modules=pd_bond */
+ * on 4 edges one particle wide, 4/3/14^2 = 0.7 %.
+ * BUILD modules=pd_bond
+ * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"
 

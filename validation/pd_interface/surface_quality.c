@@ -16,7 +16,7 @@
  * rounded over the horizon: a cube of side L loses 0.8 ds/L (reported, as are the porous media,
  * whose ridges between pores are thinner than ds; their exact area is the spheres').
  * BUILD modules=pd_interface
- * TEST ranks=2 timeout=120 */
+ * TEST  ranks=2 */
 #include "bw_memory.h"
 #include "bw_pd_interface.h"
 #include "bw_pd_shape.h"

@@ -7,8 +7,8 @@
  * Tolerance: the observed order differs from 2 by the ratio of the next term of the error to the
  * first. 0.1 at 24 -> 48 cells asks for a next term below a tenth (largest seen: 0.05); the
  * difference has to shrink on refinement, and does: 0.02 at 64 -> 128 (--full).
- * TEST ranks=1,2 timeout=120
- * BUILD modules=grid */
+ * BUILD modules=grid
+ * TEST  ranks=1,2 */
 #include "bw_validation.h"
 #include "laplacian.h"
 #include <stdio.h>

@@ -6,8 +6,9 @@
  * Measure: max |lap phi - f| over epsilon (max|f| + |lap| max|phi|), |lap| the row sum of the
  * operator; f is noise, which excites all modes. For each pair, the worst over all others.
  * Tolerance 8: evaluating seven products and sums costs up to about 4 such units at worst, and
- * phi's own round-off enters once more through the same operator. TEST ranks=1,2 timeout=120 BUILD
- * modules=grid */
+ * phi's own round-off enters once more through the same operator.
+ * BUILD modules=grid
+ * TEST  ranks=1,2 */
 #include "bw_validation.h"
 #include "laplacian.h"
 #include <stdio.h>

@@ -15,7 +15,7 @@
  *            which the kernel smears the jump of the pressure; and the linear profile, first order:
  *            in the thin layer at the front it loses most of the friction.
  * BUILD modules=ns_channel,ibm_mdf
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/cylinder_flow.h"
 #include "bw_validation.h"
 

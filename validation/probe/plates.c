@@ -13,7 +13,7 @@
  *            lies within h of the tip's far side is read as well: 10 % more for the largest error.
  *            Crowded probes may be wrong by what they like, but have to be flagged.
  * BUILD modules=ns_channel,ibm_mdf
- * TEST  ranks=1 timeout=300 */
+ * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/body_flow.h"
 #include "bw_probe.h"
 #include "bw_validation.h"

@@ -1,7 +1,7 @@
 /* Checkpoints that cannot be used are refused with a line that says why; damaged ones never give
  * wrong values.
  * BUILD libs=hdf5
- * TEST ranks=1,2,4 */
+ * TEST  ranks=1,2,4 */
 #include "checkpoint_test.h"
 
 #include <hdf5.h>

@@ -1,6 +1,6 @@
 /* Free bodies in the coupler: they fall on walls, cross seams, leave, and are accounted for.
  * BUILD modules=coupler
- * TEST ranks=1,2,4 timeout=300 */
+ * TEST  ranks=1,2,4 timeout=3600 */
 #include "bodies_scene.h"
 
 #include <string.h>

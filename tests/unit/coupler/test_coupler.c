@@ -1,6 +1,6 @@
 /* The coupler: where markers and probes are, the load of a known pressure, sub-steps, state.
  * BUILD modules=coupler
- * TEST ranks=1,2,3 timeout=240 */
+ * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Bodies that the method is not made for: they run and stay bounded, or are refused by name.
  * BUILD modules=coupler
- * TEST ranks=1,2 timeout=300 */
+ * TEST  ranks=1,2 timeout=3600 */
 #include "bodies_scene.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 /* Rows along x become blocks along z and come back changed; tridiagonal systems over the ranks in
- * y or z. TEST ranks=1,2,3,4 */
+ * y or z.
+ * TEST ranks=1,2,3,4 */
 #include "bw_memory.h"
 #include "bw_transpose.h"
 #include "bw_tridiagonal.h"

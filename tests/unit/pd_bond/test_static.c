@@ -1,6 +1,6 @@
 /* States at rest: relaxation, conjugate gradients and a dense solve agree; loads add up.
  * BUILD libs=gsl
- * TEST ranks=1,2,3 */
+ * TEST  ranks=1,2,3 */
 #include "bw_pd_load.h"
 #include "bw_pd_static.h"
 #include "pd_test.h"

@@ -1,6 +1,6 @@
 /* Poisson: the residual of the discrete operator at round-off for every pair of conditions in every
  * direction, on every division of the ranks; means; independence of the ranks; Helmholtz.
- * TEST ranks=1,2,3,4 timeout=300 */
+ * TEST ranks=1,2,3,4 timeout=3600 */
 #include "../../../validation/poisson/laplacian.h"
 #include "bw_check.h"
 #include <string.h>

@@ -89,16 +89,18 @@ static bw_status broken(bw_bench *b, const bw_comm *self, bool contact)
   const int size[3] = {48, 32, 32};
   bw_pd_bond *pd = NULL;
   BW_TRY(box(self, size, 3.0, contact, &pd));
-  bw_status st = BW_OK;
-  const int64_t bonds = bw_pd_bond_account(pd).bonds;
+  bw_pd_bond_ledger e = {0};
+  bw_status st = bw_pd_bond_account(pd, &e);
+  const int64_t bonds = e.bonds;
   const double whole = ms_per_step(self, pd, &st);
   for (int cut = 4; cut < size[0] && st == BW_OK; cut += 4) {
     const double x = 1e-3 * cut, far = 1;
     st = bw_pd_bond_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
                              (double[3]){x, -far, far});
   }
+  BW_THEN(st, bw_pd_bond_account(pd, &e));
   if (st == BW_OK) {
-    const double part = 1 - (double)bw_pd_bond_account(pd).bonds / (double)bonds;
+    const double part = 1 - (double)e.bonds / (double)bonds;
     const double ms = ms_per_step(self, pd, &st);
     put(b, name, "broken_fraction", "-", part, NULL, NAN, NAN);
     put(b, name, "ms_per_step", "ms", ms, "the same block whole", whole, NAN);
@@ -135,7 +137,9 @@ static bw_status million(bw_bench *b, const bw_comm *comm, const char *name, dou
   *ms = ms_per_step(comm, pd, &st);
   put(b, name, "ms_per_step", "ms", *ms, NULL, NAN, 1e3 * moved / (triad * bw_comm_size(comm)));
   put(b, name, "bytes_per_particle", "B", before / n, NULL, NAN, NAN);
-  put(b, name, "bonds", "-", (double)bw_pd_bond_account(pd).bonds, NULL, NAN, NAN);
+  bw_pd_bond_ledger e = {0};
+  BW_THEN(st, bw_pd_bond_account(pd, &e));
+  put(b, name, "bonds", "-", (double)e.bonds, NULL, NAN, NAN);
   bw_pd_bond_destroy(&pd);
   return st;
 }

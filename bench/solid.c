@@ -46,9 +46,11 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.family_reach = BW_PD_REACH_HORIZON;
   c.disorder = disorder;
   bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  bw_pd_bond_ledger e;
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
+  BW_THEN(st, bw_pd_bond_account(pd, &e));
   if (st == BW_OK) {
-    const double bonds = 2.0 * (double)bw_pd_bond_account(pd).bonds;
+    const double bonds = 2.0 * (double)e.bonds;
     const double seconds = bw_bench_solid_seconds(comm, pd, STEPS, &st);
     double bytes = (double)bw_pd_bond_list_bytes(pd);
     bw_comm_sum(comm, 1, &bytes);

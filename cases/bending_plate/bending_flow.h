@@ -234,7 +234,8 @@ static inline bw_status bending_look(bending_flow *f, bending_measure *m)
 {
   bw_coupler_report r;
   BW_TRY(bw_coupler_measure(f->coupler, &r));
-  const bw_pd_bond_ledger e = bw_pd_bond_account(f->solid);
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(f->solid, &e));
   *m = (bending_measure){.given = r.work_given / f->h,
                          .received = e.external / f->h,
                          .kinetic = e.kinetic / f->h,

@@ -12,10 +12,10 @@ static bw_status advance(specimen *p, const bw_case *run, bw_history *history)
   bw_progress_config about = bw_progress_config_default();
   about.time_start = 0.0, about.time_end = p->config.time.end, about.step_end = steps;
   bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
-  specimen_sample(p, history);
+  BW_THEN(st, specimen_sample(p, history));
   while (st == BW_OK && !specimen_done(p) && !bw_stop_requested(p->comm)) {
     st = specimen_step(p);
-    if (st == BW_OK && p->steps % files->sample_every == 0) specimen_sample(p, history);
+    if (p->steps % files->sample_every == 0) BW_THEN(st, specimen_sample(p, history));
     if (p->steps % files->picture_every == 0) BW_THEN(st, specimen_picture(p, run));
     bw_progress_update(line, p->steps, p->time, "crack %.1f mm", 1e3 * p->crack.reach);
   }
@@ -32,7 +32,7 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
              "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = specimen_create(comm, config, &p);
-  if (st == BW_OK) specimen_describe(&p, bw_case_log(run));
+  BW_THEN(st, specimen_describe(&p, bw_case_log(run)));
   if (st == BW_OK && !args->check) {
     bw_stop_install();
     st = specimen_open_history(&p, run, &history);

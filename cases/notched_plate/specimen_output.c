@@ -5,16 +5,19 @@
 #include <math.h>
 #include <stdio.h>
 
-void specimen_describe(const specimen *p, bw_log *log)
+bw_status specimen_describe(const specimen *p, bw_log *log)
 {
   const specimen_solid *s = &p->config.solid;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
   bw_log_info(log, "%lld particles of %g m, lattice turned by %g deg, horizon %g m, %lld bonds",
               (long long)bw_pd_bond_total(p->solid), p->ds, p->config.shape.lattice_angle,
-              bw_pd_bond_horizon(p->solid), (long long)bw_pd_bond_account(p->solid).bonds);
+              bw_pd_bond_horizon(p->solid), (long long)e.bonds);
   bw_log_info(log, "bonds break at a stretch of %.4g; sound travels at %.0f m/s (sqrt(E/rho))",
               bw_pd_bond_critical_stretch(p->solid), sqrt(s->young_modulus / s->density));
   bw_log_info(log, "time step %g s of at most %.3g s, %.0f steps", p->config.time.step,
               bw_pd_bond_dt_max(p->solid), ceil(p->config.time.end / p->config.time.step - 1e-9));
+  return BW_OK;
 }
 
 enum { COLUMNS = 11 };
@@ -31,15 +34,17 @@ bw_status specimen_open_history(const specimen *p, const bw_case *run, bw_histor
   return st;
 }
 
-void specimen_sample(specimen *p, bw_history *history)
+bw_status specimen_sample(specimen *p, bw_history *history)
 {
-  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
   const specimen_crack *c = &p->crack;
   const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
   const double row[COLUMNS] = {p->time,    c->tip[0],        c->tip[1],         c->reach,
                                c->speed,   (double)e.broken, e.kinetic,         e.elastic,
                                e.fracture, e.external,       e.external - spent};
   bw_history_append(history, row);
+  return BW_OK;
 }
 
 static bw_status write_particles(specimen *p, const char *path)
@@ -118,6 +123,8 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   char text[3][16];
   bw_pd_crack_line line;
   specimen_fork fork;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
   BW_TRY(specimen_fit(p, &line));
   BW_TRY(specimen_branches(p, &fork));
   bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",
@@ -132,7 +139,6 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   bw_log_info(log, "branches %d, forks %s mm past the notch, first seen %s us", fork.branches,
               or_never(1e3 * (fork.x - p->config.follow.from[0]), text[0]),
               or_never(1e6 * c->t_branch, text[1]));
-  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
   const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
   bw_log_info(log, "work %.4g J, fracture %.4g J, not accounted for %.2g %% of the work",
               e.external, e.fracture, 100.0 * (e.external - spent) / e.external);

@@ -5,11 +5,11 @@
 #include "specimen.h"
 
 /* Print what the numbers mean: sizes, speeds, dt against its limit. Collective. */
-void specimen_describe(const specimen *p, bw_log *log);
+bw_status specimen_describe(const specimen *p, bw_log *log) BW_MUST_CHECK;
 
 bw_status specimen_open_history(const specimen *p, const bw_case *run,
                                 bw_history **out) BW_MUST_CHECK;
-void specimen_sample(specimen *p, bw_history *history);                    /* Collective. */
+bw_status specimen_sample(specimen *p, bw_history *history) BW_MUST_CHECK; /* Collective. */
 bw_status specimen_picture(specimen *p, const bw_case *run) BW_MUST_CHECK; /* Collective. */
 /* crack.csv: the places of all cracked particles, now, notches included. Collective. */
 bw_status specimen_crack_file(specimen *p, const bw_case *run) BW_MUST_CHECK;

@@ -60,7 +60,7 @@ static bw_status run_case(porous_run *p)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
   BW_TRY(porous_build(p));
-  porous_describe(p);
+  BW_TRY(porous_describe(p));
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(porous_restart(p, args->restart));
   BW_TRY(porous_open_history(p, args->restart != NULL ? bw_ns_channel_time(p->fluid) : NAN));

@@ -123,12 +123,14 @@ void porous_destroy(porous_run *p)
 }
 
 /* Memory as it stands after building; time from nominal costs (the benches' on a quiet machine). */
-static void describe_cost(porous_run *p)
+static bw_status describe_cost(porous_run *p)
 {
   static const double fluid_ns = 45.0, bond_ns = 1.8; /* core-ns: cell and sub-step, bond */
   const int *n = p->config->domain.cells;
   const double cells = (double)n[0] * n[1] * n[2];
-  const double bonds = 2.0 * (double)bw_pd_bond_account(p->solid).bonds;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  const double bonds = 2.0 * (double)e.bonds;
   double bytes = (double)bw_memory_resident(), seconds = 0.0;
   bw_comm_sum(p->comm, 1, &bytes);
   for (int k = 0; k < PHASE_COUNT; k++) {
@@ -139,9 +141,10 @@ static void describe_cost(porous_run *p)
   bw_log_info(bw_case_log(p->run),
               "cost       %.0f MiB over all ranks; at most about %.1f min on as many quiet cores",
               bytes / 1048576.0, seconds / 60.0 / bw_comm_size(p->comm));
+  return BW_OK;
 }
 
-void porous_describe(porous_run *p)
+bw_status porous_describe(porous_run *p)
 {
   const porous_config *q = p->config;
   bw_log *log = bw_case_log(p->run);
@@ -174,5 +177,5 @@ void porous_describe(porous_run *p)
                 bw_coupler_substeps(p->coupler, f->time_step));
   }
   bw_log_info(log, "solid      stable to %.4g s per sub-step", solid_max);
-  describe_cost(p);
+  return describe_cost(p);
 }

@@ -97,7 +97,7 @@ bw_status porous_build(porous_run *p) BW_MUST_CHECK;
 void porous_enter_phase(porous_run *p);
 void porous_destroy(porous_run *p);
 /* Print sizes, dimensionless groups and the step against each of its limits. Collective. */
-void porous_describe(porous_run *p);
+bw_status porous_describe(porous_run *p) BW_MUST_CHECK;
 
 /* ---- what is measured (porous_measure.c) ---- */
 enum {

@@ -149,7 +149,8 @@ static bw_status measure_fragments(porous_run *p, double row[])
 static bw_status measure_solid(porous_run *p, double row[])
 {
   const size_t n = bw_pd_bond_count(p->solid);
-  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
   if (e.closest < BW_PD_TOO_CLOSE && !p->warned)
     bw_log_warn(bw_case_log(p->run),
                 "pieces hit each other so hard that particles came within %.2f of a spacing: they "

@@ -44,7 +44,7 @@ static bw_status pull(const bw_comm *world)
     bw_pd_load_move(bar, &ramp, (step - 1) * dt, dt, V);
     BW_TRY(bw_pd_bond_step(bar, dt));
     if (step % 100 != 0) continue;
-    e = bw_pd_bond_account(bar);
+    BW_TRY(bw_pd_bond_account(bar, &e));
     if (bw_comm_rank(world) == 0)
       printf("t = %5.1f us  elastic %7.4f J  kinetic %7.4f J  fracture %7.4f J  broken %lld\n",
              1e6 * step * dt, e.elastic, e.kinetic, e.fracture, (long long)e.broken);

@@ -122,8 +122,10 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   c->solid = solid;
   c->held = c->watched = true;
   c->h = g->spacing[0];
-  c->bonds = 2.0 * (double)bw_pd_bond_account(solid).bonds / bw_comm_size(bw_grid_comm(grid));
-  st = create_parts(c);
+  bw_pd_bond_ledger ledger = {0};
+  st = bw_pd_bond_account(solid, &ledger);
+  c->bonds = 2.0 * (double)ledger.bonds / bw_comm_size(bw_grid_comm(grid));
+  BW_THEN(st, create_parts(c));
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
   c->block = (int)fmax(1.0, floor(k + 1e-9));

@@ -228,7 +228,9 @@ typedef struct {
   int64_t bonds, broken;          /* undirected bonds: at the start without those a pre-crack cut;
                                      broken by stretch since */
 } bw_pd_bond_ledger;
-bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd); /* Collective. */
+/* Evaluates the forces first where the state was changed since. BW_EDIVERGED when a particle is
+ * beyond a wall, BW_EMEM; *out is then left as it was. Collective. */
+bw_status bw_pd_bond_account(bw_pd_bond *pd, bw_pd_bond_ledger *out) BW_MUST_CHECK;
 
 /* State for a checkpoint: rows of `bytes` per particle holding its bonds' bits in stencil order
  * (the same on any number of ranks). Collective on loading. */

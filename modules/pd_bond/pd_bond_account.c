@@ -21,15 +21,25 @@ static void motion(const bw_pd_bond *pd, double book[7])
   }
 }
 
-bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
+/* Forces and contact pairs of the present state. A step that failed on one rank alone leaves ranks
+ * that differ in whether theirs are: all evaluate when one has to. */
+static bw_status bring_up_to_date(bw_pd_bond *pd)
+{
+  int64_t stale = !pd->current;
+  bw_comm_max_int(pd->comm, 1, &stale);
+  if (stale) BW_TRY(bw_comm_agree(pd->comm, bw_pd_bond__evaluate(pd, false)));
+  if (!pd->config.contact) return BW_OK;
+  return bw_comm_agree(pd->comm, bw_pd_bond__contact_update(pd));
+}
+
+bw_status bw_pd_bond_account(bw_pd_bond *pd, bw_pd_bond_ledger *out)
 {
   double book[16] = {0};
   int64_t count[3] = {pd->bonds_directed, 0, pd->precracked};
-  if (!pd->current) pd->current = bw_pd_bond__evaluate(pd, false) == BW_OK;
+  BW_TRY(bring_up_to_date(pd));
   motion(pd, book);
   book[7] = bw_pd_bond__elastic(pd);
-  if (pd->config.contact && bw_pd_bond__contact_update(pd) == BW_OK)
-    book[8] = bw_pd_bond__contact_energy(pd);
+  if (pd->config.contact) book[8] = bw_pd_bond__contact_energy(pd);
   book[9] = pd->done_damping;
   book[10] = pd->done_fracture;
   book[11] = pd->done_external;
@@ -42,7 +52,7 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
   bw_comm_min(pd->comm, 1, &closest);
   bw_comm_sum(pd->comm, 16, book);
   bw_comm_sum_int(pd->comm, 3, count);
-  return (bw_pd_bond_ledger){.kinetic = book[0],
+  *out = (bw_pd_bond_ledger){.kinetic = book[0],
                              .momentum = {book[1], book[2], book[3]},
                              .angular = {book[4], book[5], book[6]},
                              .elastic = book[7],
@@ -55,4 +65,5 @@ bw_pd_bond_ledger bw_pd_bond_account(bw_pd_bond *pd)
                              .wall = {book[13], book[14], book[15]},
                              .bonds = (count[0] - count[2]) / 2,
                              .broken = (count[1] - count[2]) / 2};
+  return BW_OK;
 }

@@ -47,10 +47,12 @@ static bw_status brake(const bw_comm *comm, bw_coupler_load_kind load, double dt
     BW_THEN(st, bw_coupler_measure(s.coupler, &r));
     if (st != BW_OK) break;
     if (n > start) a->impulse += dt * r.force_reaction[0];
-    if (n == start) e0 = bw_pd_bond_account(s.solid), r0 = r;
+    if (n != start) continue;
+    st = bw_pd_bond_account(s.solid, &e0);
+    r0 = r;
   }
+  BW_THEN(st, bw_pd_bond_account(s.solid, &e));
   if (st == BW_OK) {
-    e = bw_pd_bond_account(s.solid);
     a->momentum = e.momentum[0] - e0.momentum[0];
     a->received = e.external - e0.external;
     a->given = r.work_given - r0.work_given;

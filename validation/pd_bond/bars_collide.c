@@ -78,7 +78,9 @@ static bw_status measure(bw_validation *v, int length, double mach, double *loss
   while (time < end) {
     BW_TRY(bw_pd_bond_step(pd, dt));
     time += dt;
-    if (bw_pd_bond_account(pd).contact <= 0) continue;
+    bw_pd_bond_ledger e;
+    BW_TRY(bw_pd_bond_account(pd, &e));
+    if (e.contact <= 0) continue;
     last = time;
     if (first == 0) first = time;
   }

@@ -230,7 +230,9 @@ static bw_status draw_apart(bw_pd_bond *pd, double m, double *energy)
     bw_pd_bond_set_prescribed(pd, V);
     BW_TRY(bw_pd_bond_step(pd, dt));
   }
-  *energy = bw_pd_bond_account(pd).fracture;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(pd, &e));
+  *energy = e.fracture;
   bw_release(&X0);
   bw_release(&V);
   return BW_OK;

@@ -65,11 +65,10 @@ static bw_status span(const bw_comm *comm, double G0, double damping, double fra
   bw_pd_bond *pd = NULL;
   BW_TRY(make(comm, G0, damping, &pd));
   const double dt = fraction * bw_pd_bond_dt_max(pd);
-  *first = bw_pd_bond_account(pd);
-  bw_status st = BW_OK;
+  bw_status st = bw_pd_bond_account(pd, first);
   for (int q = 0; q < (int)lround(time / dt) && st == BW_OK; q++)
     st = bw_pd_bond_step(pd, dt);
-  *last = bw_pd_bond_account(pd);
+  BW_THEN(st, bw_pd_bond_account(pd, last));
   bw_pd_bond_destroy(&pd);
   return st;
 }

@@ -64,9 +64,9 @@ static bw_status tear(const bw_comm *comm, const specimen_config *c, outcome *o)
   specimen p;
   memset(&p, 0, sizeof p);
   bw_status st = specimen_break(comm, c, &p);
+  BW_THEN(st, specimen_residual(&p, &o->energy_error));
   if (st == BW_OK) {
     o->crack = p.crack;
-    o->energy_error = specimen_residual(&p);
     o->speed_mean = (p.crack.tip[0] - c->follow.from[0]) / (stop_time(&p) - p.crack.t_start);
     o->speed_max = specimen_speed(&p, 4e-6);
     o->speed_max_2us = speed_of_moments(&p);

@@ -44,7 +44,7 @@ static bw_status measure(specimen *p, outcome *o)
   o->t_end = p->crack.t_end;
   o->tip = p->crack.tip[0];
   o->speed = specimen_speed(p, 5e-6);
-  o->residual = specimen_residual(p);
+  BW_TRY(specimen_residual(p, &o->residual));
   return BW_OK;
 }
 

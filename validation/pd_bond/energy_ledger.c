@@ -59,7 +59,7 @@ static bw_status snap(bw_validation *v)
     bw_pd_load_move(pd, &ramp, time, dt, r.V);
     BW_TRY(bw_pd_bond_step(pd, dt));
     if (step % 50 != 0) continue;
-    e = bw_pd_bond_account(pd);
+    BW_TRY(bw_pd_bond_account(pd, &e));
     const double found = e.kinetic + e.elastic + e.contact + e.damping + e.fracture;
     if (step >= 500) worst = fmax(worst, fabs(found / e.external - 1));
   }
@@ -85,12 +85,14 @@ static bw_status swing(bw_validation *v)
   BW_TRY(bw_pd_load_velocity(pd, shake, NULL));
   const int steps = bw_validation_full(v) ? 1000000 : 100000, every = 20;
   const double dt = 0.5 * bw_pd_bond_dt_max(pd);
-  const double start = bw_pd_bond_account(pd).kinetic;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(pd, &e));
+  const double start = e.kinetic;
   double worst = 0, first = 0, last = 0;
   for (int step = 1; step <= steps; step++) {
     BW_TRY(bw_pd_bond_step(pd, dt));
     if (step % every != 0) continue;
-    const bw_pd_bond_ledger e = bw_pd_bond_account(pd);
+    BW_TRY(bw_pd_bond_account(pd, &e));
     const double total = (e.kinetic + e.elastic) / start, share = 10.0 * every / steps;
     worst = fmax(worst, fabs(total - 1));
     if (step <= steps / 10) first += share * total;

@@ -89,7 +89,10 @@ static bw_status open(bw_pd_bond *pd, int height, int64_t crossing_bonds)
   bw_release(&V);
   for (int step = 0; step < 400000; step++) {
     BW_TRY(bw_pd_bond_step(pd, dt));
-    if (step % 500 == 0 && bw_pd_bond_account(pd).broken >= crossing_bonds) return BW_OK;
+    if (step % 500 != 0) continue;
+    bw_pd_bond_ledger e;
+    BW_TRY(bw_pd_bond_account(pd, &e));
+    if (e.broken >= crossing_bonds) return BW_OK;
   }
   return BW_FAIL(BW_EDIVERGED, "fracture_energy: the column did not come apart");
 }
@@ -144,7 +147,9 @@ static bw_status along(bw_validation *v, const setting *s, double m, bool calibr
   bw_pd_bond *pd = NULL;
   BW_TRY(column(bw_validation_comm(v), s, m, height, calibrated, &pd));
   BW_TRY(open(pd, height, count_crossing(m, planar)));
-  const double G = bw_pd_bond_account(pd).fracture; /* area 1 */
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(pd, &e));
+  const double G = e.fracture; /* area 1 */
   bw_pd_bond_destroy(&pd);
   const double G0 = s->G0 * E * S0 * S0 * m;
   if (calibrated) {
@@ -205,7 +210,9 @@ static bw_status band(const bw_comm *comm, const setting *s, double m, int lengt
   bw_status st = BW_OK;
   for (int q = 0; q < steps && st == BW_OK; q++)
     st = bw_pd_bond_step(pd, dt);
-  *energy = bw_pd_bond_account(pd).fracture;
+  bw_pd_bond_ledger e = {.fracture = NAN};
+  BW_THEN(st, bw_pd_bond_account(pd, &e));
+  *energy = e.fracture;
   bw_pd_bond_destroy(&pd);
   bw_release(&V);
   bw_release(&site);

@@ -58,14 +58,16 @@ static bw_status tear(const bw_comm *comm, const variant *q, outcome *o)
   memset(&p, 0, sizeof p);
   bw_status st = specimen_break(comm, &c, &p);
   bw_pd_crack_line line = {0, NAN, NAN};
+  double residual = NAN;
   BW_THEN(st, specimen_fit(&p, &line));
+  BW_THEN(st, specimen_residual(&p, &residual));
   if (st == BW_OK) {
     *o = (outcome){line.angle * 180.0 / acos(-1.0),
                    line.width,
                    p.crack.t_start,
                    p.crack.t_end,
                    p.crack.reach,
-                   specimen_residual(&p)};
+                   residual};
   }
   specimen_destroy(&p);
   return st;

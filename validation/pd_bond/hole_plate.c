@@ -37,7 +37,7 @@ static bw_status measure(specimen *p, const specimen_hole *hole, outcome *o)
   o->t_start = p->crack.t_start;
   o->t_end = p->crack.t_end;
   memcpy(o->tip, p->crack.tip, sizeof o->tip);
-  o->residual = specimen_residual(p);
+  BW_TRY(specimen_residual(p, &o->residual));
   BW_TRY(specimen_find(p, &crack));
   o->to_hole = INFINITY;
   for (size_t q = 0; q < crack.n; q++)

@@ -42,7 +42,7 @@ static bw_status measure(specimen *p, outcome *o)
   o->t_end = p->crack.t_end;
   o->speed = specimen_speed(p, 5.46e-6);
   o->speed_adapt = specimen_speed(p, 1.82e-6);
-  o->residual = specimen_residual(p);
+  BW_TRY(specimen_residual(p, &o->residual));
   o->upper_tip = p->crack.reach;
   specimen_follow *f = &p->config.follow;
   const double height = p->config.shape.height, upper = f->upper[1], lower = f->lower[1];

@@ -171,8 +171,10 @@ static bw_status cut(bw_validation *v, int surface, int h)
     r.X[i] = r.X0[i] * (1 + s0);
   bw_pd_bond_set_state(pd, r.X, r.V);
   BW_TRY(bw_pd_bond_precrack(pd, (double[3]){12, 0, 0}, (double[3]){12, h, 0}, NULL));
-  claim(v, "cut_energy", surface, h,
-        bw_pd_bond_account(pd).fracture / (bw_pd_bond_settings(pd)->G0 * h), 1, INFINITY, "G0");
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(pd, &e));
+  claim(v, "cut_energy", surface, h, e.fracture / (bw_pd_bond_settings(pd)->G0 * h), 1, INFINITY,
+        "G0");
   body_rows_release(&r);
   bw_pd_bond_destroy(&pd);
   return BW_OK;

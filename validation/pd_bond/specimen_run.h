@@ -20,10 +20,12 @@ static bw_status specimen_read(const bw_comm *comm, const char *name, int n,
 }
 
 /* Energy not found again, over the work. Collective. */
-static double specimen_residual(specimen *p)
+static bw_status specimen_residual(specimen *p, double *residual)
 {
-  const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
-  return (e.external - e.kinetic - e.elastic - e.fracture - e.damping) / e.external;
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  *residual = (e.external - e.kinetic - e.elastic - e.fracture - e.damping) / e.external;
+  return BW_OK;
 }
 
 /* Run it to its end; `p` has to be destroyed by the caller. Collective. */

@@ -109,7 +109,9 @@ static bw_status block_energy(const bw_comm *comm, const material *g, double m, 
         X[3 * i + k] += STRAIN * s->eps[k][j] * x[j];
   }
   bw_pd_bond_set_state(pd, X, V);
-  *energy = bw_pd_bond_account(pd).elastic / (STRAIN * STRAIN);
+  bw_pd_bond_ledger e;
+  BW_TRY(bw_pd_bond_account(pd, &e));
+  *energy = e.elastic / (STRAIN * STRAIN);
   bw_pd_bond_destroy(&pd);
   bw_release(&site);
   bw_release(&X);

@@ -2,6 +2,7 @@
  * BUILD modules=coupler
  * TEST  ranks=1,2,4 timeout=3600 */
 #include "bodies_scene.h"
+#include "ledger.h"
 
 #include <string.h>
 
@@ -108,10 +109,9 @@ START_TEST(a_heavy_block_lies_on_the_floor)
   bodies_scene s = bodies_build(&set_up);
   double X[3 * MOST], lowest = 1.0;
   bodies_step(&s, 300, DT);
-  const double before = bw_pd_bond_account(s.solid).wall[1];
+  const double before = ledger_of(s.solid).wall[1];
   bodies_step(&s, 50, DT);
-  const double weight = 16 * H * H * H * (5.0 - 1.0) * 2.0,
-               push = bw_pd_bond_account(s.solid).wall[1];
+  const double weight = 16 * H * H * H * (5.0 - 1.0) * 2.0, push = ledger_of(s.solid).wall[1];
   bodies_gather(&s, bw_pd_bond_get_position, X);
   for (size_t i = 0; i < s.total; i++)
     lowest = fmin(lowest, X[3 * i + 1]);

@@ -2,6 +2,7 @@
  * BUILD modules=coupler
  * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
+#include "ledger.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -223,7 +224,7 @@ START_TEST(held_solid_stays_free_one_is_carried)
   bw_coupler_hold_solid(s.coupler, false);
   for (int q = 0; q < 3; q++)
     bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
-  const bw_pd_bond_ledger e = bw_pd_bond_account(s.solid);
+  const bw_pd_bond_ledger e = ledger_of(s.solid);
   ck_assert_double_gt(e.momentum[0], 0.0);
   bw_release(&before);
   bw_release(&after);

@@ -2,6 +2,7 @@
  * BUILD modules=coupler
  * TEST  ranks=1,2 timeout=3600 */
 #include "bodies_scene.h"
+#include "ledger.h"
 
 #include <string.h>
 
@@ -96,7 +97,7 @@ START_TEST(all_bonds_broken)
   bw_check_ok(BW_ALLOCATE(&bits, s.n * bw_pd_bond_bits_bytes(s.solid)));
   bw_check_ok(bw_pd_bond_set_bits(s.solid, bits)); /* none */
   bw_release(&bits);
-  const bw_pd_bond_ledger e = bw_pd_bond_account(s.solid);
+  const bw_pd_bond_ledger e = ledger_of(s.solid);
   ck_assert_int_eq(e.broken, e.bonds);
   check_bounded(&s);
   bw_pd_fragment *piece = NULL;

@@ -2,6 +2,7 @@
  * BUILD modules=coupler
  * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
+#include "ledger.h"
 
 #include <stdio.h>
 
@@ -90,7 +91,7 @@ START_TEST(iterated_step_meets_its_residual)
     ck_assert_double_le(r.residual, residual);
     ck_assert_double_lt(mismatch(&s, X), 1e-2);
     /* added mass carries it with the stream, whose fastest layer has 1.5 */
-    const double mean = bw_pd_bond_account(s.solid).momentum[0] / mass;
+    const double mean = ledger_of(s.solid).momentum[0] / mass;
     ck_assert_double_gt(mean, 0.0);
     ck_assert_double_lt(mean, 1.5);
   }

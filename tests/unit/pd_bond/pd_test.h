@@ -3,6 +3,7 @@
 #include "bw_check.h"
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
+#include "ledger.h"
 
 typedef struct {
   int64_t n;
@@ -98,7 +99,7 @@ static inline void pd_steps(bw_pd_bond *pd, int n, double dt)
 /* Kinetic, elastic and contact energy and what left: constant but for the work of forces. */
 static inline double pd_energy(bw_pd_bond *pd)
 {
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   return l.kinetic + l.elastic + l.contact + l.retired + l.damping + l.fracture - l.external;
 }
 

@@ -25,7 +25,7 @@ static int64_t broken_after_step(bw_pd_bond *pd, double s)
   stretch = s;
   pd_set(pd, pull, NULL);
   pd_steps(pd, 1, 1e-6);
-  return bw_pd_bond_account(pd).broken;
+  return ledger_of(pd).broken;
 }
 
 /* s0 = sqrt(5 G0/(6 E delta)) (ERRATA 1): E = 3, delta = 1.5. */
@@ -40,12 +40,12 @@ START_TEST(bonds_break_beyond_s0_in_tension_only_and_for_good)
   ck_assert_int_eq(broken_after_step(pd, 1.5 * s0), 0);
   bw_pd_bond_enable_breakage(pd, true);
   ck_assert_int_eq(bw_pd_bond_events(pd), 0);
-  const double elastic = bw_pd_bond_account(pd).elastic;
+  const double elastic = ledger_of(pd).elastic;
   ck_assert_double_gt(elastic, 0);
   ck_assert_int_eq(broken_after_step(pd, 1.001 * s0), 1);
   ck_assert_int_eq(broken_after_step(pd, 0), 1);
   ck_assert_int_eq(broken_after_step(pd, 0.5 * s0), 1);
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   ck_assert_double_eq(l.elastic, 0);
   bw_check_near(l.fracture / elastic, pow(1.001 / 1.5, 2), 1e4 * BW_REAL_EPSILON + 1e-5);
   double damage[2];
@@ -125,9 +125,9 @@ static int64_t cut_all(double ax, double ay, double bx, double by, double az)
   c.G0 = 1;
   pd_body body = pd_box(12, 9, 1);
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const bw_pd_bond_ledger before = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger before = ledger_of(pd);
   bw_check_ok(bw_pd_bond_precrack(pd, (double[]){ax, ay, az}, (double[]){bx, by, az}, NULL));
-  const bw_pd_bond_ledger after = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger after = ledger_of(pd);
   ck_assert_int_eq(after.broken, 0); /* not since the start */
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
@@ -172,7 +172,7 @@ START_TEST(precracks_in_space)
   bw_pd_bond_config c = pd_soft(BW_PD_3D);
   pd_body body = pd_box(8, 6, 7);
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const int64_t before = bw_pd_bond_account(pd).bonds;
+  const int64_t before = ledger_of(pd).bonds;
   const double a[] = {0.9, 0.8, 1.5}, b[] = {2.9, 0.8, 1.5}, d[] = {0.9, 2.1, 1.5};
   bw_check_ok(bw_pd_bond_precrack(pd, a, b, d));
   bw_check_ok(bw_pd_bond_precrack(pd, a, d, b)); /* again: nothing is left */
@@ -189,7 +189,7 @@ START_TEST(precracks_in_space)
           const double x = 0.5 * (s[0] + 0.5 + t * dx), y = 0.5 * (s[1] + 0.5 + t * dy);
           expected += s[2] < 3 && Z >= 3 && x >= 0.9 && x <= 2.9 && y >= 0.8 && y <= 2.1;
         }
-  ck_assert_int_eq(before - bw_pd_bond_account(pd).bonds, expected);
+  ck_assert_int_eq(before - ledger_of(pd).bonds, expected);
   bw_check_status(bw_pd_bond_precrack(pd, a, b, NULL), BW_EINPUT);
   bw_check_status(bw_pd_bond_precrack(pd, a, a, d), BW_EINPUT);
   bw_pd_bond_destroy(&pd);
@@ -213,15 +213,15 @@ START_TEST(fracture_energy_is_booked)
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, NULL, burst);
   const double start = pd_energy(pd), dt = 0.02 * bw_pd_bond_dt_max(pd);
-  const bw_pd_bond_ledger first = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger first = ledger_of(pd);
   double fracture = 0;
   for (int q = 0; q < 400; q++) {
     pd_steps(pd, 1, dt);
-    const double now = bw_pd_bond_account(pd).fracture;
+    const double now = ledger_of(pd).fracture;
     ck_assert_double_ge(now, fracture);
     fracture = now;
   }
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   ck_assert_int_gt(l.broken, 100);
   /* Verlet's own error, (w dt)^2/8 = 2e-4 of the elastic energy, and as much per broken bond */
   bw_check_near(pd_energy(pd) / start, 1, 1e-3);

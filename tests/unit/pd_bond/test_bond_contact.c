@@ -33,19 +33,19 @@ static void check_collision(bw_pd_bond_config c, bool wall_between)
   pd_body body = two_blocks();
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, NULL, towards);
-  const bw_pd_bond_ledger start = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger start = ledger_of(pd);
   const double before = left_momentum(pd), dt = 0.1 * bw_pd_bond_dt_max(pd);
   double most = 0, closest = 1e9;
   for (int q = 0; q < (int)(24 / dt); q++) {
     pd_steps(pd, 1, dt);
     if (q % 10 != 0) continue;
-    most = fmax(most, bw_pd_bond_account(pd).contact);
+    most = fmax(most, ledger_of(pd).contact);
     double X[3 * 72];
     pd_gather(pd, bw_pd_bond_get_position, X);
     for (size_t i = 0; i < 9; i++) /* facing columns 3 and 4 of every row */
       closest = fmin(closest, X[3 * (8 * i + 4)] - X[3 * (8 * i + 3)]);
   }
-  const bw_pd_bond_ledger end = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger end = ledger_of(pd);
   const double after = left_momentum(pd);
   if (wall_between) {
     ck_assert_double_gt(most, 1e-3 * start.kinetic);
@@ -122,10 +122,10 @@ START_TEST(the_step_of_contact_resolves_a_collision)
     const double w2 = 2 * 15 * bw_pd_bond_micromodulus(pd) * 0.125 / (c.rho * c.ds);
     bw_check_near(dt * sqrt(w2), 1, 1e-12);
     pd_set(pd, NULL, meet);
-    const double start = bw_pd_bond_account(pd).kinetic;
+    const double start = ledger_of(pd).kinetic;
     pd_steps(pd, 1, (0.1 * q + 0.05) * dt);
     pd_steps(pd, (int)(0.6 / (0.04 * dt)) + 8, dt);
-    const bw_pd_bond_ledger end = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger end = ledger_of(pd);
     ck_assert_double_eq(end.contact, 0);
     ck_assert_double_lt(end.closest, 1);
     bw_check_near(end.kinetic / start, 1, 0.2);
@@ -152,11 +152,11 @@ START_TEST(a_broken_bond_repels_in_closed_form)
   double A[6];
   approach = 0.1;
   pd_set(pd, close_up, NULL);
-  const double bonded = bw_pd_bond_account(pd).contact;
+  const double bonded = ledger_of(pd).contact;
   ck_assert_double_eq(bonded, 0); /* an intact bond: no contact */
   bw_check_ok(bw_pd_bond_precrack(pd, (double[]){0.5, -1, -1}, (double[]){0.5, 1, -1},
                                   (double[]){0.5, -1, 1}));
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   pd_gather(pd, bw_pd_bond_get_acceleration, A);
   const double k = 15 * bw_pd_bond_micromodulus(pd) * 0.125, r = 0.4;
   bw_check_near(A[0] / (-k / 2 * (0.5 / r - 1)), 1, 1e3 * BW_REAL_EPSILON);
@@ -164,7 +164,7 @@ START_TEST(a_broken_bond_repels_in_closed_form)
   bw_check_near(l.contact / (k * 0.125 * (0.5 * log(0.5 / r) - 0.5 + r)), 1, 1e3 * BW_REAL_EPSILON);
   approach = -0.01;
   pd_set(pd, close_up, NULL);
-  ck_assert_double_eq(bw_pd_bond_account(pd).contact, 0);
+  ck_assert_double_eq(ledger_of(pd).contact, 0);
   pd_gather(pd, bw_pd_bond_get_acceleration, A);
   ck_assert_double_eq(A[0], 0);
   bw_pd_bond_destroy(&pd);
@@ -187,7 +187,7 @@ static void stirred(const double X0[3], double v[3])
 
 static double mechanical(bw_pd_bond *pd)
 {
-  const bw_pd_bond_ledger now = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger now = ledger_of(pd);
   return now.kinetic + now.elastic + now.contact;
 }
 
@@ -208,7 +208,7 @@ START_TEST(rubble_makes_no_energy)
   pd_set(pd, squeezed, stirred);
   pd_steps(pd, 200, dt);
   const double then = mechanical(pd);
-  ck_assert_int_gt(bw_pd_bond_account(pd).broken, 20000); /* of 48441 */
+  ck_assert_int_gt(ledger_of(pd).broken, 20000); /* of 48441 */
   pd_steps(pd, 800, dt);
   ck_assert_double_lt(mechanical(pd), then);
   bw_pd_bond_destroy(&pd);

@@ -133,7 +133,7 @@ START_TEST(bonds_of_a_block)
       for (int x = -3; x <= 3; x++)
         if (x * x + y * y + z * z > 0 && x * x + y * y + z * z <= 12)
           expected += (size[0] - abs(x)) * (size[1] - abs(y)) * (size[2] - abs(z));
-  ck_assert_int_eq(bw_pd_bond_account(pd).bonds, expected / 2);
+  ck_assert_int_eq(ledger_of(pd).bonds, expected / 2);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
 }
@@ -163,7 +163,7 @@ static void check_links(bw_pd_bond *pd, const double period[3])
   }
   bw_comm_sum_int(bw_pd_bond_comm(pd), 1, &found);
   if (period[0] > 0) ck_assert_int_eq(found, bw_pd_bond_total(pd) * bw_pd_bond_max_family(pd));
-  ck_assert_int_eq(found, 2 * bw_pd_bond_account(pd).bonds);
+  ck_assert_int_eq(found, 2 * ledger_of(pd).bonds);
   bw_release(&link);
   bw_release(&id);
 }
@@ -200,7 +200,7 @@ START_TEST(sparse_bodies_work)
         r2 += pow(body.site[3 * a + k] - body.site[3 * b + k], 2);
       expected += r2 > 0 && r2 < 12.25;
     }
-  ck_assert_int_eq(2 * bw_pd_bond_account(pd).bonds, expected);
+  ck_assert_int_eq(2 * ledger_of(pd).bonds, expected);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
 }

@@ -31,7 +31,7 @@ START_TEST(two_particles_pull_in_closed_form)
     bw_pd_bond *pd = pair(c);
     double A[6], expected = alpha[surface] * c0 * 0.02 * dv / 2;
     pd_set(pd, stretched, NULL);
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd); /* evaluates the force */
+    const bw_pd_bond_ledger l = ledger_of(pd); /* evaluates the force */
     pd_gather(pd, bw_pd_bond_get_acceleration, A);
     bw_check_near(A[0] / expected, 1, 200 * BW_REAL_EPSILON);
     bw_check_near(A[3] / expected, -1, 200 * BW_REAL_EPSILON);
@@ -110,9 +110,9 @@ static void check_momenta(bw_pd_geometry geometry, double damping_pair, bool rk3
   pd_body body = pd_box(7, 6, geometry == BW_PD_3D ? 5 : 1);
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, wobble, swirl);
-  const bw_pd_bond_ledger a = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger a = ledger_of(pd);
   pd_steps(pd, 60, (rk3 ? 0.1 : 0.5) * bw_pd_bond_dt_max(pd));
-  const bw_pd_bond_ledger b = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger b = ledger_of(pd);
   const double size = fabs(a.momentum[0]) + fabs(a.momentum[1]);
   /* damping with the half-step velocity still is along the present bond; in RK3 angular
      momentum is a quadratic invariant, which that scheme keeps to its order only: 1.6e-4 of its
@@ -193,7 +193,7 @@ START_TEST(damping_in_closed_form)
       double A[6];
       bw_pd_bond_set_damping(pd, kinds[q][0], kinds[q][1], kinds[q][2]);
       pd_set(pd, NULL, parting);
-      bw_pd_bond_account(pd); /* evaluates the force */
+      (void)ledger_of(pd); /* evaluates the force */
       pd_gather(pd, bw_pd_bond_get_acceleration, A);
       const double k = kinds[q][0], m = kinds[q][1], a = kinds[q][2];
       bw_check_near(A[0], (k * 0.125 * 0.4 + m * 0.4 + a * 0.1) / 2, 100 * BW_REAL_EPSILON);
@@ -224,7 +224,7 @@ START_TEST(damping_of_rigid_motion)
     pd_steps(pd, 200, 0.1);
     const double expected = q == 0 ? exp(-0.02 * 20 / 2) : 1;
     const double mass = 2 * 25 * 0.25;
-    bw_check_near(bw_pd_bond_account(pd).momentum[0] / (0.25 * mass), expected, 1e-3);
+    bw_check_near(ledger_of(pd).momentum[0] / (0.25 * mass), expected, 1e-3);
     bw_pd_bond_destroy(&pd);
     pd_body_release(&body);
   }
@@ -244,7 +244,7 @@ START_TEST(external_force_does_its_work)
       F[3 * i] = 0, F[3 * i + 1] = 0.04, F[3 * i + 2] = 0;
     bw_pd_bond_set_force(pd, F);
     pd_steps(pd, 50, 0.1);
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger l = ledger_of(pd);
     const double volume = 64 * 0.125, p = 0.04 * volume * 5;
     bw_check_near(l.momentum[1], p, 1e3 * BW_REAL_EPSILON);
     bw_check_near(l.kinetic, p * p / (2 * 2 * volume), 1e3 * BW_REAL_EPSILON);
@@ -281,7 +281,7 @@ START_TEST(prescribed_ends_move_as_told)
       bw_check_near(X[3 * i + 1], (body.site[3 * i + 1] + 0.5) * 0.5 + 0.05, 1e3 * BW_REAL_EPSILON);
       ck_assert_double_eq(A[3 * i], 0);
     }
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger l = ledger_of(pd);
     ck_assert_double_gt(l.elastic, 0);
     bw_check_near((l.kinetic + l.elastic) / l.external, 1, 0.01); /* dt is a tenth of the limit */
     bw_pd_bond_destroy(&pd);

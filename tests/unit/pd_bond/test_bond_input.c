@@ -210,10 +210,10 @@ static double growth(bw_pd_bond_config c, pd_body body, int steps)
 {
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, rough, NULL);
-  const double start = bw_pd_bond_account(pd).elastic;
+  const double start = ledger_of(pd).elastic;
   for (int s = 0; s < steps; s++)
     bw_check_ok(bw_pd_bond_step(pd, bw_pd_bond_dt_max(pd)));
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   bw_pd_bond_destroy(&pd);
   return (l.elastic + l.kinetic) / start;
 }
@@ -247,10 +247,10 @@ START_TEST(the_limit_is_stable)
     pd_body body = pd_box(6, 6, 6);
     bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
     pd_set(pd, zigzag, NULL);
-    const double start = bw_pd_bond_account(pd).elastic;
+    const double start = ledger_of(pd).elastic;
     for (int s = 0; s < 300; s++)
       bw_check_ok(bw_pd_bond_step(pd, bw_pd_bond_dt_max(pd)));
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger l = ledger_of(pd);
     ck_assert_double_lt(l.elastic + l.kinetic, start);
     bw_pd_bond_destroy(&pd);
     pd_body_release(&body);

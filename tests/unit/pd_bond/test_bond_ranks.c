@@ -72,7 +72,7 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
             1e-13 + 400 * (BW_REAL_EPSILON > 1e-10) * BW_REAL_EPSILON);
     pd_steps(many, 150, dt);
     pd_steps(one, 150, dt);
-    const bw_pd_bond_ledger a = bw_pd_bond_account(many), b = bw_pd_bond_account(one);
+    const bw_pd_bond_ledger a = ledger_of(many), b = ledger_of(one);
     ck_assert_int_gt(b.broken, 50);
     ck_assert_int_eq(a.broken, b.broken);
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
@@ -121,11 +121,11 @@ START_TEST(restart_on_another_number_of_ranks)
     pd_set(many, NULL, shake);
     pd_steps(many, 80, dt);
     pd_restart_from(many, one);
-    ck_assert_int_eq(bw_pd_bond_account(many).bonds, bw_pd_bond_account(one).bonds);
-    ck_assert_int_eq(bw_pd_bond_account(many).broken, bw_pd_bond_account(one).broken);
+    ck_assert_int_eq(ledger_of(many).bonds, ledger_of(one).bonds);
+    ck_assert_int_eq(ledger_of(many).broken, ledger_of(one).broken);
     pd_steps(many, 100, dt);
     pd_steps(one, 100, dt);
-    const bw_pd_bond_ledger a = bw_pd_bond_account(many), b = bw_pd_bond_account(one);
+    const bw_pd_bond_ledger a = ledger_of(many), b = ledger_of(one);
     ck_assert_int_eq(a.broken, b.broken);
     ck_assert_int_gt(a.broken, 50);
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);

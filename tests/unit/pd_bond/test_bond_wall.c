@@ -41,7 +41,7 @@ START_TEST(one_particle_in_closed_form)
     const double energy = q == 0 ? 0.5 * k * 0.125 * (0.5 * log(0.5 / r) - 0.5 + r) : 0;
     double A[3];
     pd_set(pd, lower, NULL);
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger l = ledger_of(pd);
     pd_gather(pd, bw_pd_bond_get_acceleration, A);
     for (int d = 0; d < 3; d++)
       bw_check_near(A[d], push * oblique.normal[d], ROUND_OFF * k);
@@ -84,7 +84,7 @@ START_TEST(a_wall_is_a_mirror)
     pd_steps(single, (int)(0.6 / dt), dt);
     pd_gather(pair, bw_pd_bond_get_position, Xp);
     pd_gather(single, bw_pd_bond_get_position, Xs);
-    most = fmax(most, bw_pd_bond_account(single).contact);
+    most = fmax(most, ledger_of(single).contact);
     for (int z = 0; z < SIDE; z++)
       for (int i = 0; i < SIDE * SIDE; i++)
         for (int d = 0; d < 3; d++)
@@ -92,7 +92,7 @@ START_TEST(a_wall_is_a_mirror)
                         Xs[3 * (z * SIDE * SIDE + i) + d], 1e4 * ROUND_OFF);
   }
   ck_assert_double_gt(most, 0);
-  ck_assert_double_gt(bw_pd_bond_account(single).momentum[1], 0); /* it bounced */
+  ck_assert_double_gt(ledger_of(single).momentum[1], 0); /* it bounced */
   bw_pd_bond_destroy(&pair);
   bw_pd_bond_destroy(&single);
   pd_body_release(&two);
@@ -120,12 +120,12 @@ static void check_fall(bw_pd_integrator integrator)
   bw_check_ok(bw_pd_load_launch(pd, (double[3]){0.03, 0, 0}, (double[3]){0}, (double[3]){0}));
   const double dt = 0.1 * bw_pd_bond_dt_max(pd), mass = 36 * 2 * 0.125;
   const double start = pd_energy(pd), scale = mass * 0.004 * 1.0;
-  const bw_pd_bond_ledger first = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger first = ledger_of(pd);
   double fastest = 0, worst = 0;
   const int steps = (int)(60 / dt);
   for (int q = 0; q < steps; q += 50) {
     pd_steps(pd, 50, dt);
-    const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+    const bw_pd_bond_ledger l = ledger_of(pd);
     fastest = fmax(fastest, l.momentum[1] / mass);
     worst = fmax(worst, fabs(pd_energy(pd) - start) / scale);
     for (int d = 0; d < 3; d++) {
@@ -133,7 +133,7 @@ static void check_fall(bw_pd_integrator integrator)
       bw_check_near(l.momentum[d] - first.momentum[d] + l.wall[d], pushed, ROUND_OFF);
     }
   }
-  const bw_pd_bond_ledger end = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger end = ledger_of(pd);
   ck_assert_double_lt(worst, 0.005);         /* Verlet at a tenth: (w dt)^2/8 */
   ck_assert_double_gt(fastest, 0.5 * 0.089); /* fell by 1: sqrt(2 g) = 0.089; some now vibrates */
   ck_assert_double_gt(end.wall[0], mass * 0.03); /* it came back from the side as well */
@@ -167,13 +167,13 @@ START_TEST(a_foundation_exempts_until_its_bonds_break)
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   bw_check_ok(bw_pd_bond_set_walls(pd, 1, &floor_at_0));
   pd_set(pd, squeeze, NULL);
-  ck_assert_double_eq(bw_pd_bond_account(pd).contact, 0);
+  ck_assert_double_eq(ledger_of(pd).contact, 0);
   bw_check_ok(
       bw_pd_bond_precrack(pd, (double[]){-9, 0, -9}, (double[]){9, 0, -9}, (double[]){-9, 0, 9}));
   const double k = 15 * bw_pd_bond_micromodulus(pd) * 0.125, r = 2 * 0.24, pair = 0.49;
   const double on_floor = 0.5 * k * 0.125 * (0.5 * log(0.5 / r) - 0.5 + r);
   const double on_below = k * 0.125 * (0.5 * log(0.5 / pair) - 0.5 + pair);
-  bw_check_near(bw_pd_bond_account(pd).contact, 9 * (on_floor + on_below), ROUND_OFF * k);
+  bw_check_near(ledger_of(pd).contact, 9 * (on_floor + on_below), ROUND_OFF * k);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
 }
@@ -212,6 +212,32 @@ START_TEST(through_a_wall_is_an_error)
   bw_check_ok(bw_pd_load_launch(pd, (double[3]){0, v, 0}, (double[3]){0}, (double[3]){0}));
   bw_check_status(bw_pd_bond_step(pd, dt), BW_EDIVERGED);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "through the wall"));
+  bw_pd_bond_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
+static void first_one_below(const double X0[3], double u[3])
+{
+  u[1] = X0[0] < 1 ? -X0[1] - 0.2 : 0;
+}
+
+/* One rank alone holds the particle that is beyond the wall. */
+START_TEST(a_book_that_cannot_be_made_is_an_error_on_all_ranks)
+{
+  const bw_pd_bond_config c = soft_contact();
+  pd_body body = pd_box(4, 1, 1);
+  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  bw_pd_bond_ledger ledger = {.kinetic = -1};
+  bw_check_ok(bw_pd_bond_set_walls(pd, 1, &floor_at_0));
+  pd_set(pd, first_one_below, NULL);
+  for (int q = 0; q < 2; q++) {
+    bw_check_status(bw_pd_bond_account(pd, &ledger), BW_EDIVERGED);
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), "through the wall"));
+    ck_assert_double_eq(ledger.kinetic, -1); /* as it was */
+  }
+  pd_set(pd, NULL, NULL);
+  ck_assert_double_eq(ledger_of(pd).kinetic, 0);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
 }
@@ -261,12 +287,12 @@ START_TEST(a_retired_piece_flies_on)
   double X[2][3 * COUNT], V[2][3 * COUNT], Xk[3 * COUNT];
   pd_steps(pd, 60, dt); /* until the pieces are apart */
   pd_steps(kept, 60, dt);
-  const bw_pd_bond_ledger before = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger before = ledger_of(pd);
   ck_assert_double_eq(before.contact, 0);
   const double start = pd_energy(pd);
   retire_left(pd);
   bw_check_near(pd_energy(pd), start, ROUND_OFF);
-  ck_assert_double_gt(bw_pd_bond_account(pd).retired, 0);
+  ck_assert_double_gt(ledger_of(pd).retired, 0);
   pd_gather(pd, bw_pd_bond_get_position, X[0]);
   pd_gather(pd, bw_pd_bond_get_velocity, V[0]);
   pd_steps(pd, 50, dt);
@@ -283,7 +309,7 @@ START_TEST(a_retired_piece_flies_on)
         bw_check_near(X[1][d], Xk[d], ROUND_OFF);
       }
     }
-  const bw_pd_bond_ledger after = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger after = ledger_of(pd);
   for (int d = 0; d < 3; d++) {
     bw_check_near(after.momentum[d], before.momentum[d], ROUND_OFF);
     bw_check_near(after.angular[d], before.angular[d], ROUND_OFF);
@@ -319,7 +345,7 @@ START_TEST(a_restart_knows_who_is_retired)
   pd_gather(one, bw_pd_bond_get_position, X[1]);
   for (size_t d = 0; d < 3 * (size_t)COUNT; d++)
     ck_assert_double_eq(X[0][d], X[1][d]);
-  const bw_pd_bond_ledger a = bw_pd_bond_account(many), b = bw_pd_bond_account(one);
+  const bw_pd_bond_ledger a = ledger_of(many), b = ledger_of(one);
   ck_assert_double_ne(a.wall[0], 0);
   bw_check_near(a.wall[0], b.wall[0], ROUND_OFF);
   ck_assert_double_ne(a.retired, 0);
@@ -337,6 +363,7 @@ static const bw_check_test tests[] = {BW_TEST(one_particle_in_closed_form),
                                       BW_TEST(a_foundation_exempts_until_its_bonds_break),
                                       BW_TEST(walls_that_make_no_sense_are_refused),
                                       BW_TEST(through_a_wall_is_an_error),
+                                      BW_TEST(a_book_that_cannot_be_made_is_an_error_on_all_ranks),
                                       BW_TEST(a_retired_piece_flies_on),
                                       BW_TEST(a_restart_knows_who_is_retired)};
 BW_CHECK_MAIN("pd_bond.wall", tests)

@@ -27,7 +27,7 @@ static double bulk(const bw_pd_bond_config *c)
     pd_body box = pd_box(size[0], size[1], size[2]);
     bw_pd_bond *pd = pd_make(bw_check_world(), c, &box);
     pd_set(pd, d == 3 ? dilate : dilate_plane, NULL);
-    sum += sign * bw_pd_bond_account(pd).elastic;
+    sum += sign * ledger_of(pd).elastic;
     bw_pd_bond_destroy(&pd);
     pd_body_release(&box);
   }

@@ -1,6 +1,7 @@
 /* Disordered clouds: where the particles are and which are bonds, by enumeration of pairs.
  * TEST ranks=1,2,3,4 */
 #include "bw_pd_stress.h"
+#include "ledger.h"
 #include "pd_cloud.h"
 
 #include <string.h>
@@ -61,7 +62,7 @@ static void check_bonds(bw_pd_bond_config c, int nx, int ny, int nz)
   for (int64_t a = 0; a < body.n; a++)
     for (int64_t b = 0; b < a; b++)
       expected += apart(&c, X + 3 * a, X + 3 * b, d) < c.ds * (c.horizon_ratio + 0.5);
-  ck_assert_int_eq(bw_pd_bond_account(pd).bonds, expected);
+  ck_assert_int_eq(ledger_of(pd).bonds, expected);
   bw_release(&X);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);
@@ -94,10 +95,10 @@ START_TEST(precracks_see_the_true_places)
       const double t = (y - X[3 * a + 1]) / d[1];
       expected += t > 0 && t < 1 && X[3 * a] + t * d[0] <= tip;
     }
-  const int64_t before = bw_pd_bond_account(pd).bonds;
+  const int64_t before = ledger_of(pd).bonds;
   bw_check_ok(bw_pd_bond_precrack(pd, (double[]){-1, y, 0}, (double[]){tip, y, 0}, NULL));
   ck_assert_int_gt(expected, 100);
-  ck_assert_int_eq(before - bw_pd_bond_account(pd).bonds, expected);
+  ck_assert_int_eq(before - ledger_of(pd).bonds, expected);
   bw_release(&X);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&body);

@@ -2,6 +2,7 @@
  * TEST ranks=1,2,3,4 */
 #include "bw_pd_static.h"
 #include "bw_pd_stress.h"
+#include "ledger.h"
 #include "pd_cloud.h"
 
 static void wobble(const double X0[3], double u[3])
@@ -84,7 +85,7 @@ static void check_force(bw_pd_bond_config c, bool spread)
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, wobble, swirl);
   if (spread) bw_pd_bond_set_damping(pd, c.damping_pair, 1e-30, 0); /* another way through */
-  const double elastic = bw_pd_bond_account(pd).elastic, horizon = bw_pd_bond_horizon(pd);
+  const double elastic = ledger_of(pd).elastic, horizon = bw_pd_bond_horizon(pd);
   double *X0 = rows_of(pd, bw_pd_bond_get_reference), *X = rows_of(pd, bw_pd_bond_get_position);
   double *A = rows_of(pd, bw_pd_bond_get_acceleration), *V = rows_of(pd, bw_pd_bond_get_velocity);
   pairs p = {&c, bw_pd_bond_micromodulus(pd), bw_pd_bond_volume(pd), 0, body.n, X0, X, V, NULL};
@@ -137,9 +138,9 @@ static void check_book(bool contact, double step, double tolerance)
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, NULL, burst);
   const double start = pd_energy(pd), dt = step * bw_pd_bond_dt_max(pd);
-  const bw_pd_bond_ledger first = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger first = ledger_of(pd);
   pd_steps(pd, (int)(8 / step), dt);
-  const bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger l = ledger_of(pd);
   ck_assert_int_gt(l.broken, 100);
   bw_check_near(pd_energy(pd) / start, 1, tolerance);
   for (int k = 0; k < 3; k++) {

@@ -114,16 +114,16 @@ START_TEST(launches)
   bw_pd_bond *pd = bar(BW_PD_VERLET);
   const double m = 48 * 2 * bw_pd_bond_volume(pd), centre[3] = {3, 1, 0};
   bw_check_ok(bw_pd_load_launch(pd, (double[3]){0, 0, 0}, (double[3]){0, 0, 1.5}, centre));
-  bw_pd_bond_ledger l = bw_pd_bond_account(pd);
+  bw_pd_bond_ledger l = ledger_of(pd);
   bw_check_near(l.angular[2], 1.5 * m * ((36 + 4) / 12.0 - 0.25 / 6), 50 * BW_REAL_EPSILON);
   bw_check_near(l.momentum[0], 0, 50 * BW_REAL_EPSILON);
   bw_check_ok(bw_pd_load_launch(pd, (double[3]){2, -1, 0}, (double[3]){0, 0, 0}, centre));
-  l = bw_pd_bond_account(pd);
+  l = ledger_of(pd);
   bw_check_near(l.momentum[0], 2 * m, 50 * BW_REAL_EPSILON);
   bw_check_near(l.momentum[1], -m, 50 * BW_REAL_EPSILON);
   const double factor = 4;
   bw_check_ok(bw_pd_load_velocity(pd, swirl, &factor));
-  l = bw_pd_bond_account(pd);
+  l = ledger_of(pd);
   bw_check_near(l.momentum[0], 4 * m * 1, 50 * BW_REAL_EPSILON); /* mean of y is 1, of x 3 */
   bw_check_near(l.momentum[1], -3 * m, 50 * BW_REAL_EPSILON);
   bw_pd_bond_destroy(&pd);

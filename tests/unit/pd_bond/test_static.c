@@ -149,13 +149,13 @@ START_TEST(relaxation_breaks_what_is_beyond)
   config.breaks = true;
   bw_check_ok(bw_pd_static_relax(pd, &config, &report));
   ck_assert_int_eq(report.broken, 0);
-  const double elastic = bw_pd_bond_account(pd).elastic;
+  const double elastic = ledger_of(pd).elastic;
   bw_pd_bond_set_G0(pd, 1e-6); /* s0 = sqrt(5 G0/(6 E delta)) = 5e-4; the strain is near 1e-2 */
   const bw_status st = bw_pd_static_relax(pd, &config, &report);
   ck_assert_msg(st == BW_OK, "%s", bw_last_message());
   ck_assert_int_gt(report.broken, 20);
-  ck_assert_double_lt(bw_pd_bond_account(pd).elastic, 1e-3 * elastic);
-  ck_assert_double_gt(bw_pd_bond_account(pd).fracture, 0);
+  ck_assert_double_lt(ledger_of(pd).elastic, 1e-3 * elastic);
+  ck_assert_double_gt(ledger_of(pd).fracture, 0);
   bw_pd_bond_destroy(&pd);
   pd_body_release(&box);
 }

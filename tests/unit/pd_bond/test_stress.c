@@ -61,7 +61,7 @@ static double energy_at(bw_pd_bond *pd, tensor F, int a, int b, double change)
   memcpy(moved, F, sizeof moved);
   moved[a][b] += change;
   deform(pd, moved);
-  return bw_pd_bond_account(pd).elastic;
+  return ledger_of(pd).elastic;
 }
 
 /* The ledger's energy knows nothing of stress: dE/dF = sum_h P_h dV with P F^T = J sigma, for any

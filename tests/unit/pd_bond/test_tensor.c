@@ -102,10 +102,10 @@ START_TEST(momentum_stays)
   pd_body body = pd_box(7, 6, 5);
   bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, skew, NULL);
-  const bw_pd_bond_ledger before = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger before = ledger_of(pd);
   for (int q = 0; q < 50; q++)
     bw_check_ok(bw_pd_bond_step(pd, 0.5 * bw_pd_bond_dt_max(pd)));
-  const bw_pd_bond_ledger after = bw_pd_bond_account(pd);
+  const bw_pd_bond_ledger after = ledger_of(pd);
   const double size = sqrt(2 * before.elastic * c.rho * 0.125 * (double)body.n);
   for (int k = 0; k < 3; k++) {
     ck_assert_double_lt(fabs(after.momentum[k]), 1e3 * BW_REAL_EPSILON * size);

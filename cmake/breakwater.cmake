@@ -268,6 +268,8 @@ function(bw_unit_tests)
     target_link_libraries(${name} PRIVATE bw_ext_check)
     _bw_run(${label} ${module}.${name} ${name} ${head})
   endforeach()
+  _bw_program(fails_on_one_rank "" ${PROJECT_SOURCE_DIR}/tests/support/fails_on_one_rank.c) # of robustness.assertion
+  target_link_libraries(fails_on_one_rank PRIVATE bw_ext_check)
 endfunction()
 
 # validation/MODULE/CLAIM.c: the quick form is a test, `run validate --full` gives --full. After

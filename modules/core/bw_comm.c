@@ -42,6 +42,14 @@ int bw_finish(bw_comm **world, bw_status mine)
   return (int)worst;
 }
 
+void bw_comm_abort(const bw_comm *comm, int code)
+{
+  fflush(NULL);
+  MPI_Abort(comm->mpi, code);
+  for (;;) /* MPI_Abort does not return, but its header does not say so */
+    continue;
+}
+
 bw_status bw_comm_self(bw_comm **out)
 {
   return wrap(MPI_COMM_SELF, out);

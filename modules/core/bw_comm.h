@@ -19,6 +19,11 @@ bw_status bw_init(int *argc, char ***argv, bw_comm **world) BW_MUST_CHECK;
  * its message on stderr, *world is freed, MPI ends. Returns the exit code. Collective. */
 int bw_finish(bw_comm **world, bw_status mine);
 
+/* End the run of all ranks now, with this exit code and without any clean-up. For programs that
+ * test: a rank that found a fault cannot tell the others, which may be waiting for it in a
+ * collective call. Everything else returns a status and lets ranks agree. Local; does not return. */
+void bw_comm_abort(const bw_comm *comm, int code) __attribute__((noreturn));
+
 /* A group of this rank alone (for serial programs and tests inside a parallel run). Local. */
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 void bw_comm_destroy(bw_comm **comm); /* NULL is fine; the world is freed by bw_finish */

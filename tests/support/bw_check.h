@@ -2,12 +2,13 @@
  *
  *   static const bw_check_test tests[] = {BW_TEST(function), ...};
  *   BW_CHECK_MAIN("module", tests)
- * Inside a test, bw_check_world() is the communicator of all ranks. The exit code is that of the
- * rank that failed. */
+ * Inside a test, bw_check_world() is the communicator of all ranks. A test that fails on one of
+ * several ranks ends all of them at once, as the others may be waiting for it. */
 #pragma once
 #include "bw_comm.h"
 #include <check.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct {
@@ -35,22 +36,37 @@ static inline bw_comm *bw_check_world(void)
 #define bw_check_status(call, code)                                                                \
   ck_assert_msg((call) == (code), "%s did not return %s: %s", #call, #code, bw_last_message())
 
+/* One test by itself; returns how many failures. In this process: a forked child cannot use MPI. */
+static inline int bw_check_one(const char *suite_name, const bw_check_test *test)
+{
+  Suite *suite = suite_create(suite_name);
+  TCase *one = tcase_create(test->name);
+  tcase_add_test(one, *test->function);
+  suite_add_tcase(suite, one);
+  SRunner *runner = srunner_create(suite);
+  srunner_set_fork_status(runner, CK_NOFORK);
+  srunner_run_all(runner, CK_SILENT);
+  const int failed = srunner_ntests_failed(runner);
+  if (failed > 0) {
+    printf("on rank %d of %d, ", bw_comm_rank(bw_check_world_), bw_comm_size(bw_check_world_));
+    srunner_print(runner, CK_NORMAL);
+  }
+  srunner_free(runner);
+  return failed;
+}
+
 static inline int bw_check_run(int argc, char **argv, const char *suite_name, int n,
                                const bw_check_test tests[])
 {
-  if (bw_init(&argc, &argv, &bw_check_world_) != BW_OK) return 1;
-  Suite *suite = suite_create(suite_name);
+  if (bw_init(&argc, &argv, &bw_check_world_) != BW_OK) return EXIT_FAILURE;
+  int failed = 0;
   for (int q = 0; q < n; q++) {
-    TCase *one = tcase_create(tests[q].name);
-    tcase_set_timeout(one, 300);
-    tcase_add_test(one, *tests[q].function);
-    suite_add_tcase(suite, one);
+    failed += bw_check_one(suite_name, &tests[q]);
+    if (failed > 0 && bw_comm_size(bw_check_world_) > 1)
+      bw_comm_abort(bw_check_world_, EXIT_FAILURE);
   }
-  SRunner *runner = srunner_create(suite);
-  srunner_set_fork_status(runner, CK_NOFORK); /* forked children cannot use MPI */
-  srunner_run_all(runner, bw_comm_rank(bw_check_world_) == 0 ? CK_NORMAL : CK_MINIMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
+  if (bw_comm_rank(bw_check_world_) == 0)
+    printf("%s: %d of %d tests hold\n", suite_name, n - failed, n);
   const int code = bw_finish(&bw_check_world_, BW_OK);
   return code != 0 || failed != 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -18,7 +18,9 @@
  * = 1 % at 40 cells, with 2 % for slip: 3 %. tip: goes with the force, and with the plate's own 2
  * %: 5 %. converging: at least first order between 20 and 40 cells per height, so the error of the
  * force falls to a half or below. That of the tip is reported: a force too low and a plate too soft
- * cancel on the coarse grid. BUILD modules=coupler TEST  ranks=1 timeout=300 */
+ * cancel on the coarse grid.
+ * BUILD modules=coupler,shape
+ * TEST ranks=1 timeout=300 */
 #include "bw_validation.h"
 #include "cantilever.h"
 

@@ -7,7 +7,7 @@
  * step. Per marker and iteration [core-ns]: `kernels` is interpolation and spreading, `forcing`
  * also the forces for images on other blocks (what a halo exchange would be).
  * `interface_over_fluid` is forcing and probes over momentum and Poisson; goal 0.3.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST ranks=2 */
 #include "bw_bench.h"
 #include "bw_bench_porous.h"

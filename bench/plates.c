@@ -11,13 +11,13 @@
  *
  * halo_48x32x32: copies of other ranks' particles; floor: the three layers at the cut.
  *
- * BUILD modules=pd_bond,pd_interface
+ * BUILD modules=pd_bond,pd_interface,shape
  * TEST ranks=2 */
 #include "../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
 #include "../cases/notched_plate/specimen_crack.c"
 #include "../cases/notched_plate/specimen_input.c"
 #include "bw_bench_solid.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  bw_status st = bw_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, pd));
   bw_release(&site);
   bw_release(&kind);

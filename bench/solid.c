@@ -4,12 +4,12 @@
  * (bench/lammps_block.in), run just before by `./run bench solid` when the executable lmp is there
  * (Debian package lammps). Floor: positions read once and forces
  * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
- * BUILD modules=pd_bond
+ * BUILD modules=pd_bond,shape
  * TEST ranks=2 */
 #include "bw_bench_solid.h"
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,7 +45,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = 3.015;
   c.family_reach = BW_PD_REACH_HORIZON;
   c.disorder = disorder;
-  bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  bw_status st = bw_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
   bw_pd_bond_ledger e;
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_bond_account(pd, &e));

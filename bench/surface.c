@@ -5,7 +5,7 @@
  * is told from and what is told, once each at the triad bandwidth of this run (per surface
  * particle: displacements at the ends of three line elements and its own, 3 indices and 2 vectors
  * to follow them, 2 results).
- * BUILD modules=pd_interface
+ * BUILD modules=pd_interface,shape
  * TEST ranks=1 */
 #include "bw_bench_porous.h"
 #include "bw_bench_solid.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 static const double bw_bench_height = 0.1; /* of the channel [m] */
 enum { BW_BENCH_CELLS = 64 };              /* over it */
@@ -29,7 +29,7 @@ static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_pd_bo
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(3, body, ds, c.origin, false, &n, &site, &kind);
+  bw_status st = bw_shape_fill(3, body, ds, c.origin, false, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, solid));
   bw_release(&site);
   bw_release(&kind);

@@ -7,7 +7,7 @@
 #pragma once
 #include "bw_coupler.h"
 #include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 #include <limits.h>
 #include <math.h>
@@ -176,8 +176,8 @@ static inline bw_status bending_make_solid(bending_flow *f)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n,
-                                  &site, &kind);
+  bw_status st =
+      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);

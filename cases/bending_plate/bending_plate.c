@@ -1,7 +1,7 @@
 /* An elastic plate on the wall of a channel, bent by the stream (FSI section 3, last test).
  *
  * Run:   build/bin/bending_plate cases/bending_plate/bending_plate.yaml --out out/bending
- * BUILD modules=coupler,vtk */
+ * BUILD modules=coupler,vtk,shape */
 #include "bending_case.h"
 #include "bw_stop.h"
 

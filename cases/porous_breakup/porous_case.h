@@ -3,8 +3,8 @@
 #include "bw_case.h"
 #include "bw_coupler.h"
 #include "bw_history.h"
-#include "bw_pd_shape.h"
 #include "bw_pd_stress.h"
+#include "bw_shape.h"
 
 /* ---- what the YAML file says (tables in porous_config.c) ---- */
 typedef struct {

@@ -1,7 +1,7 @@
 /* Which sites are the medium: a box with pores taken out, or a body from a file cut to the box; on
  * a slab under the lower wall that holds it. */
 #include "bw_memory.h"
-#include "bw_pd_shape_pack.h"
+#include "bw_shape_pack.h"
 #include "porous_case.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 typedef struct {
   int count;
   bw_shape *shape;
-  bw_pd_mask *mask;
+  bw_shape_mask *mask;
   char key[320]; /* that decides how much of it is pores, with its value: for messages */
 } medium_body;
 
@@ -75,7 +75,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
 {
   const porous_random *r = &q->medium.random;
   const bw_shape box = box_of(q);
-  bw_pd_pack_config c = bw_pd_pack_config_default();
+  bw_shape_pack_config c = bw_shape_pack_config_default();
   bw_shape *ball = NULL;
   int balls = 0, count = 0;
   c.radius_min = r->radius[0], c.radius_max = r->radius[1];
@@ -88,7 +88,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
     c.lower[d] = box.lower[d] - beyond, c.upper[d] = box.upper[d] + beyond;
   }
   snprintf(b->key, sizeof b->key, "medium.random.porosity = %g", r->porosity);
-  BW_TRY(bw_pd_pack_spheres(&c, &balls, &count, &ball));
+  BW_TRY(bw_shape_pack_spheres(&c, &balls, &count, &ball));
   const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 2);
   if (st == BW_OK) {
     b->shape[0] = box;
@@ -122,7 +122,7 @@ static bw_status image(const porous_config *q, medium_body *b)
   const bw_shape box = box_of(q);
   snprintf(b->key, sizeof b->key, "medium.image.solid = [%g, %g] of %s", m->solid[0], m->solid[1],
            m->file);
-  BW_TRY(bw_pd_mask_read_image(m->file, m->solid[0], m->solid[1], &b->mask));
+  BW_TRY(bw_shape_mask_read_image(m->file, m->solid[0], m->solid[1], &b->mask));
   for (int d = 0; d < 3; d++) {
     if (!isnan(m->voxel)) b->mask->spacing[d] = m->voxel;
     const double have = b->mask->spacing[d] * (double)b->mask->size[d];
@@ -140,7 +140,7 @@ static bw_status surface(const porous_config *q, medium_body *b)
 {
   const porous_surface *m = &q->medium.surface;
   snprintf(b->key, sizeof b->key, "medium.surface.scale = %g of %s", m->scale, m->file);
-  BW_TRY(bw_pd_mask_read_stl(m->file, m->scale, spacing(q), &b->mask));
+  BW_TRY(bw_shape_mask_read_stl(m->file, m->scale, spacing(q), &b->mask));
   return cut_mask(q, b);
 }
 
@@ -226,7 +226,7 @@ static bw_status fill(const porous_config *q, medium_way way, medium_body *b, in
   static const double origin[3] = {0.0, 0.0, 0.0};
   BW_TRY(way(q, b));
   if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
-  BW_TRY(bw_pd_shape_fill(b->count, b->shape, spacing(q), origin, false, n, site, kind));
+  BW_TRY(bw_shape_fill(b->count, b->shape, spacing(q), origin, false, n, site, kind));
   int64_t above = 0;
   for (int64_t k = 0; k < *n; k++)
     above += (*site)[3 * k + 1] >= 0;
@@ -244,6 +244,6 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
   bw_status st = choose(&q->medium, &way);
   BW_THEN(st, fill(q, way, &body, n, site, kind));
   bw_release(&body.shape);
-  bw_pd_mask_destroy(&body.mask);
+  bw_shape_mask_destroy(&body.mask);
   return bw_comm_agree(comm, st); /* a file may fail on one rank alone */
 }

@@ -1,10 +1,10 @@
 /* A notched bar is pulled apart: one end held, the other drawn away, until it snaps.
- * BUILD modules=pd_bond
+ * BUILD modules=pd_bond,shape
  * TEST  ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"
 #include "bw_pd_load.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include <stdio.h>
 
 static bw_status pull(const bw_comm *world)
@@ -28,7 +28,7 @@ static bw_status pull(const bw_comm *world)
   uint8_t *kind;
   double *V = NULL;
   bw_pd_bond *bar;
-  BW_TRY(bw_pd_shape_fill(4, shapes, config.ds, config.origin, true, &n, &site, &kind));
+  BW_TRY(bw_shape_fill(4, shapes, config.ds, config.origin, true, &n, &site, &kind));
   BW_TRY(bw_pd_bond_create(world, &config, n, site, kind, &bar));
   BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(bar)));
   bw_pd_bond_get_reference(bar, V);

@@ -19,7 +19,7 @@
  *            to hold, every step within its residual; the plate by probes is reported: there a
  *            small motion grows by 1 % a step at the fluid's own density, where that by the
  *            reaction rests, not explained.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1 timeout=7200 */
 #include "block.h"
 #include "bw_validation.h"

@@ -19,7 +19,7 @@
  * %: 5 %. converging: at least first order between 20 and 40 cells per height, so the error of the
  * force falls to a half or below. That of the tip is reported: a force too low and a plate too soft
  * cancel on the coarse grid.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1 timeout=3600 */
 #include "bw_validation.h"
 #include "cantilever.h"

@@ -9,7 +9,7 @@
 #pragma once
 #include "bw_coupler.h"
 #include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 #include <math.h>
 
@@ -91,7 +91,7 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_pd_shape_fill(shapes, shape, H, c.origin, true, &n, &site, &kind);
+  bw_status st = bw_shape_fill(shapes, shape, H, c.origin, true, &n, &site, &kind);
   s->mass = 0.0;
   for (int64_t q = 0; st == BW_OK && q < n; q++)
     s->mass += site[3 * q + 1] >= 0 ? H * H * H : 0.0;

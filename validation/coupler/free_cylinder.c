@@ -19,11 +19,11 @@
  *            couette, poiseuille: the lags behind a point of the fluid, 3.6 and 3 %, go with D^2:
  *            2 (0.7/8) of them, 0.6 %, and 0.4 % for slip, which is of the order of the viscous
  *            number of the step, 0.08, times the lag.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1 timeout=3600 */
 #include "bw_coupler.h"
 #include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include "bw_validation.h"
 
 #include <math.h>
@@ -118,7 +118,7 @@ static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s
   /* pairs: damping against a mean would hold back its turning; the family has about 30 h^3 */
   c.damping_pair = 1.0 * c.rho / (s->dt * 30.0 * s->h * s->h * s->h);
   c.origin[2] = 0.5 * s->h;
-  bw_status st = bw_pd_shape_fill(1, &cylinder, s->h, c.origin, true, &n, &site, &kind);
+  bw_status st = bw_shape_fill(1, &cylinder, s->h, c.origin, true, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);

@@ -18,7 +18,7 @@
  *            work is booked (report: work_late), -20 % of that received with w = 0.1 here, where
  *            the impulsive start is still being handed on: given = late + received, by the same
  *            argument and to the same 1 %.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1 */
 #include "block.h"
 #include "bw_real.h"

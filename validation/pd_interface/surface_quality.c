@@ -15,11 +15,11 @@
  * rim of the ball about a face); curvature adds none to first order. Bodies with sharp edges are
  * rounded over the horizon: a cube of side L loses 0.8 ds/L (reported, as are the porous media,
  * whose ridges between pores are thinner than ds; their exact area is the spheres').
- * BUILD modules=pd_interface
+ * BUILD modules=pd_interface,shape
  * TEST  ranks=2 */
 #include "bw_memory.h"
 #include "bw_pd_interface.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include "bw_validation.h"
 #include <math.h>
 #include <stdio.h>
@@ -181,7 +181,7 @@ static bw_status measure(const bw_comm *comm, const body *b, bw_pd_area area, ta
   bw_pd_bond *pd = NULL;
   bw_pd_interface *pi = NULL;
   memset(t, 0, sizeof *t);
-  bw_status st = bw_pd_shape_fill(b->count, b->shape, 1.0, c.origin, b->planar, &n, &site, &kind);
+  bw_status st = bw_shape_fill(b->count, b->shape, 1.0, c.origin, b->planar, &n, &site, &kind);
   BW_THEN(st, BW_ALLOCATE(&solid, (size_t)SIDE * SIDE * SIDE));
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_interface_create(pd, &ic, &pi));

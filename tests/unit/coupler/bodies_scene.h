@@ -3,7 +3,7 @@
 #include "bw_check.h"
 #include "bw_coupler.h"
 #include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 
 enum { HEIGHT = 16 };                 /* cells */
 static const double H = 1.0 / HEIGHT; /* height of the channel 1, density of the fluid 1 */
@@ -90,7 +90,7 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
     }
     shape[q].upper[2] = H;
   }
-  bw_check_ok(bw_pd_shape_fill(b->n_block, shape, H, c.origin, true, &n, &site, &kind));
+  bw_check_ok(bw_shape_fill(b->n_block, shape, H, c.origin, true, &n, &site, &kind));
   bw_check_ok(bw_pd_bond_create(bw_check_world(), &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);

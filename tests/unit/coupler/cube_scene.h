@@ -3,7 +3,7 @@
 #include "bw_check.h"
 #include "bw_coupler.h"
 #include "bw_memory.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include "coupler_internal.h"
 
 /* Positions and forces pass through bw_real. */
@@ -60,7 +60,7 @@ static inline scene build_blocks(double retraction, double relaxation, double sp
   uint8_t *kind = NULL;
   bw_check_ok(bw_grid_create(comm, &grid, &s.grid));
   bw_check_ok(bw_ns_channel_create(s.grid, &flow, &s.fluid));
-  bw_check_ok(bw_pd_shape_fill(1, &cube, H, solid.origin, false, &n, &site, &kind));
+  bw_check_ok(bw_shape_fill(1, &cube, H, solid.origin, false, &n, &site, &kind));
   ck_assert_int_eq(n, BLOCK * BLOCK * BLOCK);
   bw_check_ok(bw_pd_bond_create(comm, &solid, n, site, kind, &s.solid));
   bw_check_ok(bw_coupler_create(&config, s.fluid, s.solid, &s.coupler));

@@ -1,5 +1,5 @@
 /* Free bodies in the coupler: they fall on walls, cross seams, leave, and are accounted for.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1,2,4 timeout=3600 */
 #include "bodies_scene.h"
 #include "ledger.h"

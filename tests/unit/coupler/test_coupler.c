@@ -1,5 +1,5 @@
 /* The coupler: where markers and probes are, the load of a known pressure, sub-steps, state.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
 #include "ledger.h"

@@ -1,5 +1,5 @@
 /* Bodies that the method is not made for: they run and stay bounded, or are refused by name.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1,2 timeout=3600 */
 #include "bodies_scene.h"
 #include "ledger.h"

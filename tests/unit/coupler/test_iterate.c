@@ -1,5 +1,5 @@
 /* Iterated coupling.
- * BUILD modules=coupler
+ * BUILD modules=coupler,shape
  * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
 #include "ledger.h"
@@ -24,7 +24,7 @@ static double make_light(scene *s)
   material.rho = 0.1 * RHO;
   material.E = material.rho * c * c;
   material.damping_mean = material.rho * c / (BLOCK * H);
-  bw_check_ok(bw_pd_shape_fill(1, &cube, H, material.origin, false, &n, &site, &kind));
+  bw_check_ok(bw_shape_fill(1, &cube, H, material.origin, false, &n, &site, &kind));
   bw_check_ok(bw_pd_bond_create(bw_check_world(), &material, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);

@@ -4,7 +4,7 @@
 #include "bw_check.h"
 #include "bw_memory.h"
 #include "bw_pd_interface.h"
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include <string.h>
 
 typedef struct {
@@ -89,8 +89,8 @@ static inline body body_create(int count, const bw_shape shape[], const bw_pd_bo
 {
   body b;
   memset(&b, 0, sizeof b);
-  bw_check_ok(bw_pd_shape_fill(count, shape, c->ds, c->origin, c->geometry != BW_PD_3D, &b.n,
-                               &b.site, &b.kind));
+  bw_check_ok(bw_shape_fill(count, shape, c->ds, c->origin, c->geometry != BW_PD_3D, &b.n, &b.site,
+                            &b.kind));
   body_mark(&b);
   bw_check_ok(bw_pd_bond_create(bw_check_world(), c, b.n, b.site, b.kind, &b.pd));
   bw_check_ok(bw_pd_interface_create(b.pd, ic, &b.pi));

@@ -1,4 +1,5 @@
 /* Fragments: their number, mass, centre, velocity and spin for known rigid motions.
+ * BUILD modules=shape
  * TEST ranks=1,2,3,4 */
 #include "body.h"
 

@@ -1,4 +1,5 @@
 /* Cracks that open: when their faces become surface, with which normals and areas.
+ * BUILD modules=shape
  * TEST ranks=1,2,3,4 */
 #include "body.h"
 

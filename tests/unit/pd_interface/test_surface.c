@@ -1,4 +1,5 @@
 /* Which particles are surface, their normals and areas, against shapes known exactly.
+ * BUILD modules=shape
  * TEST ranks=1,2,3,4 */
 #include "body.h"
 

@@ -1,5 +1,6 @@
 /* The spin of a surface: that of a body that turns and moves, whatever else it is. Its normals
  * turn.
+ * BUILD modules=shape
  * TEST ranks=1,2,3,4 */
 #include "body.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Closed surfaces of triangles, filled by the parity of crossings. */
 #include "bw_memory.h"
-#include "pd_shape_mask.h"
+#include "shape_mask.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -120,7 +120,7 @@ static bool crosses(const float t[9], double scale, double y, double z, double *
 /* A crossing flips all cells of its line whose centre is behind it: even-odd without sorting. Lines
  * pass beside the cells' centres by a part of 1e-6, so that corners and edges on a lattice are not
  * met; odd[] keeps the parity of every line. */
-static void flip(const bw_pd_mask *m, const float t[9], double scale, uint8_t odd[])
+static void flip(const bw_shape_mask *m, const float t[9], double scale, uint8_t odd[])
 {
   int64_t lo[2], hi[2];
   for (int d = 1; d < 3; d++) {
@@ -146,7 +146,7 @@ static void flip(const bw_pd_mask *m, const float t[9], double scale, uint8_t od
     }
 }
 
-static bw_status fill(const char *path, const surface *s, double scale, bw_pd_mask *m)
+static bw_status fill(const char *path, const surface *s, double scale, bw_shape_mask *m)
 {
   uint8_t *odd = NULL;
   bw_status st = BW_ALLOCATE(&odd, (size_t)(m->size[1] * m->size[2]));
@@ -163,7 +163,8 @@ static bw_status fill(const char *path, const surface *s, double scale, bw_pd_ma
   return st;
 }
 
-bw_status bw_pd_mask_read_stl(const char *path, double scale, double spacing, bw_pd_mask **out)
+bw_status bw_shape_mask_read_stl(const char *path, double scale, double spacing,
+                                 bw_shape_mask **out)
 {
   surface s = {0};
   *out = NULL;
@@ -186,9 +187,9 @@ bw_status bw_pd_mask_read_stl(const char *path, double scale, double spacing, bw
                    cells, spacing, d, scale);
     size[d] = (int64_t)fmax(1, cells);
   }
-  BW_THEN(st, bw_pd_mask__create(path, size, lower, cell, out));
+  BW_THEN(st, bw_shape__mask_create(path, size, lower, cell, out));
   BW_THEN(st, fill(path, &s, scale, *out));
   bw_release(&s.corner);
-  if (st != BW_OK) bw_pd_mask_destroy(out);
+  if (st != BW_OK) bw_shape_mask_destroy(out);
   return st;
 }

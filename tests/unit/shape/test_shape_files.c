@@ -1,7 +1,8 @@
 /* Bodies from files.
  * TEST ranks=1 */
-#include "bw_pd_shape.h"
-#include "pd_test.h"
+#include "bw_check.h"
+#include "bw_memory.h"
+#include "bw_shape.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -30,24 +31,24 @@ static void write_file(const char *name, const char *head, const void *data, siz
 
 /* 3 x 2 x 2 voxels with the values 0..11; solid where 5 <= v <= 8: cells 5, 6, 7, 8. */
 enum { CELLS = 12 };
-static void check_cells(const bw_pd_mask *m, const double lower[3], const double spacing[3])
+static void check_cells(const bw_shape_mask *m, const double lower[3], const double spacing[3])
 {
   for (int q = 0; q < CELLS; q++) {
     ck_assert_int_eq(m->solid[q], q >= 5 && q <= 8);
     const double x[3] = {lower[0] + (q % 3 + 0.4) * spacing[0],
                          lower[1] + (q / 3 % 2 + 0.6) * spacing[1],
                          lower[2] + (q / 6 + 0.5) * spacing[2]};
-    ck_assert_int_eq(bw_pd_mask_at(m, 3, x), q >= 5 && q <= 8);
+    ck_assert_int_eq(bw_shape_mask_at(m, 3, x), q >= 5 && q <= 8);
   }
   const double beyond[3] = {lower[0] + 3.01 * spacing[0], lower[1], lower[2]};
-  ck_assert(!bw_pd_mask_at(m, 3, beyond));
+  ck_assert(!bw_shape_mask_at(m, 3, beyond));
 }
 
 /* Every type in both byte orders, after three bytes of something else. */
 START_TEST(raw_voxels_of_every_type)
 {
   const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  for (int type = 0; type < BW_PD_VOXEL_COUNT; type++)
+  for (int type = 0; type < BW_SHAPE_VOXEL_COUNT; type++)
     for (int big = 0; big < 2; big++) {
       unsigned char data[8 * CELLS], one[8];
       for (int q = 0; q < CELLS; q++) {
@@ -55,22 +56,22 @@ START_TEST(raw_voxels_of_every_type)
         const double d = q;
         memset(one, 0, sizeof one);
         one[0] = (unsigned char)q;
-        if (type == BW_PD_VOXEL_F32) memcpy(one, &f, sizeof f);
-        if (type == BW_PD_VOXEL_F64) memcpy(one, &d, sizeof d);
+        if (type == BW_SHAPE_VOXEL_F32) memcpy(one, &f, sizeof f);
+        if (type == BW_SHAPE_VOXEL_F64) memcpy(one, &d, sizeof d);
         for (size_t b = 0; b < bytes[type]; b++)
           data[bytes[type] * (size_t)q + b] = one[big ? bytes[type] - 1 - b : b];
       }
       write_file("v.raw", "abc", data, bytes[type] * CELLS);
-      const bw_pd_voxels v = {.type = (bw_pd_voxel_type)type,
-                              .big_endian = big == 1,
-                              .size = {3, 2, 2},
-                              .lower = {1, 2, 3},
-                              .spacing = {0.5, 1, 2},
-                              .skip = 3};
-      bw_pd_mask *m = NULL;
-      bw_check_ok(bw_pd_mask_read_raw(path_of("v.raw"), &v, 5, 8, &m));
+      const bw_shape_voxels v = {.type = (bw_shape_voxel_type)type,
+                                 .big_endian = big == 1,
+                                 .size = {3, 2, 2},
+                                 .lower = {1, 2, 3},
+                                 .spacing = {0.5, 1, 2},
+                                 .skip = 3};
+      bw_shape_mask *m = NULL;
+      bw_check_ok(bw_shape_mask_read_raw(path_of("v.raw"), &v, 5, 8, &m));
       check_cells(m, v.lower, v.spacing);
-      bw_pd_mask_destroy(&m);
+      bw_shape_mask_destroy(&m);
     }
   remove(path_of("v.raw"));
 }
@@ -81,7 +82,7 @@ static const unsigned char CONTENT[CELLS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1
 /* The centre of the first voxel is at (1, 2, 3). */
 static void check_image(const char *name, const char *head, bool attached)
 {
-  bw_pd_mask *m = NULL;
+  bw_shape_mask *m = NULL;
   char data[64];
   snprintf(data, sizeof data, "%s.raw", name);
   write_file(name, head, CONTENT, attached ? CELLS : 0);
@@ -93,9 +94,9 @@ static void check_image(const char *name, const char *head, bool attached)
     write_file(name, whole, CONTENT, 0);
     write_file(data, "", CONTENT, CELLS);
   }
-  bw_check_ok(bw_pd_mask_read_image(path_of(name), 5, 8, &m));
+  bw_check_ok(bw_shape_mask_read_image(path_of(name), 5, 8, &m));
   check_cells(m, (double[3]){0.75, 1.5, 2}, (double[3]){0.5, 1, 2});
-  bw_pd_mask_destroy(&m);
+  bw_shape_mask_destroy(&m);
   remove(path_of(name));
   remove(path_of(data));
 }
@@ -125,9 +126,9 @@ END_TEST
 
 static void refuse(const char *name, const char *head, size_t bytes, const char *word)
 {
-  bw_pd_mask *m = NULL;
+  bw_shape_mask *m = NULL;
   write_file(name, head, CONTENT, bytes);
-  ck_assert_int_ne(bw_pd_mask_read_image(path_of(name), 5, 8, &m), BW_OK);
+  ck_assert_int_ne(bw_shape_mask_read_image(path_of(name), 5, 8, &m), BW_OK);
   ck_assert_ptr_null(m);
   ck_assert_msg(strstr(bw_last_message(), name) != NULL && strstr(bw_last_message(), word) != NULL,
                 "%s: message \"%s\" lacks \"%s\"", name, bw_last_message(), word);
@@ -137,7 +138,7 @@ static void refuse(const char *name, const char *head, size_t bytes, const char 
 #define NRRD_START "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 2\n"
 START_TEST(bad_images_are_refused_by_name)
 {
-  bw_pd_mask *m = NULL;
+  bw_shape_mask *m = NULL;
   refuse("short.nrrd", NRRD_START "encoding: raw\n\n", CELLS - 1, "ends after 3 of 4 rows");
   refuse("long.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n", CELLS,
          "goes on");
@@ -169,14 +170,14 @@ START_TEST(bad_images_are_refused_by_name)
          "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = gone.mhd.absent\n",
          0, "cannot be opened");
   refuse("other.png", "PNG", CELLS, "neither");
-  bw_check_status(bw_pd_mask_read_image(path_of("absent.nrrd"), 5, 8, &m), BW_EIO);
+  bw_check_status(bw_shape_mask_read_image(path_of("absent.nrrd"), 5, 8, &m), BW_EIO);
 }
 END_TEST
 
-static void refuse_raw(const bw_pd_voxels *v, double low, double high, const char *word)
+static void refuse_raw(const bw_shape_voxels *v, double low, double high, const char *word)
 {
-  bw_pd_mask *m = NULL;
-  ck_assert_int_ne(bw_pd_mask_read_raw(path_of("r.raw"), v, low, high, &m), BW_OK);
+  bw_shape_mask *m = NULL;
+  ck_assert_int_ne(bw_shape_mask_read_raw(path_of("r.raw"), v, low, high, &m), BW_OK);
   ck_assert_ptr_null(m);
   ck_assert_msg(strstr(bw_last_message(), "r.raw") != NULL &&
                     strstr(bw_last_message(), word) != NULL,
@@ -186,8 +187,8 @@ static void refuse_raw(const bw_pd_voxels *v, double low, double high, const cha
 /* A raw file of 12 bytes against layouts that are not its own. */
 START_TEST(wrong_layouts_are_refused_by_name)
 {
-  const bw_pd_voxels good = {.size = {3, 2, 2}, .spacing = {1, 1, 1}};
-  bw_pd_voxels v = good;
+  const bw_shape_voxels good = {.size = {3, 2, 2}, .spacing = {1, 1, 1}};
+  bw_shape_voxels v = good;
   write_file("r.raw", "", CONTENT, CELLS);
   refuse_raw(&v, 8, 5, "low = 8");
   refuse_raw(&v, NAN, 5, "low = nan");
@@ -197,9 +198,9 @@ START_TEST(wrong_layouts_are_refused_by_name)
   refuse_raw(&v, 5, 8, "goes on after 3 x 2 x 1");
   v.size[2] = -2;
   refuse_raw(&v, 5, 8, "-2 cells");
-  v = good, v.type = BW_PD_VOXEL_U16;
+  v = good, v.type = BW_SHAPE_VOXEL_U16;
   refuse_raw(&v, 5, 8, "size or type");
-  v = good, v.type = BW_PD_VOXEL_COUNT;
+  v = good, v.type = BW_SHAPE_VOXEL_COUNT;
   refuse_raw(&v, 5, 8, "voxel type");
   v = good, v.skip = -1;
   refuse_raw(&v, 5, 8, "skip = -1");
@@ -248,9 +249,9 @@ static void tetrahedron(float a, float b, float c, int faces, const char *name, 
 START_TEST(surfaces_are_filled)
 {
   for (int text = 0; text < 2; text++) {
-    bw_pd_mask *m = NULL;
+    bw_shape_mask *m = NULL;
     tetrahedron(7.1f, 5.3f, 6.2f, 4, "t.stl", text == 1);
-    bw_check_ok(bw_pd_mask_read_stl(path_of("t.stl"), 2, 0.5, &m));
+    bw_check_ok(bw_shape_mask_read_stl(path_of("t.stl"), 2, 0.5, &m));
     int64_t want = 0, found = 0;
     for (int64_t q = 0; q < m->size[0] * m->size[1] * m->size[2]; q++)
       found += m->solid[q];
@@ -259,7 +260,7 @@ START_TEST(surfaces_are_filled)
         for (int i = 0; i < 40; i++) {
           const double x[3] = {0.5 * i + 0.25, 0.5 * j + 0.25, 0.5 * k + 0.25};
           const bool in = x[0] / 14.2 + x[1] / 10.6 + x[2] / 12.4 < 1;
-          ck_assert_int_eq(bw_pd_mask_at(m, 3, x), in);
+          ck_assert_int_eq(bw_shape_mask_at(m, 3, x), in);
           want += in;
         }
     ck_assert_int_eq(found, want);
@@ -268,11 +269,11 @@ START_TEST(surfaces_are_filled)
     int64_t n;
     int32_t *site;
     uint8_t *kind;
-    bw_check_ok(bw_pd_shape_fill(1, &shape, 0.5, (double[3]){0}, false, &n, &site, &kind));
+    bw_check_ok(bw_shape_fill(1, &shape, 0.5, (double[3]){0}, false, &n, &site, &kind));
     ck_assert_int_eq(n, want);
     bw_release(&site);
     bw_release(&kind);
-    bw_pd_mask_destroy(&m);
+    bw_shape_mask_destroy(&m);
   }
   remove(path_of("t.stl"));
 }
@@ -280,8 +281,8 @@ END_TEST
 
 static void refuse_surface(double scale, double spacing, bw_status status, const char *word)
 {
-  bw_pd_mask *m = NULL;
-  bw_check_status(bw_pd_mask_read_stl(path_of("bad.stl"), scale, spacing, &m), status);
+  bw_shape_mask *m = NULL;
+  bw_check_status(bw_shape_mask_read_stl(path_of("bad.stl"), scale, spacing, &m), status);
   ck_assert_ptr_null(m);
   ck_assert_msg(strstr(bw_last_message(), "bad.stl") != NULL &&
                     strstr(bw_last_message(), word) != NULL,
@@ -319,8 +320,7 @@ START_TEST(bad_surfaces_are_refused_by_name)
   int64_t n;
   int32_t *site;
   uint8_t *kind;
-  bw_check_status(bw_pd_shape_fill(1, &shape, 1, (double[3]){0}, false, &n, &site, &kind),
-                  BW_EINPUT);
+  bw_check_status(bw_shape_fill(1, &shape, 1, (double[3]){0}, false, &n, &site, &kind), BW_EINPUT);
 }
 END_TEST
 

@@ -1,13 +1,14 @@
 /* Random packs of balls.
  * TEST ranks=1 */
-#include "bw_pd_shape_pack.h"
-#include "pd_test.h"
+#include "bw_check.h"
+#include "bw_memory.h"
+#include "bw_shape_pack.h"
 
 #include <string.h>
 
-static bw_pd_pack_config pack_config(bool planar)
+static bw_shape_pack_config pack_config(bool planar)
 {
-  bw_pd_pack_config c = bw_pd_pack_config_default();
+  bw_shape_pack_config c = bw_shape_pack_config_default();
   for (int d = 0; d < 3; d++)
     c.lower[d] = 1, c.upper[d] = 11, c.periodic[d] = d == 0;
   c.radius_min = 0.6, c.radius_max = 0.9;
@@ -19,10 +20,10 @@ static bw_pd_pack_config pack_config(bool planar)
  * a ball; images are what crosses the periodic sides. */
 static void check_pack(bool planar)
 {
-  const bw_pd_pack_config c = pack_config(planar);
+  const bw_shape_pack_config c = pack_config(planar);
   int balls, count;
   bw_shape *s = NULL;
-  bw_check_ok(bw_pd_pack_spheres(&c, &balls, &count, &s));
+  bw_check_ok(bw_shape_pack_spheres(&c, &balls, &count, &s));
   const double pi = acos(-1.0), box = planar ? 100 : 1000;
   double filled = 0, last = 0;
   int crossing = 0;
@@ -55,11 +56,11 @@ START_TEST(packs_keep_their_distance)
 }
 END_TEST
 
-static void refuse_pack(const bw_pd_pack_config *c, const char *word)
+static void refuse_pack(const bw_shape_pack_config *c, const char *word)
 {
   int balls, count;
   bw_shape *s = NULL;
-  bw_check_status(bw_pd_pack_spheres(c, &balls, &count, &s), BW_EINPUT);
+  bw_check_status(bw_shape_pack_spheres(c, &balls, &count, &s), BW_EINPUT);
   ck_assert_ptr_null(s);
   ck_assert_msg(strstr(bw_last_message(), word) != NULL, "message \"%s\" lacks \"%s\"",
                 bw_last_message(), word);
@@ -67,8 +68,8 @@ static void refuse_pack(const bw_pd_pack_config *c, const char *word)
 
 START_TEST(impossible_packs_are_refused_by_name)
 {
-  const bw_pd_pack_config good = pack_config(false);
-  bw_pd_pack_config c = good;
+  const bw_shape_pack_config good = pack_config(false);
+  bw_shape_pack_config c = good;
   c.fraction = 0.7, c.max_attempts = 2000;
   refuse_pack(&c, "no place");
   c = good, c.radius_min = NAN;
@@ -92,12 +93,12 @@ END_TEST
 
 START_TEST(packs_follow_their_seed)
 {
-  bw_pd_pack_config c = pack_config(false);
+  bw_shape_pack_config c = pack_config(false);
   int balls, count;
   bw_shape *s[3] = {NULL};
   for (int q = 0; q < 3; q++) {
     c.seed = q < 2 ? 5 : 6;
-    bw_check_ok(bw_pd_pack_spheres(&c, &balls, &count, &s[q]));
+    bw_check_ok(bw_shape_pack_spheres(&c, &balls, &count, &s[q]));
   }
   for (int d = 0; d < 3; d++) {
     ck_assert_double_eq(s[0][7].centre[d], s[1][7].centre[d]);

@@ -1,6 +1,6 @@
 /* Random sequential addition. */
 #include "bw_memory.h"
-#include "bw_pd_shape_pack.h"
+#include "bw_shape_pack.h"
 
 #include <gsl/gsl_rng.h>
 #include <limits.h>
@@ -8,28 +8,28 @@
 
 static const double PI = 3.14159265358979323846;
 
-bw_pd_pack_config bw_pd_pack_config_default(void)
+bw_shape_pack_config bw_shape_pack_config_default(void)
 {
-  return (bw_pd_pack_config){.lower = {NAN, NAN, NAN},
-                             .upper = {NAN, NAN, NAN},
-                             .radius_min = NAN,
-                             .radius_max = NAN,
-                             .fraction = NAN,
-                             .seed = 1,
-                             .max_attempts = 100000};
+  return (bw_shape_pack_config){.lower = {NAN, NAN, NAN},
+                                .upper = {NAN, NAN, NAN},
+                                .radius_min = NAN,
+                                .radius_max = NAN,
+                                .fraction = NAN,
+                                .seed = 1,
+                                .max_attempts = 100000};
 }
 
-static double ball_volume(const bw_pd_pack_config *c, double r)
+static double ball_volume(const bw_shape_pack_config *c, double r)
 {
   return c->planar ? PI * r * r : 4.0 / 3 * PI * r * r * r;
 }
 
-static int dims_of(const bw_pd_pack_config *c)
+static int dims_of(const bw_shape_pack_config *c)
 {
   return c->planar ? 2 : 3;
 }
 
-static bw_status check(const bw_pd_pack_config *c, double *box)
+static bw_status check(const bw_shape_pack_config *c, double *box)
 {
   *box = 1;
   BW_REQUIRE(c->radius_min > 0 && isfinite(c->radius_max) && c->radius_max >= c->radius_min,
@@ -55,7 +55,8 @@ static bw_status check(const bw_pd_pack_config *c, double *box)
 }
 
 /* Is the ball clear of the first n? */
-static bool clear_of(const bw_pd_pack_config *c, const bw_shape *ball, int n, const bw_shape *all)
+static bool clear_of(const bw_shape_pack_config *c, const bw_shape *ball, int n,
+                     const bw_shape *all)
 {
   for (int q = 0; q < n; q++) {
     const double reach = ball->radius + all[q].radius + c->gap;
@@ -71,7 +72,7 @@ static bool clear_of(const bw_pd_pack_config *c, const bw_shape *ball, int n, co
   return true;
 }
 
-static bool place(const bw_pd_pack_config *c, gsl_rng *rng, int n, bw_shape *all)
+static bool place(const bw_shape_pack_config *c, gsl_rng *rng, int n, bw_shape *all)
 {
   const double span = c->radius_max - c->radius_min;
   bw_shape ball = {.kind = BW_SHAPE_SPHERE, .radius = c->radius_min + span * gsl_rng_uniform(rng)};
@@ -86,7 +87,7 @@ static bool place(const bw_pd_pack_config *c, gsl_rng *rng, int n, bw_shape *all
 }
 
 /* Images of ball q over the periodic sides it reaches across, after the first n; returns n. */
-static int images(const bw_pd_pack_config *c, int q, int n, bw_shape *all)
+static int images(const bw_shape_pack_config *c, int q, int n, bw_shape *all)
 {
   int direction[3] = {0};
   for (int d = 0; d < dims_of(c); d++) {
@@ -107,7 +108,8 @@ static int images(const bw_pd_pack_config *c, int q, int n, bw_shape *all)
   return n;
 }
 
-bw_status bw_pd_pack_spheres(const bw_pd_pack_config *c, int *balls, int *count, bw_shape **shape)
+bw_status bw_shape_pack_spheres(const bw_shape_pack_config *c, int *balls, int *count,
+                                bw_shape **shape)
 {
   double box, filled = 0;
   bw_shape *all = NULL;

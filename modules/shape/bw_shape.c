@@ -1,4 +1,4 @@
-#include "bw_pd_shape.h"
+#include "bw_shape.h"
 #include "bw_memory.h"
 #include <math.h>
 #include <string.h>
@@ -127,7 +127,7 @@ static extent bounds_endless(const bw_shape *s)
 static bool inside_mask(const bw_shape *s, int dims, double tie, const double x[3])
 {
   (void)tie;
-  return bw_pd_mask_at(s->mask, dims, x);
+  return bw_shape_mask_at(s->mask, dims, x);
 }
 
 static extent bounds_mask(const bw_shape *s)
@@ -256,8 +256,8 @@ static int64_t scan(int count, const bw_shape shape[], double ds, const double o
   return n;
 }
 
-bw_status bw_pd_shape_fill(int count, const bw_shape shape[], double ds, const double origin[3],
-                           bool planar, int64_t *n, int32_t **site, uint8_t **kind)
+bw_status bw_shape_fill(int count, const bw_shape shape[], double ds, const double origin[3],
+                        bool planar, int64_t *n, int32_t **site, uint8_t **kind)
 {
   *n = 0;
   *site = NULL;

@@ -1,20 +1,20 @@
 /* Masks, and voxels of any type from a file. */
-#include "pd_shape_mask.h"
+#include "shape_mask.h"
 #include "bw_memory.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-void bw_pd_mask_destroy(bw_pd_mask **mask)
+void bw_shape_mask_destroy(bw_shape_mask **mask)
 {
   if (*mask == NULL) return;
   bw_release(&(*mask)->solid);
   bw_release(mask);
 }
 
-bw_status bw_pd_mask__create(const char *path, const int64_t size[3], const double lower[3],
-                             const double spacing[3], bw_pd_mask **out)
+bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const double lower[3],
+                                const double spacing[3], bw_shape_mask **out)
 {
   *out = NULL;
   double cells = 1;
@@ -27,18 +27,18 @@ bw_status bw_pd_mask__create(const char *path, const int64_t size[3], const doub
     cells *= (double)size[d];
   }
   BW_REQUIRE(cells < 1e11, BW_EINPUT, "%s: %g cells are more than fit into memory", path, cells);
-  bw_pd_mask *mask = NULL;
+  bw_shape_mask *mask = NULL;
   BW_TRY(BW_ALLOCATE(&mask, 1));
   memcpy(mask->size, size, sizeof mask->size);
   memcpy(mask->lower, lower, sizeof mask->lower);
   memcpy(mask->spacing, spacing, sizeof mask->spacing);
   const bw_status st = BW_ALLOCATE(&mask->solid, (size_t)cells);
-  if (st != BW_OK) bw_pd_mask_destroy(&mask);
+  if (st != BW_OK) bw_shape_mask_destroy(&mask);
   *out = mask;
   return st;
 }
 
-bool bw_pd_mask_at(const bw_pd_mask *m, int dims, const double x[3])
+bool bw_shape_mask_at(const bw_shape_mask *m, int dims, const double x[3])
 {
   int64_t at[3] = {0};
   for (int d = 0; d < dims; d++) {
@@ -50,10 +50,10 @@ bool bw_pd_mask_at(const bw_pd_mask *m, int dims, const double x[3])
   return m->solid[at[0] + m->size[0] * (at[1] + m->size[1] * at[2])] != 0;
 }
 
-static const size_t BYTES[BW_PD_VOXEL_COUNT] = {1, 1, 2, 2, 4, 4, 4, 8};
+static const size_t BYTES[BW_SHAPE_VOXEL_COUNT] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 /* One number of `type`, in this machine's byte order. */
-static double number(bw_pd_voxel_type type, const unsigned char *from)
+static double number(bw_shape_voxel_type type, const unsigned char *from)
 {
   union {
     uint8_t u8;
@@ -67,19 +67,19 @@ static double number(bw_pd_voxel_type type, const unsigned char *from)
   } x;
   memcpy(&x, from, BYTES[type]);
   switch (type) {
-  case BW_PD_VOXEL_U8:
+  case BW_SHAPE_VOXEL_U8:
     return x.u8;
-  case BW_PD_VOXEL_I8:
+  case BW_SHAPE_VOXEL_I8:
     return x.i8;
-  case BW_PD_VOXEL_U16:
+  case BW_SHAPE_VOXEL_U16:
     return x.u16;
-  case BW_PD_VOXEL_I16:
+  case BW_SHAPE_VOXEL_I16:
     return x.i16;
-  case BW_PD_VOXEL_U32:
+  case BW_SHAPE_VOXEL_U32:
     return x.u32;
-  case BW_PD_VOXEL_I32:
+  case BW_SHAPE_VOXEL_I32:
     return x.i32;
-  case BW_PD_VOXEL_F32:
+  case BW_SHAPE_VOXEL_F32:
     return (double)x.f32;
   default:
     return x.f64;
@@ -95,7 +95,7 @@ static bool machine_is_big(void)
 }
 
 /* One row of voxels to a row of the mask. */
-static void threshold(const bw_pd_voxels *v, double low, double high, unsigned char *row,
+static void threshold(const bw_shape_voxels *v, double low, double high, unsigned char *row,
                       uint8_t *solid)
 {
   const size_t bytes = BYTES[v->type];
@@ -111,8 +111,8 @@ static void threshold(const bw_pd_voxels *v, double low, double high, unsigned c
   }
 }
 
-static bw_status read_rows(FILE *file, const char *path, const bw_pd_voxels *v, double low,
-                           double high, bw_pd_mask *mask)
+static bw_status read_rows(FILE *file, const char *path, const bw_shape_voxels *v, double low,
+                           double high, bw_shape_mask *mask)
 {
   unsigned char *row = NULL;
   const size_t bytes = (size_t)v->size[0] * BYTES[v->type];
@@ -138,12 +138,12 @@ static bw_status read_rows(FILE *file, const char *path, const bw_pd_voxels *v, 
   return st;
 }
 
-bw_status bw_pd_mask_read_raw(const char *path, const bw_pd_voxels *v, double low, double high,
-                              bw_pd_mask **out)
+bw_status bw_shape_mask_read_raw(const char *path, const bw_shape_voxels *v, double low,
+                                 double high, bw_shape_mask **out)
 {
   *out = NULL;
-  BW_REQUIRE((unsigned)v->type < BW_PD_VOXEL_COUNT, BW_EINPUT, "%s: voxel type %d is unknown", path,
-             (int)v->type);
+  BW_REQUIRE((unsigned)v->type < BW_SHAPE_VOXEL_COUNT, BW_EINPUT, "%s: voxel type %d is unknown",
+             path, (int)v->type);
   BW_REQUIRE(low <= high, BW_EINPUT, "%s: no value lies between low = %g and high = %g", path, low,
              high);
   BW_REQUIRE(v->skip >= 0, BW_EINPUT, "%s: skip = %lld is negative", path, (long long)v->skip);
@@ -152,9 +152,9 @@ bw_status bw_pd_mask_read_raw(const char *path, const bw_pd_voxels *v, double lo
   bw_status st = fseek(file, (long)v->skip, SEEK_SET) == 0
                      ? BW_OK
                      : BW_FAIL(BW_EIO, "%s: has no byte %lld", path, (long long)v->skip);
-  BW_THEN(st, bw_pd_mask__create(path, v->size, v->lower, v->spacing, out));
+  BW_THEN(st, bw_shape__mask_create(path, v->size, v->lower, v->spacing, out));
   BW_THEN(st, read_rows(file, path, v, low, high, *out));
   fclose(file);
-  if (st != BW_OK) bw_pd_mask_destroy(out);
+  if (st != BW_OK) bw_shape_mask_destroy(out);
   return st;
 }

@@ -1,5 +1,5 @@
 /* Headers of NRRD and MetaImage files. */
-#include "pd_shape_mask.h"
+#include "shape_mask.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@ enum { LINE = 4096 };
 
 typedef struct {
   const char *path;
-  bw_pd_voxels v;
+  bw_shape_voxels v;
   int dims;
   bool has_type, has_size, has_end, attached, ordered;
   double origin[3];
@@ -19,40 +19,40 @@ typedef struct {
 
 typedef struct {
   const char *word;
-  bw_pd_voxel_type type;
+  bw_shape_voxel_type type;
 } type_word;
 
-static const type_word nrrd_types[] = {{"uchar", BW_PD_VOXEL_U8},
-                                       {"unsigned char", BW_PD_VOXEL_U8},
-                                       {"uint8", BW_PD_VOXEL_U8},
-                                       {"uint8_t", BW_PD_VOXEL_U8},
-                                       {"signed char", BW_PD_VOXEL_I8},
-                                       {"int8", BW_PD_VOXEL_I8},
-                                       {"int8_t", BW_PD_VOXEL_I8},
-                                       {"ushort", BW_PD_VOXEL_U16},
-                                       {"unsigned short", BW_PD_VOXEL_U16},
-                                       {"uint16", BW_PD_VOXEL_U16},
-                                       {"uint16_t", BW_PD_VOXEL_U16},
-                                       {"short", BW_PD_VOXEL_I16},
-                                       {"int16", BW_PD_VOXEL_I16},
-                                       {"int16_t", BW_PD_VOXEL_I16},
-                                       {"uint", BW_PD_VOXEL_U32},
-                                       {"unsigned int", BW_PD_VOXEL_U32},
-                                       {"uint32", BW_PD_VOXEL_U32},
-                                       {"uint32_t", BW_PD_VOXEL_U32},
-                                       {"int", BW_PD_VOXEL_I32},
-                                       {"int32", BW_PD_VOXEL_I32},
-                                       {"int32_t", BW_PD_VOXEL_I32},
-                                       {"float", BW_PD_VOXEL_F32},
-                                       {"double", BW_PD_VOXEL_F64},
-                                       {NULL, BW_PD_VOXEL_COUNT}};
+static const type_word nrrd_types[] = {{"uchar", BW_SHAPE_VOXEL_U8},
+                                       {"unsigned char", BW_SHAPE_VOXEL_U8},
+                                       {"uint8", BW_SHAPE_VOXEL_U8},
+                                       {"uint8_t", BW_SHAPE_VOXEL_U8},
+                                       {"signed char", BW_SHAPE_VOXEL_I8},
+                                       {"int8", BW_SHAPE_VOXEL_I8},
+                                       {"int8_t", BW_SHAPE_VOXEL_I8},
+                                       {"ushort", BW_SHAPE_VOXEL_U16},
+                                       {"unsigned short", BW_SHAPE_VOXEL_U16},
+                                       {"uint16", BW_SHAPE_VOXEL_U16},
+                                       {"uint16_t", BW_SHAPE_VOXEL_U16},
+                                       {"short", BW_SHAPE_VOXEL_I16},
+                                       {"int16", BW_SHAPE_VOXEL_I16},
+                                       {"int16_t", BW_SHAPE_VOXEL_I16},
+                                       {"uint", BW_SHAPE_VOXEL_U32},
+                                       {"unsigned int", BW_SHAPE_VOXEL_U32},
+                                       {"uint32", BW_SHAPE_VOXEL_U32},
+                                       {"uint32_t", BW_SHAPE_VOXEL_U32},
+                                       {"int", BW_SHAPE_VOXEL_I32},
+                                       {"int32", BW_SHAPE_VOXEL_I32},
+                                       {"int32_t", BW_SHAPE_VOXEL_I32},
+                                       {"float", BW_SHAPE_VOXEL_F32},
+                                       {"double", BW_SHAPE_VOXEL_F64},
+                                       {NULL, BW_SHAPE_VOXEL_COUNT}};
 
 static const type_word meta_types[] = {
-    {"MET_UCHAR", BW_PD_VOXEL_U8},   {"MET_CHAR", BW_PD_VOXEL_I8},
-    {"MET_USHORT", BW_PD_VOXEL_U16}, {"MET_SHORT", BW_PD_VOXEL_I16},
-    {"MET_UINT", BW_PD_VOXEL_U32},   {"MET_INT", BW_PD_VOXEL_I32},
-    {"MET_FLOAT", BW_PD_VOXEL_F32},  {"MET_DOUBLE", BW_PD_VOXEL_F64},
-    {NULL, BW_PD_VOXEL_COUNT}};
+    {"MET_UCHAR", BW_SHAPE_VOXEL_U8},   {"MET_CHAR", BW_SHAPE_VOXEL_I8},
+    {"MET_USHORT", BW_SHAPE_VOXEL_U16}, {"MET_SHORT", BW_SHAPE_VOXEL_I16},
+    {"MET_UINT", BW_SHAPE_VOXEL_U32},   {"MET_INT", BW_SHAPE_VOXEL_I32},
+    {"MET_FLOAT", BW_SHAPE_VOXEL_F32},  {"MET_DOUBLE", BW_SHAPE_VOXEL_F64},
+    {NULL, BW_SHAPE_VOXEL_COUNT}};
 
 static bw_status set_type(header *h, const type_word types[], const char *value)
 {
@@ -216,7 +216,7 @@ static bw_status read_header(FILE *file, header *h, bool nrrd)
   BW_REQUIRE(h->has_type && h->has_size, BW_EINPUT, "%s: the header lacks %s", h->path,
              h->has_type ? "the size" : "the type of the voxels");
   BW_REQUIRE(h->attached || h->data[0] != 0, BW_EINPUT, "%s: the header names no data", h->path);
-  BW_REQUIRE(h->ordered || h->v.type <= BW_PD_VOXEL_I8, BW_EINPUT,
+  BW_REQUIRE(h->ordered || h->v.type <= BW_SHAPE_VOXEL_I8, BW_EINPUT,
              "%s: the header does not say in which order the bytes of a number are", h->path);
   for (int d = 0; d < 3; d++)
     h->v.lower[d] = h->origin[d] - 0.5 * h->v.spacing[d];
@@ -235,7 +235,7 @@ static bw_status beside(const header *h, size_t room, char out[])
   return BW_OK;
 }
 
-bw_status bw_pd_mask_read_image(const char *path, double low, double high, bw_pd_mask **out)
+bw_status bw_shape_mask_read_image(const char *path, double low, double high, bw_shape_mask **out)
 {
   *out = NULL;
   header h = {.path = path, .dims = 3, .v = {.size = {1, 1, 1}, .spacing = {1, 1, 1}}};
@@ -253,6 +253,6 @@ bw_status bw_pd_mask_read_image(const char *path, double low, double high, bw_pd
   BW_THEN(st, read_header(file, &h, nrrd));
   fclose(file);
   if (st == BW_OK && !h.attached) st = beside(&h, sizeof data, data);
-  BW_THEN(st, bw_pd_mask_read_raw(h.attached ? path : data, &h.v, low, high, out));
+  BW_THEN(st, bw_shape_mask_read_raw(h.attached ? path : data, &h.v, low, high, out));
   return st;
 }

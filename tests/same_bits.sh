@@ -64,12 +64,13 @@ code=0
 for name in $names; do
   run_at a "$name"
   run_at b "$name"
-  if found=$(/usr/bin/python3 "$source/tests/support/compare_bits.py" \
-             "$work/out/a/$name" "$work/out/b/$name"); then
-    echo "$name: same ($found)"
-  else
-    echo "$name: $found"
-    code=1
-  fi
+  result=0
+  found=$(/usr/bin/python3 "$source/tests/support/compare_bits.py" \
+    "$work/out/a/$name" "$work/out/b/$name") || result=$?
+  case $result in
+    0) echo "$name: same ($found)" ;;
+    1) echo "$name: $found"; code=1 ;;
+    *) die "$name: the results could not be compared" ;;
+  esac
 done
 exit $code

@@ -6,7 +6,8 @@ Compares every table (.csv), every checkpoint (.h5) and of every series of pictu
 one. Left out: run.yaml and series files, which name times and places, and columns of the wall clock.
 Columns of a table are compared by their place, data sets of a checkpoint by their name; those whose
 names only one side has are compared by their content. One line on standard output: what was compared, or
-the first difference with its file, row, column and both values. Exit code 1 where they differ.
+the first difference with its file, row, column and both values. Exit code 1 where they
+differ, 2 where there is nothing to compare.
 """
 import os
 import re
@@ -21,6 +22,10 @@ TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "UI
 
 
 class Difference(Exception):
+    pass
+
+
+class Unusable(Exception):
     pass
 
 
@@ -90,7 +95,7 @@ def read_checkpoint(path):
         f.visititems(lambda name, item: found.update({name: item[()]})
                      if isinstance(item, h5py.Dataset) else None)
     if not found:
-        sys.exit(f"{path}: no data sets")
+        raise Unusable(f"{path}: no data sets")
     return {name: numpy.asarray(x) for name, x in found.items()}
 
 
@@ -141,7 +146,7 @@ def pairs(names_a, names_b):
 def compare(folder_a, folder_b):
     names = [sorted(os.listdir(folder)) for folder in (folder_a, folder_b)]
     if not all("history.csv" in side for side in names):
-        sys.exit(f"{folder_a}, {folder_b}: a history.csv is missing")
+        raise Unusable(f"{folder_a}, {folder_b}: a history.csv is missing")
     rows = sets = pictures = 0
     tables = [{n: n for n in side if n.endswith(".csv")} for side in names]
     for name, a, b in pairs(*tables):
@@ -154,15 +159,19 @@ def compare(folder_a, folder_b):
         pictures += compare_named(a, read_picture(os.path.join(folder_a, a)),
                                   read_picture(os.path.join(folder_b, b)))
     if sets + pictures == 0:
-        sys.exit(f"{folder_a}: neither a checkpoint nor a picture")
+        raise Unusable(f"{folder_a}: neither a checkpoint nor a picture")
     return f"{rows} rows of tables, {sets} data sets of checkpoints, {pictures} arrays of last pictures"
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
     try:
         print(compare(sys.argv[1], sys.argv[2]))
     except Difference as difference:
         print(difference)
         sys.exit(1)
+    except Unusable as reason:
+        print(reason, file=sys.stderr)
+        sys.exit(2)

@@ -23,7 +23,8 @@ mkdir -p "$work"
 work=$(cd "$work" && pwd)
 . "$source/tests/support/two_commits.sh"
 
-a=$(commit_of "$1") b=$(commit_of "$2")
+a=$(commit_of "$1")
+b=$(commit_of "$2")
 shift 2
 tree_at a "$a"
 tree_at b "$b"

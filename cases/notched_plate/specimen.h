@@ -29,6 +29,7 @@ typedef struct {
   int surface_correction, volume_fraction, family_reach, integrator;
   double disorder; /* of the particles off their sites, in spacings   default 0: a lattice */
   int disorder_seed;
+  bool contact; /* repulsion between particles that no bond joins        default false */
 } specimen_solid;
 
 typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;

@@ -43,6 +43,7 @@ static const bw_config_field solid_fields[] = {
     V(specimen_solid, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "spacings",
       "particles off their sites; 0: a lattice"),
     V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another one: another cloud"),
+    V(specimen_solid, contact, BW_OPTIONAL, BW_ANY, "", "repulsion where no bond is left"),
     BW_CONFIG_END};
 
 static const bw_config_word edge_words[] = {{"left", SPECIMEN_LEFT, NULL},

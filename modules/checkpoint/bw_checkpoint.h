@@ -15,6 +15,8 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_checkpoint bw_checkpoint;
 
 /* `comm` is borrowed until close. On failure *out is NULL. Opening checks format, precision (of
@@ -62,3 +64,5 @@ bw_status bw_checkpoint_put_table(bw_checkpoint *ck, const char *name, int64_t t
 bw_status bw_checkpoint_get_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
                                   const int64_t id[], int components, bw_checkpoint_type type,
                                   void *rows) BW_MUST_CHECK;
+
+BW_END_DECLS

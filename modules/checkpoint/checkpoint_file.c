@@ -1,4 +1,5 @@
 /* The file as a whole: create, open, close, what is in it. */
+#include "bw_comm_mpi.h"
 #include "bw_memory.h"
 #include "checkpoint_internal.h"
 

@@ -15,6 +15,8 @@
 #include "bw_config.h"
 #include "bw_log.h"
 
+BW_BEGIN_DECLS
+
 /* Of the sources this program was built from; "unknown" where the build could not tell. Local. */
 const char *bw_version(void);
 const char *bw_commit(void);
@@ -64,3 +66,5 @@ bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine) BW_MUS
  * exit code. Collective. */
 int bw_case_main(int argc, char **argv, const bw_case_about *about, void *config,
                  bw_status (*simulate)(const bw_comm *comm, void *config, bw_case *run));
+
+BW_END_DECLS

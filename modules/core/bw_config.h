@@ -31,6 +31,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+BW_BEGIN_DECLS
+
 typedef enum {
   BW_CONFIG_TYPE_DOUBLE,
   BW_CONFIG_TYPE_INT,
@@ -175,3 +177,5 @@ bw_status bw_config_dump(const bw_config_field fields[], const void *config,
 
 /* One line per key: path, type, range, unit, default of `config`, meaning. Local. */
 void bw_config_help(const bw_config_field fields[], const void *config, FILE *out);
+
+BW_END_DECLS

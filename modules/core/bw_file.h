@@ -8,6 +8,8 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_file bw_file;
 
 /* Begin PATH.part; its folder has to exist (bw_folder_make). `comm` is borrowed until close.
@@ -34,3 +36,5 @@ bw_status bw_file_write_text(const bw_comm *comm, const char *path, const char *
  * owned by the caller (bw_release); *bytes (may be NULL) excludes the 0. Collective. */
 bw_status bw_file_read_text(const bw_comm *comm, const char *path, size_t *bytes,
                             char **text) BW_MUST_CHECK;
+
+BW_END_DECLS

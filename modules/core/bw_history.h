@@ -4,6 +4,8 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_history bw_history;
 
 /* Begin `path` with the column names, names[0] being the time, e.g. {"time[s]",
@@ -24,3 +26,5 @@ int64_t bw_history_rows(const bw_history *history);
 
 /* *history is freed; NULL inside is fine. BW_EIO when a row could not be written. Collective. */
 bw_status bw_history_close(const bw_comm *comm, bw_history **history) BW_MUST_CHECK;
+
+BW_END_DECLS

@@ -7,6 +7,8 @@
 #include "bw_comm.h"
 #include <stdio.h>
 
+BW_BEGIN_DECLS
+
 typedef struct bw_log bw_log;
 
 typedef struct {
@@ -50,3 +52,5 @@ void bw_progress_update(bw_progress *progress, int64_t step, double time, const 
 
 /* The last state as a plain line with the mean speed, then *progress is freed. NULL is fine. */
 void bw_progress_finish(bw_progress **progress);
+
+BW_END_DECLS

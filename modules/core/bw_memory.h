@@ -3,6 +3,8 @@
 #include "bw_status.h"
 #include <stddef.h>
 
+BW_BEGIN_DECLS
+
 /* *out = zeroed array of `count` items of `size` bytes, aligned to 64 bytes; never NULL on
  * success (also for count = 0), NULL after a failure. The caller owns it and frees it with
  * bw_release. Local. */
@@ -16,3 +18,5 @@ void bw_release(void *out);
 
 /* Memory of this process that is resident now [bytes]; 0 where the system does not tell. Local. */
 size_t bw_memory_resident(void);
+
+BW_END_DECLS

@@ -6,7 +6,10 @@
  * BW_FAIL, at the place of the failure, writes the message; BW_TRY only passes it on.
  * Messages name what and where, the value found and the remedy, in one line. */
 #pragma once
+#include "bw_decls.h"
 #include <assert.h>
+
+BW_BEGIN_DECLS
 
 /* One list, three uses (enum, name, text). Append only; the numbers are exit codes. */
 #define BW_STATUS_LIST(X)                                                                          \
@@ -52,3 +55,5 @@ const char *bw_last_message(void);
     if ((st) == BW_OK) (st) = (call);                                                              \
   } while (0)
 #define BW_ASSERT(cond) assert(cond)
+
+BW_END_DECLS

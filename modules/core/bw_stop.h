@@ -8,6 +8,8 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
 /* From now on the signals only set a flag. Local. */
 void bw_stop_install(void);
 
@@ -16,3 +18,5 @@ bool bw_stop_requested(const bw_comm *comm);
 
 /* Forget a request (a program that runs several jobs; tests). Local. */
 void bw_stop_clear(void);
+
+BW_END_DECLS

@@ -6,6 +6,8 @@
 #pragma once
 #include "bw_log.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_timer bw_timer;
 
 typedef struct {
@@ -47,3 +49,5 @@ void bw_timer_summary(const bw_timer *timer, const bw_comm *comm, bw_timer_row r
 
 /* The summary as a table through `log`. Collective. */
 bw_status bw_timer_report(const bw_timer *timer, const bw_comm *comm, bw_log *log) BW_MUST_CHECK;
+
+BW_END_DECLS

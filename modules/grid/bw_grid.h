@@ -18,6 +18,8 @@
 #include "bw_real.h"
 #include <stdbool.h>
 
+BW_BEGIN_DECLS
+
 typedef struct bw_grid bw_grid;
 
 typedef enum { BW_STRETCH_NONE, BW_STRETCH_TANH, BW_STRETCH_TABLE } bw_stretch;
@@ -122,3 +124,5 @@ void bw_grid_swap(bw_grid *grid, int d, const size_t send_start[], const size_t 
 
 /* Element-wise sum over that line, in place, on all of its ranks. Collective over the line. */
 void bw_grid_line_sum(bw_grid *grid, int d, int n, double x[]);
+
+BW_END_DECLS

@@ -14,6 +14,8 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_transpose bw_transpose;
 
 /* A block of the Z side: global x-entries first .. first + width - 1. */
@@ -50,3 +52,5 @@ void bw_transpose_store(bw_transpose *t, int j);
 
 /* Bytes to other ranks of one to_z and one to_x together, from this rank. Local. */
 size_t bw_transpose_volume(const bw_transpose *t);
+
+BW_END_DECLS

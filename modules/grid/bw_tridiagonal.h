@@ -15,6 +15,8 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_tridiagonal bw_tridiagonal;
 
 enum { BW_TRIDIAGONAL_LINES = 128 }; /* the batch's work space stays in the second-level cache */
@@ -50,3 +52,5 @@ void bw_tridiagonal_finish(bw_tridiagonal *t, const bw_tridiagonal_batch *batch,
 
 /* Bytes one join sends to other ranks, from this rank. Local. */
 size_t bw_tridiagonal_volume(const bw_tridiagonal *t);
+
+BW_END_DECLS

@@ -6,6 +6,10 @@
 #pragma once
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum {
   BW_KERNEL_ROMA3,   /* support 3 cells; the default */
   BW_KERNEL_PESKIN4, /* support 4 cells */
@@ -33,3 +37,7 @@ const bw_kernel_delta *bw_kernel_delta_get(bw_kernel_delta_id id);
  * has weight[q n + i], q = 0..support-1. Local. */
 void bw_kernel_delta_weights(const bw_kernel_delta *kernel, size_t n, const double s[], int first[],
                              double weight[]);
+
+#ifdef __cplusplus
+}
+#endif

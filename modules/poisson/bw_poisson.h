@@ -13,6 +13,8 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_poisson bw_poisson;
 
 typedef enum { BW_POISSON_PERIODIC, BW_POISSON_NEUMANN, BW_POISSON_DIRICHLET } bw_poisson_side;
@@ -33,3 +35,5 @@ void bw_poisson_solve_helmholtz(bw_poisson *p, double alpha, bw_real *phi);
 
 bool bw_poisson_singular(const bw_poisson *p);       /* Local. */
 double bw_poisson_removed_mean(const bw_poisson *p); /* of f, at the last solve. Local. */
+
+BW_END_DECLS

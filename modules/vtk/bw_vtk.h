@@ -8,6 +8,8 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
 typedef struct {
   const char *name;       /* "pressure" */
   const bw_real *data[3]; /* one field, or three for a vector (data[1] NULL: scalar). A NULL
@@ -52,3 +54,5 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
  * Collective. */
 bw_status bw_vtk_series_add(const bw_comm *comm, const char *path, double time,
                             const char *file) BW_MUST_CHECK;
+
+BW_END_DECLS

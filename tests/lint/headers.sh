@@ -25,18 +25,23 @@ compile() {
 $(cat "$work/said")"
 }
 
+# Does the header include mpi.h, by whatever way?
+needs_mpi() {
+  # shellcheck disable=SC2086 # a list of flags
+  printf '#include "%s"\n' "$1" | mpicc $folders -I . -M -x c - 2>"$work/said" | tr ' ' '\n' |
+    grep -qE '(^|/)mpi\.h$'
+}
+
 for header in modules/*/bw_*.h; do
   c=${CC:-cc} cxx=${CXX:-c++}
   if [ "$header" = "$may_need_mpi" ]; then
     c=mpicc cxx=mpicxx
-  # shellcheck disable=SC2086 # a list of flags
-  elif printf '#include "%s"\n' "$header" | mpicc $folders -I . -M -x c - |
-       tr ' ' '\n' | grep -qE '(^|/)mpi\.h$'; then
+  elif needs_mpi "$header"; then
     complain "$header includes mpi.h: only $may_need_mpi may"
   fi
   compile "$header" c11 "$c" -x c
   compile "$header" c++17 "$cxx" -x c++ -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX
-  # What ends in `);` or carries BW_MUST_CHECK or BW_PRINTF outside a macro declares a function.
+  # What begins in the first column and ends in `);` or an attribute declares a function.
   if grep -qE '^[^#/ ].*(\);|BW_MUST_CHECK;|BW_PRINTF\([0-9, ]*\);)' "$header" &&
      ! grep -qE '^(BW_BEGIN_DECLS|extern "C" \{)' "$header"; then
     complain "$header declares functions without BW_BEGIN_DECLS ... BW_END_DECLS (bw_decls.h)"

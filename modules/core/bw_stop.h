@@ -10,7 +10,8 @@
 
 BW_BEGIN_DECLS
 
-/* From now on the signals only set a flag. Local. */
+/* From now on the first signal of each kind only sets a flag of this process. Once per program,
+ * before the loop. Local. */
 void bw_stop_install(void);
 
 /* Has any rank been asked? The same answer on all ranks. Once per step is cheap. Collective. */

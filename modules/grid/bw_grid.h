@@ -31,7 +31,8 @@ typedef enum {
                       by the factor 4 at most */
 } bw_stretch;
 
-/* What a grid is made from; start from bw_grid_config_default. */
+/* What a grid is made from; start from bw_grid_config_default. Blocks that are not given are those
+ * with the least halo; of equals the ones with the fewest blocks in y. */
 typedef struct {
   int n[3];                  /* cells                                        required */
   double length[3];          /* box [L], lower corner at the origin          required */
@@ -41,9 +42,7 @@ typedef struct {
   const double *y_table;     /* (n[1]+1) table: the faces y_0 = 0 < .. < y_n = length[1] [L]; read
                                 by create, not kept */
   int halo;                  /* layers, 1 or 2 (2 where markers are)         default 1 */
-  int ranks
-      [2]; /* blocks in y and z; default 0, 0: chosen for the least halo, of equals the one with
-                   the fewest blocks in y */
+  int ranks[2];              /* blocks in y and z                            default 0, 0 (chosen) */
 } bw_grid_config;
 
 /* The defaults named above; lengths are NaN and cells 0, so that what is missing is an error by

@@ -42,7 +42,7 @@ typedef struct {
   const double *y_table;     /* (n[1]+1) table: the faces y_0 = 0 < .. < y_n = length[1] [L]; read
                                 by create, not kept */
   int halo;                  /* layers, 1 or 2 (2 where markers are)         default 1 */
-  int ranks[2];              /* blocks in y and z                            default 0, 0 (chosen) */
+  int ranks[2];              /* blocks in y and z              default 0, 0: chosen by create */
 } bw_grid_config;
 
 /* The defaults named above; lengths are NaN and cells 0, so that what is missing is an error by

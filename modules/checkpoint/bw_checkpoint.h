@@ -15,50 +15,74 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
+/* An open checkpoint. */
 typedef struct bw_checkpoint bw_checkpoint;
 
-/* `comm` is borrowed until close. On failure *out is NULL. Opening checks format, precision (of
- * bw_real), completeness and HDF5's structures, not yet the data. */
+/* Begin PATH.part. `comm` is borrowed until close. On failure *out is NULL. */
 bw_status bw_checkpoint_create(const bw_comm *comm, const char *path,
                                bw_checkpoint **out) BW_MUST_CHECK;
+
+/* Open PATH for reading: format, precision (of bw_real), completeness and HDF5's structures are
+ * checked, not yet the data. `comm` is borrowed until close. On failure *out is NULL. */
 bw_status bw_checkpoint_open(const bw_comm *comm, const char *path,
                              bw_checkpoint **out) BW_MUST_CHECK;
 
 /* Finish. For a file being written this marks it complete and renames it; check the result.
  * *ck becomes NULL, also on failure (then nothing is renamed and PATH.part is removed). */
 bw_status bw_checkpoint_close(bw_checkpoint **ck) BW_MUST_CHECK;
+
 /* Give up after an error: nothing is renamed, PATH.part is removed; NULL is fine. */
 void bw_checkpoint_abandon(bw_checkpoint **ck);
 
+/* Write x[n] of rank 0 under `name`; n >= 0 is the same on all ranks. */
 bw_status bw_checkpoint_put_numbers(bw_checkpoint *ck, const char *name, int n,
                                     const double x[]) BW_MUST_CHECK;
+
+/* x[n], on all ranks; BW_EIO when the file has another count. */
 bw_status bw_checkpoint_get_numbers(bw_checkpoint *ck, const char *name, int n,
                                     double x[]) BW_MUST_CHECK;
+
+/* Write the text of rank 0 under `name`. */
 bw_status bw_checkpoint_put_text(bw_checkpoint *ck, const char *name,
                                  const char *text) BW_MUST_CHECK;
-/* *text is allocated, owned by the caller (bw_release). */
+
+/* *text, on all ranks, is allocated and owned by the caller (bw_release); NULL after a failure. */
 bw_status bw_checkpoint_get_text(bw_checkpoint *ck, const char *name, char **text) BW_MUST_CHECK;
 
 /* Is there an entry of that name? The same answer on all ranks. */
 bool bw_checkpoint_has(bw_checkpoint *ck, const char *name);
 
-/* Interior of a field. `first_face` = true also stores the layer of index 0 in direction
- * `direction` (the lower boundary face of a staggered component): size n+1 there. The grid on
- * reading must have the same n; halos are not touched (bw_halo_update follows). */
+/* Write the interior of a field (as bw_field_create makes it). `first_face` = true also stores the
+ * layer of index 0 in direction `direction` (0, 1, 2; the lower boundary face of a staggered
+ * component): size n+1 there. */
 bw_status bw_checkpoint_put_field(bw_checkpoint *ck, const char *name, const bw_grid *grid,
                                   int direction, bool first_face,
                                   const bw_real *field) BW_MUST_CHECK;
+
+/* The same back, on a grid of the same n and any division (BW_EIO otherwise); halos are not touched
+ * (bw_halo_update follows). */
 bw_status bw_checkpoint_get_field(bw_checkpoint *ck, const char *name, const bw_grid *grid,
                                   int direction, bool first_face, bw_real *field) BW_MUST_CHECK;
 
-typedef enum { BW_CK_DOUBLE, BW_CK_UINT8, BW_CK_INT32 } bw_checkpoint_type;
+/* The elements of a table. */
+typedef enum {
+  BW_CK_DOUBLE, /* double */
+  BW_CK_UINT8,  /* uint8_t */
+  BW_CK_INT32   /* int32_t */
+} bw_checkpoint_type;
 
-/* Row i of this rank (`components` values) is item id[i] of `total`. Every id appears on exactly
- * one rank when writing; on reading each rank asks for the ids it wants (any rank, any number
- * of times). */
+/* Write a table: row i of this rank, rows[i components ..], is item id[i] of `total`, i = 0 .. n-1.
+ * Every id 0 .. total-1 appears on exactly one rank, else BW_EINPUT names one that does not. */
 bw_status bw_checkpoint_put_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
                                   const int64_t id[], int components, bw_checkpoint_type type,
                                   const void *rows) BW_MUST_CHECK;
+
+/* rows[n][components]: each rank asks for the ids it wants (any rank, any number of times). Total,
+ * components and type must be those of the file (BW_EIO otherwise). */
 bw_status bw_checkpoint_get_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
                                   const int64_t id[], int components, bw_checkpoint_type type,
                                   void *rows) BW_MUST_CHECK;
+
+BW_END_DECLS

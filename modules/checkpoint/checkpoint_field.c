@@ -21,12 +21,15 @@ static field_share share_of(const bw_grid_view *g, int direction, bool first_fac
                .bytes = sizeof(bw_real),
                .dimensions = 3}};
   for (int d = 0; d < 3; d++) {
+    /* The lower boundary face, index 0, belongs to the state of a staggered component: one layer
+     * more in the file. */
     const bool face = stores_first_face(g, direction, first_face, d);
     const bool mine = face && g->lo[d] == 0;
     const int at = 2 - d; /* x is the fastest */
     share.lower[d] = mine ? 0 : 1;
     share.slab.size[at] = (hsize_t)g->n[d] + (face ? 1 : 0);
     share.slab.count[at] = (hsize_t)g->m[d] + (mine ? 1 : 0);
+    /* Behind that layer everything moves up by one, except on the rank that stores it. */
     share.slab.start[at] = (hsize_t)g->lo[d] + (face && !mine ? 1 : 0);
   }
   return share;
@@ -50,6 +53,7 @@ bw_status bw_checkpoint_put_field(bw_checkpoint *ck, const char *name, const bw_
   bw_real *packed = NULL;
   bw_status st =
       bw_comm_agree(ck->comm, BW_ALLOCATE(&packed, bw_checkpoint__elements(&share.slab)));
+  /* Without halo and padding, x fastest: the order of the file. */
   bw_real *to = packed;
   for (int k = share.lower[2]; st == BW_OK && k <= g->m[2]; k++)
     for (int j = share.lower[1]; j <= g->m[1]; j++)
@@ -70,6 +74,7 @@ bw_status bw_checkpoint_get_field(bw_checkpoint *ck, const char *name, const bw_
   bw_status st =
       bw_comm_agree(ck->comm, BW_ALLOCATE(&packed, bw_checkpoint__elements(&share.slab)));
   BW_THEN(st, bw_checkpoint__get(ck, name, &share.slab, packed));
+  /* Verified; halos stay as they were until the caller updates them. */
   const bw_real *from = packed;
   for (int k = share.lower[2]; st == BW_OK && k <= g->m[2]; k++)
     for (int j = share.lower[1]; j <= g->m[1]; j++)

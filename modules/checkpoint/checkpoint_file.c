@@ -1,4 +1,5 @@
 /* The file as a whole: create, open, close, what is in it. */
+#include "bw_comm_mpi.h"
 #include "bw_memory.h"
 #include "checkpoint_internal.h"
 
@@ -37,6 +38,7 @@ static bw_status begin(const bw_comm *comm, const char *path, bool writing, bw_c
   ck->file = H5I_INVALID_HID;
   bw_status st = copy_text(path, "", &ck->path);
   if (writing) BW_THEN(st, copy_text(path, ".part", &ck->part));
+  /* HDF5 would print a stack of its own messages; ours say what to do. */
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   *out = ck;
   return st;
@@ -60,6 +62,7 @@ static bw_status try_system(const bw_checkpoint *ck)
   BW_REQUIRE(handle >= 0, BW_EIO, "checkpoint %s: cannot %s it: %s", path,
              ck->part != NULL ? "write" : "open", strerror(errno));
   char byte;
+  /* A folder can be opened for reading and not be read. */
   const bool readable = ck->part != NULL || read(handle, &byte, 1) >= 0;
   const int reason = errno;
   close(handle);
@@ -82,11 +85,13 @@ static hid_t access_list(const bw_comm *comm)
 
 static bw_status create(bw_checkpoint *ck)
 {
+  /* The system's refusal comes first: HDF5 would only say that it failed. */
   BW_TRY(bw_comm_agree(ck->comm, try_system(ck)));
   const hid_t list = access_list(ck->comm);
   ck->file = H5Fcreate(ck->part, H5F_ACC_TRUNC, H5P_DEFAULT, list);
   if (list >= 0) H5Pclose(list);
   BW_REQUIRE(ck->file >= 0, BW_EIO, "checkpoint %s: HDF5 cannot create it", ck->part);
+  /* The mark of completeness is missing until everything else is in the file. */
   BW_REQUIRE(bw_checkpoint__put_attribute(ck->file, format_name, FORMAT) &&
                  bw_checkpoint__put_attribute(ck->file, precision_name, sizeof(bw_real)),
              BW_EIO, "checkpoint %s: HDF5 cannot write its head", ck->part);
@@ -99,6 +104,7 @@ static bw_status check_head(const bw_checkpoint *ck)
   BW_REQUIRE(bw_checkpoint__get_attribute(ck->file, format_name, &format), BW_EIO,
              "checkpoint %s: no checkpoint of Breakwater (it is HDF5, but '%s' is missing)",
              ck->path, format_name);
+  /* Of another format nothing may be believed, not even the attributes below. */
   BW_REQUIRE(format == FORMAT, BW_EIO,
              "checkpoint %s: format %" PRIu64 ", expected %d; read it with the version of "
              "Breakwater that wrote it",
@@ -110,6 +116,7 @@ static bw_status check_head(const bw_checkpoint *ck)
              ck->path);
   BW_REQUIRE(bw_checkpoint__get_attribute(ck->file, precision_name, &real), BW_EIO,
              "checkpoint %s: its precision is not readable; use an earlier one", ck->path);
+  /* A conversion would not be the same run: it is refused, with the build that would do. */
   BW_REQUIRE(real == sizeof(bw_real), BW_EIO,
              "checkpoint %s: reals have %" PRIu64 " bytes, expected %zu; build with "
              "-DBW_PRECISION=%s",
@@ -140,6 +147,7 @@ static bw_status look_alone(const bw_checkpoint *ck)
 static bw_status open_together(bw_checkpoint *ck)
 {
   BW_TRY(bw_comm_agree(ck->comm, look_alone(ck)));
+  /* Rank 0 has found the file sound: now all ranks open it for collective reading. */
   const hid_t list = access_list(ck->comm);
   ck->file = H5Fopen(ck->path, H5F_ACC_RDONLY, list);
   if (list >= 0) H5Pclose(list);
@@ -170,6 +178,7 @@ static bw_status finish(bw_checkpoint *ck)
   BW_REQUIRE(H5Fflush(ck->file, H5F_SCOPE_GLOBAL) >= 0 &&
                  bw_checkpoint__put_attribute(ck->file, complete_name, 1),
              BW_EIO, "checkpoint %s: HDF5 cannot finish it (is the disk full?)", ck->part);
+  /* The data are flushed and the mark is set; closing writes the mark. */
   const herr_t closed = H5Fclose(ck->file);
   ck->file = H5I_INVALID_HID;
   BW_REQUIRE(closed >= 0, BW_EIO, "checkpoint %s: HDF5 cannot close it (is the disk full?)",
@@ -181,6 +190,8 @@ static bw_status rename_on_disk(const bw_checkpoint *ck)
 {
   if (!first(ck)) return BW_OK;
   const int handle = open(ck->part, O_RDONLY);
+  /* The bytes must be on the disk before the name is: a power failure leaves the old file or the
+   * new one. */
   const bool synchronised = handle >= 0 && fsync(handle) == 0;
   const int reason = errno;
   if (handle >= 0) close(handle);
@@ -195,11 +206,13 @@ bw_status bw_checkpoint_close(bw_checkpoint **ck)
 {
   bw_checkpoint *c = *ck;
   if (c == NULL) return BW_OK;
+  /* A put that failed makes the file worthless even where its caller went on. */
   bw_status st = c->failed;
   if (c->part != NULL) {
     BW_THEN(st, bw_comm_agree(c->comm, finish(c)));
     BW_THEN(st, bw_comm_agree(c->comm, rename_on_disk(c)));
   }
+  /* Not renamed: whatever stood under that name before is still there. */
   if (c->part != NULL && st != BW_OK) {
     bw_checkpoint_abandon(ck);
     return st;
@@ -231,6 +244,7 @@ bool bw_checkpoint_has(bw_checkpoint *ck, const char *name)
     }
     part[q] = name[q];
   }
+  /* Ranks see the same file; a disagreement means that one of them could not read it. */
   double all = found ? 1.0 : 0.0;
   bw_comm_min(ck->comm, 1, &all);
   return all > 0.0;

@@ -39,6 +39,8 @@ static inline uint64_t hash_elements(uint64_t index, size_t n, size_t bytes,
   for (size_t i = 0; i < n; i++) {
     uint64_t bits = 0;
     memcpy(&bits, data + i * bytes, bytes);
+    /* The place is part of what is hashed: values in each other's place are noticed. Exclusive or
+     * commutes, so that the sum does not depend on who held what. */
     hash ^= mix(bits + mix(index + i + 1));
   }
   return hash;
@@ -56,12 +58,14 @@ static uint64_t hash_run(uint64_t index, size_t n, size_t bytes, const unsigned 
 static uint64_t hash_share(const bw_checkpoint__slab *slab, const void *data)
 {
   hsize_t size[3] = {1, 1, 1}, start[3] = {0, 0, 0}, count[3] = {1, 1, 1};
+  /* One or two dimensions are three of which the slowest have one entry. */
   for (int d = 0, e = 3 - slab->dimensions; d < slab->dimensions; d++, e++)
     size[e] = slab->size[d], start[e] = slab->start[d], count[e] = slab->count[d];
   const unsigned char *at = data;
   uint64_t hash = 0;
   for (hsize_t k = start[0]; k < start[0] + count[0]; k++)
     for (hsize_t j = start[1]; j < start[1] + count[1]; j++) {
+      /* Place of this run in the whole data set, whatever the partition. */
       const uint64_t index = (k * size[1] + j) * size[2] + start[2];
       hash ^= hash_run(index, (size_t)count[2], slab->bytes, at);
       at += (size_t)count[2] * slab->bytes;
@@ -84,6 +88,7 @@ static bool transfer(hid_t set, const bw_checkpoint__slab *slab, const void *fro
   const hid_t together = H5Pcreate(H5P_DATASET_XFER);
   bool ok = memory >= 0 && file >= 0 && together >= 0 &&
             H5Pset_dxpl_mpio(together, H5FD_MPIO_COLLECTIVE) >= 0;
+  /* An empty share takes part with an empty selection. */
   if (ok && n > 0)
     ok = H5Sselect_hyperslab(file, H5S_SELECT_SET, slab->start, NULL, slab->count, NULL) >= 0;
   else if (ok)
@@ -103,6 +108,7 @@ static hid_t create(bw_checkpoint *ck, const char *name, const bw_checkpoint__sl
 {
   const hid_t space = H5Screate_simple(slab->dimensions, slab->size, NULL);
   const hid_t links = H5Pcreate(H5P_LINK_CREATE), layout = H5Pcreate(H5P_DATASET_CREATE);
+  /* A name may have folders; they are made as needed. */
   H5Pset_create_intermediate_group(links, 1);
   H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER); /* all of it is written below */
   const hid_t set = H5Dcreate2(ck->file, name, slab->type, space, links, layout, H5P_DEFAULT);
@@ -122,18 +128,22 @@ static bool is_empty(const bw_checkpoint__slab *slab)
 static bw_status put(bw_checkpoint *ck, const char *name, const bw_checkpoint__slab *slab,
                      const void *data)
 {
+  /* Collective, hence before the first refusal; all ranks then find the same below. */
   const uint64_t sum = checksum(ck, slab, data);
   const char nothing = 0;
   BW_REQUIRE(ck->part != NULL, BW_EINPUT, "checkpoint %s is open for reading: cannot put '%s'",
              ck->path, name);
   BW_REQUIRE(!bw_checkpoint_has(ck, name), BW_EINPUT,
              "checkpoint %s: data set '%s' is written twice", ck->part, name);
+  /* The name is free on all ranks: HDF5 makes the data set collectively. */
   const hid_t set = create(ck, name, slab);
   bw_status st = bw_comm_agree(
       ck->comm, set >= 0 ? BW_OK
                          : BW_FAIL(BW_EIO, "checkpoint %s: HDF5 cannot create the data set '%s'",
                                    ck->part, name));
   if (st == BW_OK) {
+    /* Kind and checksum stand beside the values; a failure is remembered, for the transfer is
+     * collective. */
     bool ok = bw_checkpoint__put_attribute(set, kind_attribute, slab->kind) &&
               bw_checkpoint__put_attribute(set, checksum_name, sum);
     if (!is_empty(slab)) ok = transfer(set, slab, data != NULL ? data : &nothing, NULL) && ok;
@@ -184,6 +194,7 @@ static bw_status check_sizes(const bw_checkpoint *ck, const char *name, hid_t se
   BW_REQUIRE(sizes_of(set, &dimensions, size), BW_EIO,
              "checkpoint %s: the sizes of data set '%s' are not readable; use an earlier one",
              ck->path, name);
+  /* Both sizes go into the message: the user sees which grid the file was written for. */
   const bool same = dimensions == slab->dimensions &&
                     memcmp(size, slab->size, sizeof size[0] * (size_t)dimensions) == 0;
   print_sizes(found, sizeof found, dimensions, size);
@@ -228,6 +239,7 @@ static bw_status open_set(bw_checkpoint *ck, const char *name, hid_t *set)
   BW_REQUIRE(bw_checkpoint_has(ck, name), BW_EIO,
              "checkpoint %s: there is no data set '%s'; restart with the case that wrote it",
              ck->path, name);
+  /* It is listed, but may be damaged all the same. */
   *set = H5Dopen2(ck->file, name, H5P_DEFAULT);
   return bw_comm_agree(
       ck->comm, *set >= 0
@@ -264,10 +276,12 @@ bw_status bw_checkpoint__get(bw_checkpoint *ck, const char *name, const bw_check
   hid_t set = H5I_INVALID_HID;
   uint64_t expected = 0;
   bw_status st = open_set(ck, name, &set);
+  /* Of the kind, type and sizes asked for: otherwise nothing is read into the caller's array. */
   BW_THEN(st, bw_comm_agree(ck->comm, check_all(ck, name, set, slab, &expected)));
   BW_THEN(st, bw_comm_agree(ck->comm, read_share(ck, name, set, slab, data)));
   if (set >= 0) H5Dclose(set);
   if (st != BW_OK) return st;
+  /* What arrived in memory is hashed, by all ranks together, and compared with what was written. */
   const uint64_t found = checksum(ck, slab, data);
   BW_REQUIRE(found == expected, BW_EIO,
              "checkpoint %s: data set '%s' is damaged (checksum %016" PRIx64
@@ -284,6 +298,7 @@ bw_status bw_checkpoint__length(bw_checkpoint *ck, const char *name, bw_checkpoi
   hsize_t size[3] = {0};
   bw_status st = open_set(ck, name, &set);
   if (st == BW_OK) {
+    /* The length of a text is not known before it is read; that it is one is checked first. */
     st = check_kind(ck, name, set, kind);
     if (st == BW_OK && !(sizes_of(set, &dimensions, size) && dimensions == 1))
       st = BW_FAIL(BW_EIO, "checkpoint %s: the size of data set '%s' is not readable", ck->path,

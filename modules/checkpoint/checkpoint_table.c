@@ -41,11 +41,13 @@ static bw_status describe(const bw_checkpoint *ck, const char *name, int64_t tot
   BW_REQUIRE(total >= 0 && components >= 1, BW_EINPUT,
              "checkpoint %s: table '%s' of %" PRId64 " rows with %d components", ck->path, name,
              total, components);
+  /* Equal shares of consecutive ids; the last ranks may have fewer rows or none. */
   *t = (table){.total = total, .share = total / ranks + 1};
   BW_TRY(element_of(ck, name, type, &t->slab.type, &t->slab.bytes));
   t->lower = me * t->share < total ? me * t->share : total;
   t->mine = (size_t)(total - t->lower < t->share ? total - t->lower : t->share);
   t->row = t->slab.bytes * (size_t)components;
+  /* The share is a band of whole rows: one contiguous piece of the file. */
   t->slab.kind = BW_CHECKPOINT__TABLE;
   t->slab.dimensions = 2;
   t->slab.size[0] = (hsize_t)total, t->slab.size[1] = (hsize_t)components;
@@ -73,11 +75,13 @@ static bw_status plan_ways(bw_checkpoint *ck, const char *name, size_t n, const 
   int *destination = NULL;
   bw_status st = BW_ALLOCATE(&destination, n);
   BW_THEN(st, destinations(ck, name, t, n, id, destination));
+  /* A wrong id on one rank stops all of them before a message is sent. */
   st = bw_comm_agree(ck->comm, st);
   BW_THEN(st, bw_exchange_create(ck->comm, n, destination, &t->plan));
   bw_release(&destination);
   if (st != BW_OK) return st;
   BW_TRY(bw_comm_agree(ck->comm, BW_ALLOCATE(&t->asked, bw_exchange_received(t->plan))));
+  /* The ids travel once; from now on the share knows which row each arrival is. */
   bw_exchange_forward(t->plan, sizeof *id, id, t->asked);
   return BW_OK;
 }
@@ -100,6 +104,7 @@ static bw_status sort_rows(const bw_checkpoint *ck, const char *name, const tabl
     seen[at] = 1;
     memcpy(share + at * t->row, arrived + i * t->row, t->row);
   }
+  /* Every id once and none missing: the file would otherwise hold rows that nobody wrote. */
   for (size_t at = 0; at < t->mine; at++)
     BW_REQUIRE(seen[at] != 0, BW_EINPUT, "checkpoint %s: table '%s' has no row with id %" PRId64,
                ck->path, name, t->lower + (int64_t)at);
@@ -112,11 +117,13 @@ static bw_status put_rows(bw_checkpoint *ck, const char *name, table *t, const v
   bw_status st = BW_ALLOCATE(&arrived, bw_exchange_received(t->plan) * t->row);
   BW_THEN(st, BW_ALLOCATE(&share, t->mine * t->row));
   BW_THEN(st, BW_ALLOCATE(&seen, t->mine));
+  /* Room for the arriving rows is there on all ranks. */
   st = bw_comm_agree(ck->comm, st);
   if (st == BW_OK) {
     bw_exchange_forward(t->plan, t->row, rows, arrived);
     st = bw_comm_agree(ck->comm, sort_rows(ck, name, t, arrived, share, seen));
   }
+  /* Rows lie in the order of their ids: what is written does not depend on the partition. */
   BW_THEN(st, bw_checkpoint__put(ck, name, &t->slab, share));
   bw_release(&arrived);
   bw_release(&share);
@@ -131,10 +138,12 @@ static bw_status get_rows(bw_checkpoint *ck, const char *name, table *t, void *r
   bw_status st = BW_ALLOCATE(&reply, wanted * t->row);
   BW_THEN(st, BW_ALLOCATE(&share, t->mine * t->row));
   st = bw_comm_agree(ck->comm, st);
+  /* Each rank reads its share, whoever wants the rows. */
   BW_THEN(st, bw_checkpoint__get(ck, name, &t->slab, share));
   if (st == BW_OK) {
     for (size_t i = 0; i < wanted; i++)
       memcpy(reply + i * t->row, share + (size_t)(t->asked[i] - t->lower) * t->row, t->row);
+    /* Back the way the ids came: in the order in which the caller asked. */
     bw_exchange_backward(t->plan, t->row, reply, rows);
   }
   bw_release(&reply);
@@ -151,6 +160,7 @@ bw_status bw_checkpoint_put_table(bw_checkpoint *ck, const char *name, int64_t t
   BW_THEN(st, plan_ways(ck, name, n, id, &t));
   BW_THEN(st, put_rows(ck, name, &t, rows));
   forget(&t);
+  /* Failures before the data set was begun count as well: the file must not be renamed. */
   if (ck->part != NULL && ck->failed == BW_OK) ck->failed = st;
   return st;
 }

@@ -31,6 +31,7 @@ bw_status bw_checkpoint_get_numbers(bw_checkpoint *ck, const char *name, int n, 
   const bw_checkpoint__slab slab =
       slab_of(ck, BW_CHECKPOINT__NUMBERS, H5T_NATIVE_DOUBLE, sizeof *x, (size_t)n);
   BW_TRY(bw_checkpoint__get(ck, name, &slab, x));
+  /* Rank 0's share is all of it; the others learn it here. */
   bw_comm_broadcast(ck->comm, (size_t)n * sizeof *x, x);
   return BW_OK;
 }
@@ -50,6 +51,7 @@ bw_status bw_checkpoint_get_text(bw_checkpoint *ck, const char *name, char **tex
   *text = NULL;
   BW_TRY(bw_checkpoint__length(ck, name, BW_CHECKPOINT__TEXT, &length));
   const bw_checkpoint__slab slab = slab_of(ck, BW_CHECKPOINT__TEXT, H5T_NATIVE_UINT8, 1, length);
+  /* The allocation is zeroed and one byte longer, so that the text ends. */
   bw_status st = bw_comm_agree(ck->comm, BW_ALLOCATE(text, length + 1));
   BW_THEN(st, bw_checkpoint__get(ck, name, &slab, *text));
   if (st == BW_OK)

@@ -38,6 +38,7 @@ static bw_status load(const bw_case *run, void *config)
   const bw_case_args *a = &run->args;
   BW_TRY(bw_config_load(a->comm, a->yaml, run->about->fields, a->n_overrides, a->overrides,
                         run->about->config_size, config));
+  /* Before the folder is touched: a run with a slip in its command line leaves no trace. */
   BW_REQUIRE(a->restart == NULL || bw_path_exists(a->comm, a->restart), BW_EIO,
              "--restart %s: there is no such file", a->restart);
   return BW_OK;
@@ -49,6 +50,7 @@ static bw_status announce(bw_case *run, const void *config)
   const bw_case_args *a = &run->args;
   char *resolved = NULL;
   bw_status st = bw_comm_agree(a->comm, bw_config_dump(run->about->fields, config, &resolved));
+  /* A check touches no folder. */
   if (!a->check) {
     BW_THEN(st, bw_core__case_folder(run));
     BW_THEN(st, bw_core__case_record(run, resolved));
@@ -66,11 +68,13 @@ static bw_status begin(bw_case *run, int argc, char **argv, void *config)
 {
   const bool speaker = bw_comm_rank(run->args.comm) == 0;
   BW_TRY(bw_comm_agree(run->args.comm, bw_core__case_parse(run, argc, argv)));
+  /* All ranks have read the same command line; only rank 0 answers. */
   if (run->version && speaker) bw_core__case_version();
   if (run->help && speaker) bw_core__case_help(run, config);
   bw_log_config settings = bw_log_config_default();
   settings.quiet = run->args.quiet;
   BW_TRY(bw_comm_agree(run->args.comm, bw_log_create(run->args.comm, &settings, &run->log)));
+  /* Help or version was all that was asked: no case file is needed. */
   if (run->args.stop) return BW_OK;
   BW_TRY(load(run, config));
   return announce(run, config);
@@ -110,6 +114,7 @@ bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine)
 {
   bw_status st = comm != NULL ? bw_comm_agree(comm, mine) : mine;
   if (*run == NULL) return st;
+  /* The record says how the run ended, also when it failed. */
   const bw_status recorded = bw_comm_agree(comm, bw_core__case_record_end(*run, st));
   if (st == BW_OK) st = recorded;
   release(run);
@@ -123,6 +128,7 @@ int bw_case_main(int argc, char **argv, const bw_case_about *about, void *config
   bw_case *run = NULL;
   bw_status st = bw_init(&argc, &argv, &world);
   BW_THEN(st, bw_case_begin(world, argc, argv, about, config, &run));
+  /* Whatever simulate returns, the record is finished and all ranks leave together. */
   if (st == BW_OK && !run->args.stop) st = simulate(world, config, run);
   st = bw_case_end(world, &run, st);
   return bw_finish(&world, st);

@@ -15,29 +15,37 @@
 #include "bw_config.h"
 #include "bw_log.h"
 
-/* Of the sources this program was built from; "unknown" where the build could not tell. Local. */
+BW_BEGIN_DECLS
+
+/* Version of the sources this program was built from, "1.2.3"; static storage. Local. */
 const char *bw_version(void);
+
+/* Commit of those sources; "unknown" where the build could not tell; static storage. Local. */
 const char *bw_commit(void);
 
+/* What a case is. Borrowed by bw_case_begin until bw_case_end. */
 typedef struct {
-  const char *name;    /* of the program; the default folder is out/NAME of the YAML file */
+  const char *name;    /* of the program; the default folder is out/NAME, see bw_case_args.out */
   const char *summary; /* one line for --help */
-  const bw_config_field *fields;
-  size_t config_size;
+  const bw_config_field *fields; /* table of the keys of its case file, see bw_config.h */
+  size_t config_size;            /* bytes of the struct that the table fills */
 } bw_case_about;
 
+/* The command line as it was understood. Texts and arrays live until bw_case_end. */
 typedef struct {
-  const bw_comm *comm;
+  const bw_comm *comm; /* all ranks of the program */
   const char *yaml;    /* path of the case file */
-  const char *out;     /* folder of the results; exists unless check or stop */
+  const char *out;     /* folder of the results, --out or else out/NAME (out/NAME-STEM for a case
+                          file STEM.yaml called otherwise); exists unless check or stop */
   const char *restart; /* checkpoint to go on from, or NULL */
-  const char *const *overrides;
-  int n_overrides;
-  bool check; /* --check: print the sizes, run and write nothing */
-  bool quiet;
+  const char *const *overrides; /* (n_overrides) the texts behind --set, in their order */
+  int n_overrides;              /* number of --set */
+  bool check;                   /* --check: print the sizes, run and write nothing */
+  bool quiet;                   /* --quiet: only warnings and errors */
   bool stop; /* --help or --version was answered: nothing to do (the configuration is not read) */
 } bw_case_args;
 
+/* A case that runs: its command line, folder, record and log. */
 typedef struct bw_case bw_case;
 
 /* Read the command line; load and check the configuration; make the folder; write run.yaml; print
@@ -48,11 +56,14 @@ typedef struct bw_case bw_case;
 bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_case_about *about,
                         void *config, bw_case **out) BW_MUST_CHECK;
 
-/* Valid until bw_case_end. Local. */
+/* The command line; borrowed, valid until bw_case_end. Local. */
 const bw_case_args *bw_case_args_of(const bw_case *run);
+
+/* The log of the case; borrowed, valid until bw_case_end. Local. */
 bw_log *bw_case_log(const bw_case *run);
 
-/* *path = a file in the output folder, allocated, owned by the caller (bw_release). Local. */
+/* *path = the path of file `name` in the output folder, allocated, owned by the caller (bw_release);
+ * NULL after BW_EMEM. Local. */
 bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
 
 /* Ranks agree on `mine`; end time and status are added to run.yaml; *run is freed (NULL inside is
@@ -64,3 +75,5 @@ bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine) BW_MUS
  * exit code. Collective. */
 int bw_case_main(int argc, char **argv, const bw_case_about *about, void *config,
                  bw_status (*simulate)(const bw_comm *comm, void *config, bw_case *run));
+
+BW_END_DECLS

@@ -1,4 +1,4 @@
-#include "bw_comm.h"
+#include "bw_comm_mpi.h"
 #include "bw_memory.h"
 #include "core_internal.h"
 

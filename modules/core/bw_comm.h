@@ -5,10 +5,11 @@
  * "Collective" means: every rank of the communicator calls it, in the same order. */
 #pragma once
 #include "bw_status.h"
-#include <mpi.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+BW_BEGIN_DECLS
 
 typedef struct bw_comm bw_comm;
 
@@ -28,9 +29,8 @@ void bw_comm_abort(const bw_comm *comm, int code) __attribute__((noreturn));
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 void bw_comm_destroy(bw_comm **comm); /* NULL is fine; the world is freed by bw_finish */
 
-int bw_comm_rank(const bw_comm *comm);     /* 0 .. size-1. Local. */
-int bw_comm_size(const bw_comm *comm);     /* Local. */
-MPI_Comm bw_comm_mpi(const bw_comm *comm); /* for libraries that want it (HDF5). Local. */
+int bw_comm_rank(const bw_comm *comm); /* 0 .. size-1. Local. */
+int bw_comm_size(const bw_comm *comm); /* Local. */
 
 /* All ranks return the largest of the codes given; the message of the lowest rank that failed
  * replaces the others'. Call before branching on a result that may differ. Collective. */
@@ -60,3 +60,5 @@ bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine,
 
 void bw_comm_barrier(const bw_comm *comm); /* Collective. */
 double bw_wall_time(void);                 /* [s] from an arbitrary origin. Local. */
+
+BW_END_DECLS

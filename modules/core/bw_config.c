@@ -15,6 +15,8 @@ static bw_status load(const char *name, const char *text, const bw_config_field 
   bw_status st = bw_core__config_read(name, text, n_overrides, overrides, &source);
   BW_THEN(st, bw_core__config_check(&source, fields, config, &accepted));
   BW_THEN(st, bw_core__config_convert(accepted, fields, size, &loaded));
+  /* Nothing was wrong: only now the caller's struct is written, and only where a value was
+   * given. */
   if (st == BW_OK) bw_core__config_copy(&source, fields, source.root, loaded, config);
   bw_core__config_free(&source);
   bw_release(&accepted);
@@ -30,6 +32,7 @@ bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_
   if (reader) {
     bw_comm *self = NULL;
     char *text = NULL;
+    /* A communicator of this rank alone: reading must not wait for ranks that do not read. */
     if (path != NULL) {
       st = bw_comm_self(&self);
       BW_THEN(st, bw_file_read_text(self, path, NULL, &text));
@@ -39,6 +42,7 @@ bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_
                      n_overrides, overrides, size, config));
     bw_release(&text);
   }
+  /* The struct is plain memory without pointers, so that its bytes are the message. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) bw_comm_broadcast(comm, size, config);
   return st;

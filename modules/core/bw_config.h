@@ -25,84 +25,127 @@
  * A fixed array in C (double x[3]) is a YAML list of that length. Numbers are decimal and finite.
  * Overrides are "key.path=value"; shapes.0.radius=2 names an item (its index at most the count,
  * so that the next one may be added); a value may be any YAML ("[1, 2, 3]"). The key `run` at the
- * top level is ignored, so that a run.yaml is itself a case file. */
+ * top level is ignored, so that a run.yaml is itself a case file.
+ * Tables are written in C: the macros choose by type (_Generic), which C++ cannot. A C++ program
+ * may load, dump and describe with a table of a C source. */
 #pragma once
 #include "bw_comm.h"
 #include <stddef.h>
 #include <stdio.h>
 
+BW_BEGIN_DECLS
+
+/* What a member is, in C and in YAML; the macros below choose it. */
 typedef enum {
-  BW_CONFIG_TYPE_DOUBLE,
-  BW_CONFIG_TYPE_INT,
-  BW_CONFIG_TYPE_BOOL,
-  BW_CONFIG_TYPE_TEXT,
-  BW_CONFIG_TYPE_WORD,
-  BW_CONFIG_TYPE_MAP,
-  BW_CONFIG_TYPE_LIST
+  BW_CONFIG_TYPE_DOUBLE, /* double or a fixed array of them: a finite decimal number */
+  BW_CONFIG_TYPE_INT,    /* int or a fixed array: a whole number, also written 1e6 */
+  BW_CONFIG_TYPE_BOOL,   /* bool or a fixed array: true, yes, on or false, no, off */
+  BW_CONFIG_TYPE_TEXT,   /* char[]: a text that fits, its end included */
+  BW_CONFIG_TYPE_WORD,   /* int or a fixed array: one of a list of words */
+  BW_CONFIG_TYPE_MAP,    /* a struct with its own table: a block of keys */
+  BW_CONFIG_TYPE_LIST    /* an array of structs with a count: a list of blocks */
 } bw_config_type;
 
-typedef enum { BW_OPTIONAL, BW_REQUIRED } bw_config_need;
+/* Must a value be given? */
+typedef enum {
+  BW_OPTIONAL, /* no: what the struct holds before loading stays */
+  BW_REQUIRED  /* yes, unless the struct holds one before loading: an error by name otherwise */
+} bw_config_need;
 
-enum { BW_BOUND_MIN = 1, BW_BOUND_ABOVE = 2, BW_BOUND_MAX = 4, BW_BOUND_BELOW = 8 };
+/* Which limits of a bw_config_range hold; combined by |. */
+enum {
+  BW_BOUND_MIN = 1,   /* x >= low */
+  BW_BOUND_ABOVE = 2, /* x > low */
+  BW_BOUND_MAX = 4,   /* x <= high */
+  BW_BOUND_BELOW = 8  /* x < high */
+};
+
+/* The numbers a member may have, in the member's unit. Written by the macros below. */
 typedef struct {
-  int bounds; /* which of the two hold, and whether the limit itself is allowed */
-  double low, high;
+  int bounds;       /* which of the two hold, and whether the limit itself is allowed */
+  double low, high; /* the limits; looked at only where `bounds` says so */
 } bw_config_range;
+
+/* Any finite number. */
 #define BW_ANY                                                                                     \
   {                                                                                                \
     0, 0, 0                                                                                        \
   }
+
+/* Numbers greater than x. */
 #define BW_ABOVE(x)                                                                                \
   {                                                                                                \
     BW_BOUND_ABOVE, (x), 0                                                                         \
-  } /* > x */
+  }
+
+/* Numbers not less than x. */
 #define BW_AT_LEAST(x)                                                                             \
   {                                                                                                \
     BW_BOUND_MIN, (x), 0                                                                           \
-  } /* >= x */
+  }
+
+/* Numbers less than x. */
 #define BW_BELOW(x)                                                                                \
   {                                                                                                \
     BW_BOUND_BELOW, 0, (x)                                                                         \
-  } /* < x */
+  }
+
+/* Numbers not greater than x. */
 #define BW_AT_MOST(x)                                                                              \
   {                                                                                                \
     BW_BOUND_MAX, 0, (x)                                                                           \
-  } /* <= x */
+  }
+
+/* Numbers of [a, b]. */
 #define BW_FROM_TO(a, b)                                                                           \
   {                                                                                                \
     BW_BOUND_MIN | BW_BOUND_MAX, (a), (b)                                                          \
-  } /* [a, b] */
+  }
+
+/* Numbers of (a, b). */
 #define BW_BETWEEN(a, b)                                                                           \
   {                                                                                                \
     BW_BOUND_ABOVE | BW_BOUND_BELOW, (a), (b)                                                      \
-  } /* (a, b) */
+  }
+
+/* Numbers of (a, b]. */
 #define BW_ABOVE_TO(a, b)                                                                          \
   {                                                                                                \
     BW_BOUND_ABOVE | BW_BOUND_MAX, (a), (b)                                                        \
-  } /* (a, b] */
+  }
 
+/* A word of the case file and the number that stands for it in the struct. */
 typedef struct {
   const char *word; /* NULL ends the list */
-  int value;
+  int value;        /* of the int member; not INT_MIN, which means not set */
   const char *help; /* may be NULL */
 } bw_config_word;
 
+/* One row of a table: a key of the file and the member it fills. Written by the macros below. */
 typedef struct bw_config_field bw_config_field;
+
+/* The row; texts and tables are borrowed (literals and constants). */
 struct bw_config_field {
-  const char *key; /* NULL ends the table */
-  bw_config_type type;
-  bw_config_need need;
-  size_t offset, size; /* the whole member */
-  size_t item_size;    /* of one element: double, int, bool, the struct of a list */
-  size_t flag;         /* MAP: offset of its bool, or BW_CONFIG_NO_FLAG; LIST: of its int count */
-  bw_config_range range;
-  const char *unit, *help;
-  const bw_config_word *words;
-  const bw_config_field *fields;
+  const char *key;       /* the member's name; NULL ends the table */
+  bw_config_type type;   /* what the member is */
+  bw_config_need need;   /* whether a value must be given */
+  size_t offset, size;   /* of the whole member in its struct [bytes] */
+  size_t item_size;      /* of one element: double, int, bool, the struct of a list [bytes] */
+  size_t flag;           /* MAP: offset of its bool, or BW_CONFIG_NO_FLAG; LIST: of its int count */
+  bw_config_range range; /* of each number; no bounds for other types */
+  const char *unit;      /* "m2/s"; "" for a pure number */
+  const char *help;      /* what it means, for --help and messages */
+  const bw_config_word *words;   /* WORD: the list, ended by a NULL word; else NULL */
+  const bw_config_field *fields; /* MAP, LIST: the table of the struct; else NULL */
 };
+
+/* `flag` of a block that is always there. */
 #define BW_CONFIG_NO_FLAG ((size_t)-1)
 
+/* For the macros below: member m of T as an expression that is not evaluated. */
 #define BW_CONFIG_MEMBER_(T, m) (((T *)0)->m)
+
+/* For the macros below: the bw_config_type of a member. */
 #define BW_CONFIG_TYPE_OF_(x)                                                                      \
   _Generic((x),                                                                                    \
       double: BW_CONFIG_TYPE_DOUBLE,                                                               \
@@ -112,6 +155,8 @@ struct bw_config_field {
       bool: BW_CONFIG_TYPE_BOOL,                                                                   \
       bool *: BW_CONFIG_TYPE_BOOL,                                                                 \
       char *: BW_CONFIG_TYPE_TEXT)
+
+/* For the macros below: bytes of one element of a member; of a text, all of it. */
 #define BW_CONFIG_ITEM_OF_(x)                                                                      \
   _Generic((x),                                                                                    \
       double: sizeof(double),                                                                      \
@@ -130,18 +175,21 @@ struct bw_config_field {
         sizeof BW_CONFIG_MEMBER_(T, m), BW_CONFIG_ITEM_OF_(BW_CONFIG_MEMBER_(T, m)),               \
         BW_CONFIG_NO_FLAG, range, unit, help, NULL, NULL                                           \
   }
+
 /* An int (or an array of int) given as one of a list of words. */
 #define BW_CONFIG_WORD(T, m, need, words, help)                                                    \
   {                                                                                                \
 #m, BW_CONFIG_TYPE_WORD, need, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m), sizeof(int),    \
         BW_CONFIG_NO_FLAG, BW_ANY, "", help, words, NULL                                           \
   }
+
 /* A struct with its own table; required values in it must be given. */
 #define BW_CONFIG_MAP(T, m, fields, help)                                                          \
   {                                                                                                \
 #m, BW_CONFIG_TYPE_MAP, BW_OPTIONAL, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),           \
         sizeof BW_CONFIG_MEMBER_(T, m), BW_CONFIG_NO_FLAG, BW_ANY, "", help, NULL, fields          \
   }
+
 /* The same where the block may be absent: bool member `flag` becomes true when it is given (its
  * default may be true). Required values in it are asked for only then. */
 #define BW_CONFIG_MAP_IF(T, m, flag, fields, help)                                                 \
@@ -149,19 +197,22 @@ struct bw_config_field {
 #m, BW_CONFIG_TYPE_MAP, BW_OPTIONAL, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),           \
         sizeof BW_CONFIG_MEMBER_(T, m), offsetof(T, flag), BW_ANY, "", help, NULL, fields          \
   }
+
 /* An array of structs, at most as many as it has; int member `count` tells how many are set. */
 #define BW_CONFIG_LIST(T, m, count, need, fields, help)                                            \
   {                                                                                                \
 #m, BW_CONFIG_TYPE_LIST, need, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),                 \
         sizeof BW_CONFIG_MEMBER_(T, m)[0], offsetof(T, count), BW_ANY, "", help, NULL, fields      \
   }
+
+/* The end of a table. */
 #define BW_CONFIG_END                                                                              \
   {                                                                                                \
     NULL, BW_CONFIG_TYPE_INT, BW_OPTIONAL, 0, 0, 0, 0, BW_ANY, "", "", NULL, NULL                  \
   }
 
-/* config (`size` bytes, with its defaults) <- the file at `path` and then the overrides. `path`
- * NULL: the overrides alone. Rank 0 reads; all ranks get the same struct or the same error:
+/* config (`size` bytes, with its defaults) <- the file at `path` and then overrides[n_overrides],
+ * each "key.path=value". `path` NULL: the overrides alone. Rank 0 reads; all ranks get the same struct or the same error:
  * BW_EIO when the file cannot be read, BW_EINPUT with one line for each thing found wrong. The
  * struct is unchanged after an error. Arguments of rank 0 count. Collective. */
 bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_field fields[],
@@ -169,9 +220,11 @@ bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_
                          void *config) BW_MUST_CHECK;
 
 /* The struct as YAML that loads back to the same values (%.17g where needed); values not set are
- * left out. *text is allocated and owned by the caller (bw_release). Local. */
+ * left out. *text is allocated and owned by the caller (bw_release), NULL after BW_EMEM. Local. */
 bw_status bw_config_dump(const bw_config_field fields[], const void *config,
                          char **text) BW_MUST_CHECK;
 
-/* One line per key: path, type, range, unit, default of `config`, meaning. Local. */
+/* One line per key on `out`: path, type, range, unit, default of `config`, meaning. Local. */
 void bw_config_help(const bw_config_field fields[], const void *config, FILE *out);
+
+BW_END_DECLS

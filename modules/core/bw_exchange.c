@@ -1,4 +1,5 @@
 #include "bw_exchange.h"
+#include "bw_comm_mpi.h"
 #include "bw_memory.h"
 
 #include <limits.h>

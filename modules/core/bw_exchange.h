@@ -9,6 +9,8 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
 typedef struct bw_exchange bw_exchange;
 
 /* Item i of this rank (0 <= i < n) goes to rank destination[i]; one item may be listed for
@@ -30,3 +32,5 @@ void bw_exchange_backward(bw_exchange *plan, size_t bytes, const void *reply, vo
 
 /* Bytes sent to other ranks by one forward of items of `bytes` each. Local. */
 size_t bw_exchange_volume(const bw_exchange *plan, size_t bytes);
+
+BW_END_DECLS

@@ -1,4 +1,5 @@
 #include "bw_file.h"
+#include "bw_comm_mpi.h"
 #include "bw_folder.h"
 #include "bw_memory.h"
 #include "core_internal.h"

@@ -11,6 +11,7 @@ static bw_status make_one(const char *path)
 {
   struct stat info;
   if (mkdir(path, 0777) == 0) return BW_OK;
+  /* It is there, or it cannot be made; another process may also have made it between two calls. */
   const int reason = errno;
   if (stat(path, &info) == 0) {
     BW_REQUIRE(S_ISDIR(info.st_mode), BW_EIO,
@@ -24,6 +25,7 @@ static bw_status make_one(const char *path)
 static bw_status make_all(char *path)
 {
   BW_REQUIRE(path[0] != '\0', BW_EIO, "cannot make a folder without a name");
+  /* Parents first, from the root downwards. */
   for (char *p = path + 1; *p != '\0'; p++) {
     if (*p != '/') continue;
     *p = '\0';
@@ -32,6 +34,7 @@ static bw_status make_all(char *path)
     BW_TRY(st);
   }
   BW_TRY(make_one(path));
+  /* An old folder may belong to somebody else. */
   BW_REQUIRE(access(path, W_OK | X_OK) == 0, BW_EIO, "cannot write into the folder %s: %s", path,
              strerror(errno));
   return BW_OK;
@@ -52,6 +55,7 @@ bw_status bw_folder_make(const bw_comm *comm, const char *path)
 bool bw_path_exists(const bw_comm *comm, const char *path)
 {
   struct stat info;
+  /* Only rank 0 looks: on a shared disk other ranks may see a new file later. */
   int64_t found = bw_comm_rank(comm) == 0 && stat(path, &info) == 0;
   bw_comm_max_int(comm, 1, &found);
   return found != 0;

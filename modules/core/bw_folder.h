@@ -2,6 +2,8 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
 /* Make `path` and its missing parents; an existing folder is fine. BW_EIO with the part that
  * failed and the system's reason, also when the folder is there but not writable. Collective. */
 bw_status bw_folder_make(const bw_comm *comm, const char *path) BW_MUST_CHECK;
@@ -10,5 +12,7 @@ bw_status bw_folder_make(const bw_comm *comm, const char *path) BW_MUST_CHECK;
 bool bw_path_exists(const bw_comm *comm, const char *path);
 
 /* *out = "FOLDER/NAME" (just NAME when folder is "" or NAME begins with '/'), allocated, owned by
- * the caller (bw_release). Local. */
+ * the caller (bw_release); NULL after BW_EMEM. Local. */
 bw_status bw_path_join(const char *folder, const char *name, char **out) BW_MUST_CHECK;
+
+BW_END_DECLS

@@ -52,11 +52,14 @@ static bw_status keep_rows(bw_history *h, const char *header, double restart, ch
   const size_t length = strlen(header);
   const bool same =
       end != NULL && (size_t)(end - line) == length && strncmp(line, header, length) == 0;
+  /* The header stands alone for a message, and is put together with its rows again below. */
   if (end != NULL) *end = '\0';
   BW_REQUIRE(same, BW_EINPUT,
              "%s holds other columns (%.300s) than this run writes (%.300s): give another --out",
              h->path, line, header);
   *end = '\n';
+  /* Rows that a killed run wrote after the checkpoint will be computed once more. A last line
+   * without its end was being written when the run was killed. */
   for (line = end + 1; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     const double time = strtod(line, NULL);
     if (!(time <= restart)) break;
@@ -69,6 +72,7 @@ static bw_status keep_rows(bw_history *h, const char *header, double restart, ch
 
 static bw_status open_file(bw_history *h, const char *header, char *old)
 {
+  /* A history that goes on was cut to the restart time before. */
   h->out = fopen(h->path, old != NULL ? "a" : "w");
   BW_REQUIRE(h->out != NULL, BW_EIO, "cannot write %s: %s", h->path, strerror(errno));
   if (old == NULL) {
@@ -89,6 +93,7 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
   BW_THEN(st, check_names(path, n, names));
   BW_THEN(st, bw_path_join("", path, &h->path));
   BW_THEN(st, make_header(n, names, &header));
+  /* Names are sound and memory is there on all ranks; now the disk. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     h->n = n;
@@ -97,12 +102,14 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
       st = bw_file_read_text(comm, path, &bytes, &old);
     if (bytes == 0) bw_release(&old); /* killed before its first line */
     if (old != NULL) BW_THEN(st, bw_comm_agree(comm, keep_rows(h, header, restart_time, old)));
+    /* The file is replaced as a whole: a run killed now leaves the old one or the cut one. */
     if (old != NULL) BW_THEN(st, bw_file_write_text(comm, path, old));
     if (st == BW_OK && bw_comm_rank(comm) == 0) st = open_file(h, header, old);
     st = bw_comm_agree(comm, st);
   }
   bw_release(&header);
   bw_release(&old);
+  /* On rank 0 the file may be open although another rank failed. */
   if (st != BW_OK && h != NULL) {
     if (h->out != NULL) fclose(h->out);
     bw_release(&h->path);
@@ -115,6 +122,7 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
 void bw_history_append(bw_history *h, const double values[])
 {
   if (h == NULL || h->out == NULL) return;
+  /* The first sample after a restart is the last one before it. */
   if (values[0] == h->last_kept) return;
   bool ok = true;
   for (int q = 0; q < h->n; q++) {
@@ -123,6 +131,7 @@ void bw_history_append(bw_history *h, const double values[])
     ok = fprintf(h->out, "%s%s", q == 0 ? "" : ",", number) > 0 && ok;
   }
   ok = fputc('\n', h->out) != EOF && ok;
+  /* A killed run keeps all rows but the one being written. */
   ok = fflush(h->out) == 0 && ok;
   if (!ok && h->reason == 0) h->reason = errno != 0 ? errno : EIO;
   h->rows++;
@@ -139,6 +148,7 @@ bw_status bw_history_close(const bw_comm *comm, bw_history **history)
   bw_status st = BW_OK;
   if (h != NULL && h->out != NULL) {
     errno = 0;
+    /* What failed in between shows here at the latest: rows are written without a status. */
     if (fclose(h->out) != 0 && h->reason == 0) h->reason = errno;
     if (h->reason != 0) st = BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
   }

@@ -4,9 +4,12 @@
 #pragma once
 #include "bw_comm.h"
 
+BW_BEGIN_DECLS
+
+/* An open history.csv. */
 typedef struct bw_history bw_history;
 
-/* Begin `path` with the column names, names[0] being the time, e.g. {"time[s]",
+/* Begin `path` with the n column names, names[0] being the time, e.g. {"time[s]",
  * "pressure_drop_over_p0[-]"}. restart_time NaN: a new file replaces an old one. Otherwise the
  * existing file goes on: its rows later than restart_time (written before the run was killed)
  * and an incomplete last line are dropped, so that no sample appears twice; without a file a new
@@ -15,7 +18,7 @@ typedef struct bw_history bw_history;
 bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const char *const names[],
                             double restart_time, bw_history **out) BW_MUST_CHECK;
 
-/* values[n] of rank 0. A row of the same time as the last one kept by a restart is that row
+/* One row: values[n] of rank 0, values[0] being the time; other ranks' are not looked at. A row of the same time as the last one kept by a restart is that row
  * again and is not repeated. Errors of writing are remembered and returned by close. Local. */
 void bw_history_append(bw_history *history, const double values[]);
 
@@ -24,3 +27,5 @@ int64_t bw_history_rows(const bw_history *history);
 
 /* *history is freed; NULL inside is fine. BW_EIO when a row could not be written. Collective. */
 bw_status bw_history_close(const bw_comm *comm, bw_history **history) BW_MUST_CHECK;
+
+BW_END_DECLS

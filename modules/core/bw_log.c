@@ -78,6 +78,7 @@ void bw_log_warn(bw_log *log, const char *fmt, ...)
   if (log == NULL || !log->speaks) return;
   va_list args;
   clear_line(log);
+  /* The two streams may end on one terminal: in order of time. */
   fflush(log->config.out);
   fputs("breakwater: warning: ", log->config.err);
   va_start(args, fmt);
@@ -113,6 +114,7 @@ static void measure_speed(bw_progress *p, double now)
   if (seconds <= 0.0) return;
   const double steps = (double)(p->step - p->step_shown) / seconds;
   const double time = (p->time - p->time_shown) / seconds;
+  /* The first interval has no older one to be averaged with. */
   const bool first = p->steps_per_second == 0.0;
   p->steps_per_second = first ? steps : 0.5 * (p->steps_per_second + steps);
   p->time_per_second = first ? time : 0.5 * (p->time_per_second + time);
@@ -124,6 +126,7 @@ static void measure_speed(bw_progress *p, double now)
 /* Seconds still to go; NaN when nothing says so. */
 static double remaining(const bw_progress *p)
 {
+  /* A goal in time is better than one in steps: steps may change their length. */
   if (isfinite(p->config.time_end))
     return p->time_per_second > 0.0 ? fmax(0.0, (p->config.time_end - p->time) / p->time_per_second)
                                     : NAN;
@@ -156,6 +159,7 @@ static void show(bw_progress *p, const char *speed_word, double steps_per_second
   const int columns = p->log->config.terminal;
   char line[LINE];
   char goal[64] = "", step_goal[32] = "";
+  /* What is not known is left out rather than shown as a question. */
   if (isfinite(c->time_end)) snprintf(goal, sizeof goal, "/%.4g", c->time_end);
   if (c->step_end > 0) snprintf(step_goal, sizeof step_goal, "/%lld", (long long)c->step_end);
   snprintf(line, sizeof line, "step %lld%s  t %.5g%s %s  %s%.4g steps/s  %s%s%s",
@@ -169,9 +173,11 @@ void bw_progress_update(bw_progress *p, int64_t step, double time, const char *f
 {
   if (p == NULL || p->log == NULL || !p->log->speaks || p->log->config.quiet) return;
   const bw_log_config *c = &p->log->config;
+  /* The last state is kept even when no line is due: finish shows it. */
   const double now = bw_wall_time();
   p->step = step;
   p->time = time;
+  /* Nothing below this line is done more often than a reader can follow. */
   if (now - p->wall_shown < (c->terminal ? c->redraw_seconds : c->plain_seconds)) return;
   char left[32], tail[48];
   va_list args;
@@ -183,6 +189,7 @@ void bw_progress_update(bw_progress *p, int64_t step, double time, const char *f
   va_end(args);
   clear_line(p->log);
   show(p, "", p->steps_per_second, tail);
+  /* On a terminal the line stays open, to be redrawn; elsewhere each is a line of its own. */
   if (!c->terminal) fputc('\n', c->out);
   p->log->line_open = c->terminal != 0;
   fflush(c->out);
@@ -192,6 +199,7 @@ void bw_progress_finish(bw_progress **progress)
 {
   bw_progress *p = *progress;
   if (p == NULL) return;
+  /* The last line is plain on a terminal too, and stays. */
   if (p->log != NULL && p->log->speaks && !p->log->config.quiet) {
     char spent[32], tail[48];
     const double seconds = bw_wall_time() - p->wall_start;

@@ -33,9 +33,13 @@ static void *reserve(size_t bytes)
 bw_status bw_allocate(size_t count, size_t size, void *out)
 {
   void *p = NULL;
+  /* `out` is the address of a pointer of some type: its bytes are copied, so that no type is
+   * disregarded. */
   memcpy(out, &p, sizeof p);
   BW_REQUIRE(size == 0 || count <= (SIZE_MAX - 2 * ALIGNMENT) / size, BW_EMEM,
              "an array of %zu items of %zu bytes exceeds the address space", count, size);
+  /* Never empty, and whole cache lines: a vector that reads beyond the end of an array stays
+   * inside. */
   const size_t bytes = (count * size + 2 * ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   p = reserve(bytes);
   memcpy(out, &p, sizeof p);

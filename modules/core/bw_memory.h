@@ -3,16 +3,21 @@
 #include "bw_status.h"
 #include <stddef.h>
 
+BW_BEGIN_DECLS
+
 /* *out = zeroed array of `count` items of `size` bytes, aligned to 64 bytes; never NULL on
- * success (also for count = 0), NULL after a failure. The caller owns it and frees it with
- * bw_release. Local. */
+ * success (also for count = 0), NULL after a failure. `out` is the address of a pointer of any type
+ * of object. The caller owns the array and frees it with bw_release. BW_EMEM with the size asked
+ * for, also when it exceeds the address space. Local. */
 bw_status bw_allocate(size_t count, size_t size, void *out) BW_MUST_CHECK;
 
 /* Free *out (a pointer's address) and set it to NULL; NULL inside is fine. Local. */
 void bw_release(void *out);
 
-/* Typed form: BW_ALLOCATE(&x, n) for `double *x`. */
+/* Typed form: BW_ALLOCATE(&x, n) for `double *x`, the status of bw_allocate. */
 #define BW_ALLOCATE(pointer, count) bw_allocate((count), sizeof **(pointer), (pointer))
 
 /* Memory of this process that is resident now [bytes]; 0 where the system does not tell. Local. */
 size_t bw_memory_resident(void);
+
+BW_END_DECLS

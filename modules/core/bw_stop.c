@@ -19,6 +19,7 @@ void bw_stop_install(void)
   struct sigaction action;
   memset(&action, 0, sizeof action);
   action.sa_handler = note;
+  /* System calls go on after the signal; a second one of the kind has its usual effect. */
   action.sa_flags = (int)((unsigned)SA_RESTART | (unsigned)SA_RESETHAND);
   sigemptyset(&action.sa_mask);
   for (size_t q = 0; q < sizeof signals / sizeof *signals; q++)

@@ -8,7 +8,10 @@
 #pragma once
 #include "bw_comm.h"
 
-/* From now on the signals only set a flag. Local. */
+BW_BEGIN_DECLS
+
+/* From now on the first signal of each kind only sets a flag of this process. Once per program,
+ * before the loop. Local. */
 void bw_stop_install(void);
 
 /* Has any rank been asked? The same answer on all ranks. Once per step is cheap. Collective. */
@@ -16,3 +19,5 @@ bool bw_stop_requested(const bw_comm *comm);
 
 /* Forget a request (a program that runs several jobs; tests). Local. */
 void bw_stop_clear(void);
+
+BW_END_DECLS

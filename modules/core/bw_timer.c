@@ -91,6 +91,7 @@ static void fill_row(const bw_comm *comm, const char *name, const char *unit, co
 {
   const int size = bw_comm_size(comm);
   double highest[2] = {mine->seconds, mine->calls}, sum[2] = {mine->seconds, mine->work};
+  /* The slowest rank says how long a part takes; work is what all have done together. */
   bw_comm_max(comm, 2, highest);
   bw_comm_sum(comm, 2, sum);
   *row = (bw_timer_row){.name = name,
@@ -114,11 +115,13 @@ void bw_timer_summary(const bw_timer *t, const bw_comm *comm, bw_timer_row rows[
   part_sums other = {.seconds = wall};
   double mean = wall;
   *total = wall;
+  /* Shares are of the mean rank: they add up to 1 also where ranks take turns in waiting. */
   bw_comm_max(comm, 1, total);
   bw_comm_sum(comm, 1, &mean);
   mean /= bw_comm_size(comm);
   for (int q = 0; q < t->n; q++) {
     fill_row(comm, t->parts[q].name, t->parts[q].work_unit, &t->sums[q], mean, &rows[q]);
+    /* What no part claims is "other". */
     other.seconds -= t->sums[q].seconds;
   }
   fill_row(comm, "other", NULL, &other, mean, &rows[t->n]);

@@ -92,10 +92,12 @@ static bw_status unknown_option(const char *word)
 static bw_status parse_option(bw_case *run, int argc, char **argv, int *at)
 {
   const char *word = argv[*at], *value = strchr(word, '=');
+  /* "--name=value" is one word, "--name value" two. */
   const size_t length = value != NULL ? (size_t)(value - word) : strlen(word);
   const struct option *o = find_option(word, length);
   if (o == NULL) return unknown_option(word);
   BW_REQUIRE(o->value != NULL || value == NULL, BW_EUSAGE, "%s takes no value", o->name);
+  /* Behind the equals sign; an option without value has none. */
   if (value != NULL) value++;
   if (o->value != NULL && value == NULL) {
     BW_REQUIRE(*at + 1 < argc, BW_EUSAGE, "%s needs a value: %s %s", o->name, o->name, o->value);
@@ -111,6 +113,7 @@ static bw_status default_folder(bw_case *run)
   const char *stem = slash != NULL ? slash + 1 : run->args.yaml, *dot = strrchr(stem, '.');
   const int length = dot != NULL ? (int)(dot - stem) : (int)strlen(stem);
   const size_t room = sizeof "out/-" + strlen(run->about->name) + (size_t)length;
+  /* The name of the case is not repeated where the file has it. */
   const bool same =
       strlen(run->about->name) == (size_t)length && strncmp(run->about->name, stem, length) == 0;
   BW_TRY(BW_ALLOCATE(&run->out, room));
@@ -123,6 +126,7 @@ static bw_status default_folder(bw_case *run)
 
 bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
 {
+  /* There are at most as many overrides as words. */
   BW_TRY(BW_ALLOCATE(&run->overrides, (size_t)argc));
   for (int q = 1; q < argc; q++) {
     if (argv[q][0] == '-') {
@@ -135,6 +139,7 @@ bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
     }
   }
   run->args.overrides = run->overrides;
+  /* Help and version need no case file. */
   if (run->args.stop) return BW_OK;
   BW_REQUIRE(run->args.yaml != NULL, BW_EUSAGE,
              "no case file is given: %s CASE.yaml [options]; --help lists them", run->about->name);

@@ -55,6 +55,7 @@ static bw_status keep_old_record(const bw_case *run, const char *path)
     char name[32], *kept = NULL;
     snprintf(name, sizeof name, "run-%d.yaml", n);
     BW_TRY(bw_path_join(run->out, name, &kept));
+    /* A name that is taken is never overwritten: every start of the run stays on record. */
     FILE *taken = fopen(kept, "r");
     const bool renamed = taken == NULL && rename(path, kept) == 0;
     const int reason = errno;
@@ -71,9 +72,11 @@ bw_status bw_core__case_folder(bw_case *run)
   const bw_comm *comm = run->args.comm;
   char *path = NULL;
   bw_status st = bw_comm_agree(comm, bw_path_join(run->out, "run.yaml", &path));
+  /* A run.yaml says that a run has been here. */
   if (st == BW_OK && bw_path_exists(comm, path)) {
     int64_t results = bw_comm_rank(comm) == 0 && holds_results(run->out);
     bw_comm_max_int(comm, 1, &results);
+    /* Results of another run are never mixed with new ones. */
     if (results && run->args.restart == NULL)
       st = BW_FAIL(BW_EINPUT,
                    "the folder %s holds results of another run: give --out NEW, or --restart FILE "
@@ -81,6 +84,7 @@ bw_status bw_core__case_folder(bw_case *run)
                    run->out);
     else if (results)
       st = check_same_case(run, path);
+    /* What is left is a restart, or a folder in which nothing was written. */
     if (st == BW_OK && bw_comm_rank(comm) == 0) st = keep_old_record(run, path);
     st = bw_comm_agree(comm, st);
   }
@@ -93,6 +97,7 @@ static void put_record(FILE *out, const bw_case *run, const char *resolved)
 {
   char start[TIME];
   now(start);
+  /* The resolved values, then how they came about, under a key that a case file ignores. */
   fprintf(out, "# The case as it was run; this file is a case file itself.\n%s", resolved);
   fprintf(out, "run:\n  case: %s\n  version: \"%s\"\n  commit: \"%s\"\n", run->about->name,
           bw_version(), bw_commit());
@@ -122,6 +127,7 @@ bw_status bw_core__case_record(bw_case *run, const char *resolved)
   if (out != NULL) put_record(out, run, resolved);
   if (st == BW_OK && (out == NULL || fclose(out) != 0))
     st = BW_FAIL(BW_EMEM, "no memory to write %s", path);
+  /* The text is complete in memory before the disk is touched. */
   st = bw_comm_agree(run->args.comm, st);
   BW_THEN(st, bw_file_write_text(run->args.comm, path, text));
   run->recorded = st == BW_OK;
@@ -136,6 +142,7 @@ static bw_status append_end(const bw_case *run, const char *path, bw_status stat
   FILE *out = fopen(path, "a");
   BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s: %s", path, strerror(errno));
   now(end);
+  /* The record ends in the block `run`, which put_record has left open. */
   fprintf(out, "  end: %s\n  seconds: %.3f\n  exit_code: %d\n  status: ", end,
           bw_wall_time() - run->wall_start, (int)status);
   bw_core__put_quoted(out, bw_status_text(status));

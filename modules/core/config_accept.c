@@ -39,6 +39,7 @@ static bool accept_int(FILE *out, const bw_config_field *f, const char *text)
 {
   double x = 0.0;
   if (!bw_core__config_number(text, &x) || !bw_core__config_in_range(&f->range, x)) return false;
+  /* A double holds every int exactly, so that the comparison loses nothing. */
   if (x != floor(x) || x <= (double)INT_MIN || x > (double)INT_MAX) return false;
   fprintf(out, "%d", (int)x);
   return true;

@@ -58,10 +58,13 @@ static void refuse(walk *w, const bw_config_field *f, int id, const char *path, 
   int best = 64;
   bw_core__config_expected(f, sizeof expected, expected);
   bw_core__config_meaning(f, sizeof meaning, meaning);
+  /* A slip of the pen is likelier than another meaning: the nearest word is named. */
   if (f->words != NULL)
     for (const bw_config_word *word = f->words; word->word != NULL; word++)
       if (bw_core__near_miss(text, word->word, &best)) nearest = word->word;
   double x = 0.0;
+  /* Four things may be wrong: a number out of its range, a text too long, a word misspelt, or
+   * another kind of value altogether. */
   const bool number = f->type == BW_CONFIG_TYPE_DOUBLE || f->type == BW_CONFIG_TYPE_INT;
   if (number && bw_core__config_number(text, &x) && !bw_core__config_in_range(&f->range, x)) {
     const char *relation = strpbrk(expected, "<>");
@@ -81,12 +84,14 @@ static void check_scalar(walk *w, const bw_config_field *f, int id, const char *
 {
   const yaml_node_t *node = bw_core__config_node(w->source, id);
   const bool text = f->type == BW_CONFIG_TYPE_TEXT;
+  /* A text of nothing at all is no text; "" in quotes is an empty one. */
   if (node->type != YAML_SCALAR_NODE ||
       (text && node->data.scalar.length == 0 && bw_core__config_is_null(w->source, id))) {
     wrong(w, f, id, path);
     return;
   }
   const char *value = (const char *)node->data.scalar.value;
+  /* What is accepted is written for libcyaml; every other way out is one line for the user. */
   if (strlen(value) != node->data.scalar.length)
     wrong(w, f, id, path); /* a 0 byte inside */
   else if (!bw_core__config_accept(f, value, w->accepted))
@@ -104,6 +109,8 @@ static void check_value(walk *w, const bw_config_field *f, int id, const char *p
     check_scalar(w, f, id, path);
     return;
   }
+  /* x: [1, 2] for double x[3] is refused as a whole, for which element is missing cannot be
+   * told. */
   if (bw_core__config_count(w->source, id) != length) {
     wrong(w, f, id, path);
     return;
@@ -129,6 +136,7 @@ static bool search_key(const bw_config_field fields[], const char *prefix, const
       memcpy(path, here, sizeof here);
       return true;
     }
+    /* Blocks of a list are named by the first one. */
     bw_core__config_join(here, "0", item);
     if (f->fields != NULL &&
         search_key(f->fields, f->type == BW_CONFIG_TYPE_LIST ? item : here, key, path))
@@ -144,6 +152,7 @@ static void unknown_key(walk *w, const bw_config_field fields[], int id, const c
   const char *nearest = NULL;
   int best = 64;
   bw_core__config_join(prefix, key, path);
+  /* First guess: misspelt. Second: right, but in another block. */
   for (const bw_config_field *f = fields; f->key != NULL; f++)
     if (bw_core__near_miss(key, f->key, &best)) nearest = f->key;
   if (nearest != NULL) bw_core__config_join(prefix, nearest, meant);
@@ -151,6 +160,7 @@ static void unknown_key(walk *w, const bw_config_field fields[], int id, const c
     problem(w, id, "%s: unknown key; did you mean %s?", path, meant);
     return;
   }
+  /* No guess: the keys of this block are listed. */
   char known[EXPECTED] = "";
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
     const size_t used = strlen(known);
@@ -176,8 +186,11 @@ static void check_keys(walk *w, const bw_config_field fields[], int id, const ch
     int first = 0;
     while (f->key != NULL && strcmp(f->key, key) != 0)
       f++;
+    /* The block `run` is the record of an earlier run: a run.yaml is a case file too. */
     if (f->key == NULL && !(prefix[0] == '\0' && strcmp(key, "run") == 0))
       unknown_key(w, fields, p->key, prefix, key);
+    /* find gives the first of its name: any other is a second one, which YAML parsers take in
+     * silence. */
     if (bw_core__config_find(w->source, id, key, &first) != 0 && first != p->key) {
       char path[BW_CONFIG_PATH], where[BW_CONFIG_PATH];
       bw_core__config_join(prefix, key, path);
@@ -196,8 +209,10 @@ static void check_map(walk *w, const bw_config_field *f, int id, int place, cons
 {
   const bool optional = f->flag != BW_CONFIG_NO_FLAG;
   bool given = true;
+  /* A block that is not written is there if the defaults say so. */
   if (optional && id == 0) memcpy(&given, defaults + f->flag, sizeof given);
   if (!given || (optional && id != 0 && bw_core__config_is_none(w->source, id))) {
+    /* Written as `none`: libcyaml gets an empty block, and copy sets the flag to false. */
     if (id != 0) fputs("{}", w->accepted);
     return;
   }
@@ -206,6 +221,8 @@ static void check_map(walk *w, const bw_config_field *f, int id, int place, cons
     wrong(w, f, id, path);
     return;
   }
+  /* Given or not, required values in the block must be there: a missing one is found even without
+   * the block's own line. */
   check_table(w, f->fields, id, place, path, defaults + f->offset);
 }
 
@@ -223,6 +240,7 @@ static void check_list(walk *w, const bw_config_field *f, int id, const char *pa
   else if (count > most)
     problem(w, id, "%s: at most %d items, %d are given%s", path, most, count, meaning);
   else {
+    /* Each item is a block with the same table, and with the defaults of item 0. */
     fputc('[', w->accepted);
     for (int q = 0; q < count; q++) {
       const int item = bw_core__config_item(w->source, id, q);
@@ -250,6 +268,7 @@ static void missing(walk *w, const bw_config_field *f, int place, const char *pa
 static void check_table(walk *w, const bw_config_field fields[], int id, int place,
                         const char *prefix, const char *defaults)
 {
+  /* What is there but unknown, then what is known and wrong or missing: one walk finds all. */
   check_keys(w, fields, id, prefix);
   if (id != 0) fputc('{', w->accepted);
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
@@ -257,6 +276,7 @@ static void check_table(walk *w, const bw_config_field fields[], int id, int pla
     int key = place;
     const int value = bw_core__config_find(w->source, id, f->key, &key);
     bw_core__config_join(prefix, f->key, path);
+    /* What is accepted so far is plain YAML again, in the order of the table. */
     if (value != 0) fprintf(w->accepted, "\"%s\": ", f->key);
     if (f->type == BW_CONFIG_TYPE_MAP)
       check_map(w, f, value, key, path, defaults);
@@ -277,6 +297,7 @@ static bw_status report(const walk *w, char *lines)
   enum { ROOM = BW_MESSAGE_SIZE - 64 };
   int shown = 0;
   char more[48] = "";
+  /* Cut at a whole line, with the number of those that follow. */
   if (strlen(lines) > ROOM) {
     lines[ROOM] = '\0';
     char *last = strrchr(lines, '\n');
@@ -299,6 +320,7 @@ bw_status bw_core__config_check(const bw_core__config_source *s, const bw_config
   w.problems = open_memstream(&lines, &n_lines);
   w.accepted = open_memstream(accepted, &n_accepted);
   const bool ok = w.problems != NULL && w.accepted != NULL;
+  /* One walk writes both: the problems for the user and the accepted values for convert. */
   if (ok) check_table(&w, fields, s->root, 0, "", defaults);
   if (w.problems != NULL) fclose(w.problems);
   if (w.accepted != NULL) fclose(w.accepted);

@@ -68,6 +68,7 @@ static bw_status make_field(pool *p, const bw_config_field *f, cyaml_schema_fiel
   cyaml_schema_value_t *element = &field->value;
   field->key = f->key;
   field->data_offset = (uint32_t)f->offset;
+  /* An array is a sequence with an entry of its own; a scalar is its own element. */
   if (list || length > 1) {
     BW_TRY(pool_take(p, 1, sizeof *element, &element));
     field->value.type = list ? CYAML_SEQUENCE : CYAML_SEQUENCE_FIXED;
@@ -80,6 +81,7 @@ static bw_status make_field(pool *p, const bw_config_field *f, cyaml_schema_fiel
     field->count_offset = (uint32_t)f->flag;
     field->count_size = sizeof(int);
   }
+  /* Type, size and what is inside belong to the element. */
   BW_TRY(make_element(p, f, element));
   field->value.flags = CYAML_FLAG_OPTIONAL; /* what is missing was found by check */
   return BW_OK;
@@ -107,6 +109,7 @@ bw_status bw_core__config_convert(const char *accepted, const bw_config_field fi
   cyaml_schema_value_t top = {
       .type = CYAML_MAPPING, .flags = CYAML_FLAG_POINTER, .data_size = (uint32_t)size};
   void *loaded = NULL;
+  /* libcyaml wants the shape of the struct as a tree of its own: built here, thrown away below. */
   bw_status st = bw_allocate(size, 1, out);
   BW_THEN(st, make_fields(&p, fields, &top.mapping.fields));
   if (st == BW_OK) {
@@ -118,6 +121,7 @@ bw_status bw_core__config_convert(const char *accepted, const bw_config_field fi
       st = BW_FAIL(BW_EINPUT, "the configuration passed the checks, but libcyaml says: %s",
                    cyaml_strerror(code));
   }
+  /* The struct holds no pointers: its bytes are copied, libcyaml's own memory can go. */
   if (loaded != NULL) cyaml_free(&settings, &top, loaded, 0);
   pool_free(&p);
   if (st != BW_OK) bw_release(out);
@@ -142,6 +146,7 @@ void bw_core__config_copy(const bw_core__config_source *s, const bw_config_field
   char *target = to;
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
     const int value = bw_core__config_find(s, id, f->key, NULL);
+    /* Not in the document: the default stays. libcyaml has 0 there, which nobody asked for. */
     if (value == 0) continue;
     if (f->type == BW_CONFIG_TYPE_MAP) {
       const bool given = !bw_core__config_is_none(s, value);

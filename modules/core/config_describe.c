@@ -60,6 +60,7 @@ bool bw_core__config_unset(const bw_config_field *f, const void *at)
     memcpy(&count, (const char *)at + f->flag, sizeof count);
     return count <= 0;
   }
+  /* An array of which one element is not set is not set. */
   for (int q = 0; q < bw_core__config_length(f); q++)
     if (unset[f->type](member + (size_t)q * f->item_size)) return true;
   return false;
@@ -101,6 +102,7 @@ void bw_core__config_expected(const bw_config_field *f, size_t size, char *text)
   describe_range(&f->range, sizeof range, range);
   if (length > 1) snprintf(several, sizeof several, "a list of %d ", length);
   snprintf(text, size, "%s%s%s", several, nouns[f->type][length > 1], range);
+  /* "one of a, b, c": the words follow the noun. */
   if (f->words == NULL) return;
   for (const bw_config_word *w = f->words; w->word != NULL; w++) {
     const size_t used = strlen(text);

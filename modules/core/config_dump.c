@@ -9,6 +9,7 @@ static void put_item(FILE *out, const bw_config_field *f, const char *at)
   double x;
   int i;
   bool b;
+  /* The struct is raw memory at the field's offset; each type is copied out by its own size. */
   switch (f->type) {
   case BW_CONFIG_TYPE_DOUBLE:
     memcpy(&x, at, sizeof x);
@@ -25,6 +26,7 @@ static void put_item(FILE *out, const bw_config_field *f, const char *at)
     break;
   case BW_CONFIG_TYPE_WORD:
     memcpy(&i, at, sizeof i);
+    /* The file has the word, the struct its number. */
     for (const bw_config_word *w = f->words; w->word != NULL; w++)
       if (w->value == i) {
         fputs(w->word, out);
@@ -63,16 +65,19 @@ static void put_table(FILE *out, const bw_config_field fields[], const char *at,
     const char *member = at + f->offset;
     int count = 0;
     bool given = true;
+    /* Not set: left out, so that what is printed loads back to the same. */
     if (f->type < BW_CONFIG_TYPE_MAP && bw_core__config_unset(f, at)) continue;
     fprintf(out, "%*s%s%s:", indent - (int)strlen(first), "", first, f->key);
     first = "";
     if (f->type == BW_CONFIG_TYPE_MAP) {
       if (f->flag != BW_CONFIG_NO_FLAG) memcpy(&given, at + f->flag, sizeof given);
+      /* An optional block that is off says so: its default may be on. */
       fputs(!given ? " none\n" : any_set(f->fields, member) ? "\n" : " {}\n", out);
       if (given) put_table(out, f->fields, member, indent + 2, "");
     } else if (f->type == BW_CONFIG_TYPE_LIST) {
       memcpy(&count, at + f->flag, sizeof count);
       fputs(count > 0 ? "\n" : " []\n", out);
+      /* The dash of an item stands before the first key of its block. */
       for (int q = 0; q < count; q++) {
         const char *item = member + (size_t)q * f->item_size;
         if (any_set(f->fields, item))
@@ -119,6 +124,7 @@ static void help_table(FILE *out, const bw_config_field fields[], const char *at
     }
     fputc('\n', out);
     bw_core__config_join(path, "N", item);
+    /* Blocks follow their own line, key by key; items of a list are named by N. */
     if (f->fields != NULL)
       help_table(out, f->fields, at + f->offset, f->type == BW_CONFIG_TYPE_LIST ? item : path);
   }

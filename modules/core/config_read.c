@@ -83,6 +83,8 @@ void bw_core__config_where(const bw_core__config_source *s, int id, size_t size,
 {
   int override = s->n_overrides - 1;
   const yaml_node_t *node = bw_core__config_node(s, id);
+  /* Nodes are numbered in the order in which they were made: those of the file first, then those of
+   * each override. */
   while (override >= 0 && (s->first_node[override] == 0 || id < s->first_node[override]))
     override--;
   if (node == NULL)
@@ -109,11 +111,13 @@ static bw_status parse(const char *name, const char *text, yaml_document_t *docu
   bw_status st = BW_OK;
   BW_REQUIRE(yaml_parser_initialize(&parser), BW_EMEM, "no memory to read %s", name);
   yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
+  /* A failed load leaves no document to be deleted. */
   if (!yaml_parser_load(&parser, document)) {
     st = not_yaml(name, &parser);
     yaml_parser_delete(&parser);
     return st;
   }
+  /* A second document would be overlooked in silence: it is looked for and refused. */
   if (!yaml_parser_load(&parser, &second)) {
     st = not_yaml(name, &parser);
   } else {
@@ -139,6 +143,7 @@ static int copy_node(yaml_document_t *to, yaml_document_t *from, int id, int dep
 {
   const yaml_node_t *node = yaml_document_get_node(from, id);
   int copy = 0;
+  /* An alias of YAML may lead back to itself: depth is bounded. */
   if (node == NULL || depth > BW_CONFIG_DEPTH) return 0;
   if (node->type == YAML_SCALAR_NODE)
     return add_scalar(to, (const char *)node->data.scalar.value, node->data.scalar.length,
@@ -167,9 +172,11 @@ static bw_status add_value(bw_core__config_source *s, const char *override, cons
   char name[BW_CONFIG_PATH];
   yaml_document_t value;
   snprintf(name, sizeof name, "--set %.200s", override);
+  /* "key=" is an empty text, not the absence of a value. */
   if (text[0] == '\0') {
     *id = add_scalar(&s->document, "", 0, YAML_DOUBLE_QUOTED_SCALAR_STYLE);
   } else {
+    /* Any YAML is a value, as it would be in the file. */
     BW_TRY(parse(name, text, &value));
     *id = yaml_document_get_root_node(&value) == NULL
               ? add_scalar(&s->document, "", 0, YAML_PLAIN_SCALAR_STYLE)
@@ -195,6 +202,7 @@ static bw_status slot(bw_core__config_source *s, const char *override, int id, c
   snprintf(key, sizeof key, "%.*s", (int)length, segment);
   const int before = (int)(segment - override) - 1;
   BW_REQUIRE(length > 0, BW_EINPUT, "--set %s: empty key in the path", override);
+  /* Below a list the segment is an index; one behind the last adds an item. */
   if (node_of(s, id)->type == YAML_SEQUENCE_NODE) {
     const int index = index_of(segment, length), count = bw_core__config_count(s, id);
     BW_REQUIRE(index >= 0 && index <= count, BW_EINPUT,
@@ -208,8 +216,10 @@ static bw_status slot(bw_core__config_source *s, const char *override, int id, c
     *value = node_of(s, id)->data.sequence.items.start + index;
     return BW_OK;
   }
+  /* Below a block it is a key; a scalar has nothing below it. */
   BW_REQUIRE(node_of(s, id)->type == YAML_MAPPING_NODE, BW_EINPUT,
              "--set %s: %.*s is a value, it has no key '%s'", override, before, override, key);
+  /* The file does not have the key: it is added, and check decides whether the table knows it. */
   if (pair_index(s, id, key) < 0) {
     const int name = add_scalar(&s->document, key, strlen(key), YAML_PLAIN_SCALAR_STYLE);
     const int empty = add_scalar(&s->document, "", 0, YAML_PLAIN_SCALAR_STYLE);
@@ -217,6 +227,7 @@ static bw_status slot(bw_core__config_source *s, const char *override, int id, c
                    yaml_document_append_mapping_pair(&s->document, id, name, empty),
                BW_EMEM, "--set %s: no memory", override);
   }
+  /* Looked up anew: adding nodes may have moved all of them. */
   *value = &node_of(s, id)->data.mapping.pairs.start[pair_index(s, id, key)].value;
   return BW_OK;
 }
@@ -226,6 +237,7 @@ static bw_status open_slot(bw_core__config_source *s, const char *override, cons
                            int **value)
 {
   if (!bw_core__config_is_null(s, **value) && !bw_core__config_is_none(s, **value)) return BW_OK;
+  /* The next segment tells what is missing: a number asks for a list, a word for a block. */
   const int made = index_of(next, strcspn(next, ".=")) >= 0
                        ? yaml_document_add_sequence(&s->document, NULL, YAML_ANY_SEQUENCE_STYLE)
                        : yaml_document_add_mapping(&s->document, NULL, YAML_ANY_MAPPING_STYLE);
@@ -240,8 +252,10 @@ static bw_status apply(bw_core__config_source *s, const char *override)
   int id = s->root, *value = NULL, given = 0;
   BW_REQUIRE(equals != NULL && equals > override, BW_EINPUT,
              "--set %s: write it as --set key.path=value", override);
+  /* The value's own nodes are made first; what the path needs on its way follows. */
   BW_TRY(add_value(s, override, equals + 1, &given));
   for (;;) {
+    /* One segment of the path each time round, as long as dots follow. */
     const size_t length = strcspn(segment, ".=");
     BW_TRY(slot(s, override, id, segment, length, &value));
     segment += length;
@@ -260,6 +274,7 @@ bw_status bw_core__config_read(const char *name, const char *text, int n_overrid
   *s = (bw_core__config_source){.name = name};
   BW_TRY(BW_ALLOCATE(&s->first_node, (size_t)n_overrides));
   BW_TRY(parse(name, text, &s->document));
+  /* An empty file is an empty block: all values come from the defaults and the overrides. */
   if (yaml_document_get_root_node(&s->document) == NULL) {
     yaml_document_delete(&s->document);
     BW_REQUIRE(yaml_document_initialize(&s->document, NULL, NULL, NULL, 1, 1), BW_EMEM,
@@ -272,6 +287,7 @@ bw_status bw_core__config_read(const char *name, const char *text, int n_overrid
              "%s: the file must hold 'key: value' lines", name);
   s->overrides = overrides;
   for (s->n_overrides = 0; s->n_overrides < n_overrides; s->n_overrides++) {
+    /* From this number on nodes belong to the override that is applied now. */
     s->first_node[s->n_overrides] = (int)(s->document.nodes.top - s->document.nodes.start) + 1;
     BW_TRY(apply(s, overrides[s->n_overrides]));
   }

@@ -6,6 +6,7 @@
 
 void bw_core__format_double(double x, char text[BW_NUMBER_SIZE])
 {
+  /* 17 digits always read back; fewer mostly do, and are easier to read. */
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(text, BW_NUMBER_SIZE, "%.*g", digits, x);
     if (strtod(text, NULL) == x) return;
@@ -35,6 +36,7 @@ int bw_core__edit_distance(const char *a, const char *b)
   if (m > LONGEST || n > LONGEST) return LONGEST;
   for (int j = 0; j <= n; j++)
     row[0][j] = j;
+  /* Row i needs the two rows above it, no more: three are kept in turn. */
   for (int i = 1; i <= m; i++) {
     int *now = row[i % 3];
     const int *above = row[(i + 2) % 3], *two_above = row[(i + 1) % 3];
@@ -43,6 +45,7 @@ int bw_core__edit_distance(const char *a, const char *b)
       int best = above[j - 1] + (a[i - 1] != b[j - 1]);
       if (above[j] + 1 < best) best = above[j] + 1;
       if (now[j - 1] + 1 < best) best = now[j - 1] + 1;
+      /* Two neighbouring letters in each other's place count as one slip. */
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
           two_above[j - 2] + 1 < best)
         best = two_above[j - 2] + 1;

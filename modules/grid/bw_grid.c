@@ -25,6 +25,8 @@ static bw_status check(const bw_grid_config *c)
   }
   BW_REQUIRE(c->halo == 1 || c->halo == 2, BW_EINPUT, "grid: halo = %d; 1 or 2 layers are possible",
              c->halo);
+  /* x is never divided: where it is periodic its halo is copied from cells of the same row, which
+   * must be there. */
   BW_REQUIRE(c->n[0] >= c->halo, BW_EINPUT, "grid: n[0] = %d cells in x are fewer than halo = %d",
              c->n[0], c->halo);
   return bw_grid__y_check(c);
@@ -40,7 +42,11 @@ static void set_storage(bw_grid_view *v)
   const ptrdiff_t rows = v->m[1] + 2 * v->halo[1], planes = v->m[2] + 2 * v->halo[2];
   v->stride[0] = 1;
   v->stride[1] = row;
+  /* 2D: the planes k - 1, k and k + 1 are the same memory, so that differences in z vanish by
+   * themselves. */
   v->stride[2] = v->n[2] == 1 ? 0 : row * rows;
+  /* The entry (1, 1-halo, 1-halo) stands one cache line behind the beginning; the lower halo of its
+   * row fits in that line. */
   v->origin = line - 1 + row * (v->halo[1] - 1) + v->stride[2] * (v->halo[2] - 1);
   v->size = (size_t)(line + row * rows * planes);
 }
@@ -49,6 +55,8 @@ static void set_view(bw_grid *g, const bw_grid_config *c)
 {
   bw_grid_view *v = &g->view;
   const int rank = bw_comm_rank(g->comm);
+  /* Ranks count through the blocks of y first: rank = coord[1] + ranks[1] coord[2], as
+   * bw_grid_owner returns it. */
   v->coord[0] = 0;
   v->coord[1] = rank % v->ranks[1];
   v->coord[2] = rank / v->ranks[1];
@@ -73,6 +81,8 @@ bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_g
   *out = NULL;
   bw_status st = BW_ALLOCATE(&g, 1);
   if (st == BW_OK) g->mpi = g->line[1] = g->line[2] = MPI_COMM_NULL;
+  /* All that can fail on one rank alone comes first; nothing is sent before the ranks have
+   * agreed. */
   BW_THEN(st, check(config));
   BW_THEN(st, bw_grid__divide(config, bw_comm_size(comm), g->view.ranks));
   if (st == BW_OK) {
@@ -84,6 +94,7 @@ bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_g
   BW_THEN(st, bw_grid__line_create(g));
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
+    /* The set-up has succeeded everywhere: from here on only collective calls. */
     MPI_Comm_dup(bw_comm_mpi(comm), &g->mpi);
     bw_grid__line_connect(g);
   } else
@@ -134,6 +145,8 @@ static int cell_in_y(const bw_grid_view *v, double y)
     below = near > 1 ? near - 1 : 0;
     above = near + 2 < above ? near + 2 : above;
   }
+  /* Held throughout: face[below] <= y < face[above] (y = L apart, which the caller puts into the
+   * last cell). */
   while (above - below > 1) {
     const int middle = (below + above) / 2;
     if (v->y_face[middle] <= y)
@@ -149,6 +162,7 @@ static int block_of(int n, int r, int cell)
 {
   if (r == 1) return 0;
   int c = (int)((long)(cell - 1) * r / n); /* exact up to one where the blocks are uneven */
+  /* The guess may be one block off to either side. */
   while (c > 0 && bw_grid__block_start(n, r, c) >= cell)
     c--;
   while (c < r - 1 && bw_grid__block_start(n, r, c + 1) < cell)
@@ -167,11 +181,14 @@ int bw_grid_owner(const bw_grid *grid, const double x[3])
   int block[3];
   for (int d = 0; d < 3; d++) {
     double at = x[d];
+    /* Beyond a periodic side lies the image of a point inside. */
     if (v->periodic[d] && !(at >= 0.0 && at < v->length[d]))
       at -= v->length[d] * floor(at / v->length[d]);
     if (!(at >= 0.0 && at <= v->length[d])) return -1; /* NaN too */
+    /* A point on a face belongs to the cell above that face. */
     int cell = d == 1 ? cell_in_y(v, at) : 1 + (int)(at / v->spacing[d]);
     if (cell > v->n[d]) cell = v->n[d]; /* the upper boundary belongs to the last cell */
+    /* Most points that are asked for lie on this rank: they need no search for their block. */
     const bool here = cell > v->lo[d] && cell <= v->lo[d] + v->m[d];
     block[d] = here ? v->coord[d] : block_of(v->n[d], v->ranks[d], cell);
   }

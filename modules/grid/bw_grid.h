@@ -18,50 +18,61 @@
 #include "bw_real.h"
 #include <stdbool.h>
 
+BW_BEGIN_DECLS
+
+/* A grid, its division over ranks, and the buffers of its messages. */
 typedef struct bw_grid bw_grid;
 
-typedef enum { BW_STRETCH_NONE, BW_STRETCH_TANH, BW_STRETCH_TABLE } bw_stretch;
+/* How cells lie in y: with L = length[1], n = n[1], s = y_stretch_strength the faces are */
+typedef enum {
+  BW_STRETCH_NONE, /* y_j = L j/n */
+  BW_STRETCH_TANH, /* y_j = L/2 (1 + tanh(s (2j/n - 1)) / tanh s): fine at both walls */
+  BW_STRETCH_TABLE /* y_table; second order wants it smooth: cells side by side may differ in height
+                      by the factor 4 at most */
+} bw_stretch;
 
+/* What a grid is made from; start from bw_grid_config_default. Blocks that are not given are those
+ * with the least halo; of equals the ones with the fewest blocks in y. */
 typedef struct {
   int n[3];                  /* cells                                        required */
   double length[3];          /* box [L], lower corner at the origin          required */
-  bool periodic[3];          /*                                              default false */
-  bw_stretch y_stretch;      /*                                           default none */
-  double y_stretch_strength; /* tanh parameter [-], > 0              default 1.5 */
-  const double *y_table;     /* table: the faces y_0 = 0 < .. < y_n = length [L]; read by create */
+  bool periodic[3];          /* per direction; y only where it is uniform    default false */
+  bw_stretch y_stretch;      /* how cells lie in y                           default none */
+  double y_stretch_strength; /* s of tanh [-], above 0 and up to 10          default 1.5 */
+  const double *y_table;     /* (n[1]+1) table: the faces y_0 = 0 < .. < y_n = length[1] [L]; read
+                                by create, not kept */
   int halo;                  /* layers, 1 or 2 (2 where markers are)         default 1 */
-  int ranks[2];              /* blocks in y and z; 0,0: chosen for the least halo */
+  int ranks[2];              /* blocks in y and z              default 0, 0: chosen by create */
 } bw_grid_config;
 
+/* The defaults named above; lengths are NaN and cells 0, so that what is missing is an error by
+ * name. Local. */
 bw_grid_config bw_grid_config_default(void);
-
-/* y faces: L j/n, or L/2 (1 + tanh(s (2j/n - 1)) / tanh s) with s = y_stretch_strength (<= 10), or
- * a table, which for second order has to be smooth: neighbouring cells may differ by the factor 4
- * in height at most. */
 
 /* *y (allocated, owned by the caller: bw_release) = the n + 1 faces of a text file: numbers
  * between blanks or on lines of their own, what follows # is left out. BW_EIO when it cannot be
  * read, BW_EINPUT (file and place named) for another count, for what is no number, does not go
- * from 0 to `length`, does not increase, or jumps in height by more than that factor. Collective.
- */
+ * from 0 to `length`, does not increase, or jumps in height by more than the factor of bw_stretch.
+ * Collective. */
 bw_status bw_grid_read_table(const bw_comm *comm, const char *path, int n, double length,
                              double **y) BW_MUST_CHECK;
 
 /* What kernels need to know; read-only, owned by the grid. Arrays of y are indexed globally:
  * y_face[0..n1] faces, y_centre[1-2..n1+2] centres with two mirrored ghosts on either side. */
 typedef struct {
-  int n[3], m[3], lo[3], halo[3]; /* halo[2] = 0 for n[2] == 1 */
-  int ranks[3], coord[3];         /* blocks per direction (ranks[0] = 1), and this rank's */
-  bool periodic[3];
-  bool first[3], last[3]; /* does this rank touch the lower / upper boundary? */
-  bool uniform_y;
-  double length[3];
-  double spacing[3]; /* dx, length/n in y (exact when uniform_y), dz [L] */
-  const double *y_face, *y_centre;
-  ptrdiff_t stride[3]; /* 1, row (padded: i = 1 is 16-byte aligned in every row), plane;
+  int n[3], m[3], lo[3];           /* cells: of all, of this rank, before this rank's */
+  int halo[3];                     /* extra layers on either side; halo[2] = 0 for n[2] == 1 */
+  int ranks[3], coord[3];          /* blocks per direction (ranks[0] = 1), and this rank's */
+  bool periodic[3];                /* as in the config */
+  bool first[3], last[3];          /* does this rank touch the lower / upper boundary? */
+  bool uniform_y;                  /* are all cells of one height? */
+  double length[3];                /* of the box [L] */
+  double spacing[3];               /* dx, length/n in y (exact when uniform_y), dz [L] */
+  const double *y_face, *y_centre; /* [0..n1], [1-2..n1+2] [L], indexed globally */
+  ptrdiff_t stride[3];             /* 1, row (padded: i = 1 is 16-byte aligned in every row), plane;
                           plane = 0 for n[2] == 1 */
-  ptrdiff_t origin;    /* offset of (0,0,0): bw_at(g,0,0,0) */
-  size_t size;         /* bw_reals in one field, halos and padding included */
+  ptrdiff_t origin;                /* offset of (0,0,0): bw_at(g,0,0,0) */
+  size_t size;                     /* bw_reals in one field, halos and padding included */
 } bw_grid_view;
 
 /* Divide the box over the ranks of `comm` (borrowed until destroy): blocks differ by at most one
@@ -71,11 +82,17 @@ typedef struct {
  * Collective. */
 bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config,
                          bw_grid **out) BW_MUST_CHECK;
-void bw_grid_destroy(bw_grid **grid); /* NULL is fine. Collective. */
 
-const bw_grid_view *bw_grid_look(const bw_grid *grid); /* borrowed. Local. */
-const bw_comm *bw_grid_comm(const bw_grid *grid);      /* borrowed. Local. */
+/* Free *grid and set it to NULL; NULL inside is fine. After everything that borrows it. Collective. */
+void bw_grid_destroy(bw_grid **grid);
 
+/* The view of the grid; borrowed, valid until destroy. Local. */
+const bw_grid_view *bw_grid_look(const bw_grid *grid);
+
+/* The ranks of the grid, as given to create; borrowed. Local. */
+const bw_comm *bw_grid_comm(const bw_grid *grid);
+
+/* Index in a field of the cell (i, j, k), local: 1 - halo .. m + halo in each direction. Local. */
 static inline ptrdiff_t bw_at(const bw_grid_view *g, int i, int j, int k)
 {
   return g->origin + i + g->stride[1] * j + g->stride[2] * k;
@@ -88,13 +105,15 @@ int bw_grid_owner(const bw_grid *grid, const double x[3]);
 /* Cells before block c, 0 <= c <= ranks[d], of direction d. Local. */
 int bw_grid_block_start(const bw_grid_view *view, int d, int c);
 
-/* A zeroed field with halos; free with bw_release. Local. */
+/* *out = a zeroed field of view.size reals, halos and padding included, owned by the caller
+ * (bw_release). BW_EMEM. Local. */
 bw_status bw_field_create(const bw_grid *grid, bw_real **out) BW_MUST_CHECK;
 
 /* Fill the halos of `count` fields: between ranks, and over periodic directions (no message where
  * one block spans it). Halos beyond a physical boundary stay as they are. Edges and corners are
  * filled too; one that is over a physical boundary and also over a block's edge gets the
- * neighbour's ghost value, so set the physical ghosts first. Allocates nothing. Collective. */
+ * neighbour's ghost value, so set the physical ghosts first. field[count] as bw_field_create makes
+ * them. Allocates nothing. Collective. */
 void bw_halo_update(bw_grid *grid, int count, bw_real *const field[]);
 
 /* Only what a divergence reads: the layer just below the block, u[d] in direction d (no corners;
@@ -104,12 +123,13 @@ void bw_halo_update_faces(bw_grid *grid, bw_real *const u[3]);
 /* Bytes one bw_halo_update of one field sends to other ranks, from this rank. Local. */
 size_t bw_halo_volume(const bw_grid *grid);
 
-/* Sent to other ranks by this one since create: in halos, in the swaps of solvers on lines. Local.
- */
+/* What this rank has sent to others. */
 typedef struct {
-  long messages;
-  size_t bytes;
+  long messages; /* number of them */
+  size_t bytes;  /* in all */
 } bw_grid_sent;
+
+/* Sent to other ranks by this one since create: in halos, in the swaps of solvers on lines. Local. */
 void bw_grid_traffic(const bw_grid *grid, bw_grid_sent *halo, bw_grid_sent *swap);
 
 /* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order
@@ -120,5 +140,8 @@ void bw_grid_swap(bw_grid *grid, int d, const size_t send_start[], const size_t 
                   const bw_real *send, const size_t receive_start[], const size_t receive_count[],
                   bw_real *receive);
 
-/* Element-wise sum over that line, in place, on all of its ranks. Collective over the line. */
+/* Element-wise sum of x[n] over that line of blocks, in place, on all of its ranks. Collective over
+ * the line. */
 void bw_grid_line_sum(bw_grid *grid, int d, int n, double x[]);
+
+BW_END_DECLS

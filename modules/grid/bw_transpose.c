@@ -55,15 +55,19 @@ static size_t lay_out(bw_transpose *t, int columns, int grain, int width)
   const size_t rows = (size_t)v->m[1] * (size_t)v->m[2];
   size_t at = 0;
   int q = 0;
+  /* In the order of the ranks that own the columns: what goes to one rank is one stretch of
+   * `own`. */
   for (int p = 0; p < t->peers; p++) {
     const int lo = grain * bw_grid__block_start(columns / grain, t->peers, p);
     const int hi = grain * bw_grid__block_start(columns / grain, t->peers, p + 1);
     t->own_start[p] = at;
     if (p == t->me) t->first_block = q;
+    /* All pieces have the full width but perhaps the last one of each rank. */
     for (int c = lo; c < hi; c += width, q++) {
       t->pieces[q] = (piece){c, hi - c < width ? hi - c : width, at};
       at += (rows * (size_t)t->pieces[q].width + 3 * LINE - 1) / LINE * LINE;
     }
+    /* What stays here is used where it lies and never sent. */
     t->own_count[p] = p == t->me ? 0 : at - t->own_start[p];
     if (p == t->me) t->n_blocks = q - t->first_block;
   }
@@ -80,6 +84,8 @@ static size_t piece_size(const bw_transpose *t, int q, int m_z)
 static size_t lay_out_other(bw_transpose *t)
 {
   size_t at = 0;
+  /* The other ranks lay out my columns as I do theirs, with their own number of planes: the lengths
+   * of their messages follow without asking them. */
   for (int p = 0; p < t->peers; p++) {
     t->other_start[p] = at;
     if (p == t->me) continue;
@@ -99,6 +105,7 @@ static bw_status build(bw_transpose *t, int columns, int grain)
   BW_REQUIRE(grain >= 1 && columns >= 1 && columns % grain == 0, BW_EINPUT,
              "transpose: %d x-entries are no multiple of the grain %d", columns, grain);
   const size_t peers = (size_t)t->peers;
+  /* Sizes are known before anything is laid out: nothing grows later. */
   t->n_pieces = count_pieces(columns, grain, t->peers, width);
   BW_TRY(BW_ALLOCATE(&t->pieces, (size_t)t->n_pieces));
   BW_TRY(BW_ALLOCATE(&t->part, peers));
@@ -110,8 +117,12 @@ static bw_status build(bw_transpose *t, int columns, int grain)
   for (int p = 0; p < t->peers; p++)
     t->peer_m[p] =
         bw_grid__block_start(v->n[2], t->peers, p + 1) - bw_grid__block_start(v->n[2], t->peers, p);
+  /* The X side: all columns of this rank's rows. */
   BW_TRY(BW_ALLOCATE(&t->own, lay_out(t, columns, grain, width)));
+  /* One rank holds all of z: a block is opened in place, there is no other side to gather from. */
   if (t->peers == 1) return BW_OK;
+  /* The Z side: this rank's columns of the rows of the others, and one whole block gathered from
+   * both. */
   BW_TRY(BW_ALLOCATE(&t->other, lay_out_other(t)));
   return BW_ALLOCATE(&t->block, (size_t)v->m[1] * (size_t)v->n[2] * (size_t)width);
 }
@@ -166,6 +177,7 @@ static void copy_line(const bw_real *from, bw_real *to)
 
 void bw_transpose_put(bw_transpose *t, int j, int k, int rows, const bw_real *row, ptrdiff_t stride)
 {
+  /* A piece is [m_y][m_z][width]: so many of its rows lie before this one. */
   const size_t before = (size_t)j * (size_t)bw_grid_look(t->grid)->m[2] + (size_t)k;
   for (int q = 0; q < t->n_pieces; q++) {
     const piece *p = &t->pieces[q];
@@ -214,7 +226,10 @@ bw_real *bw_transpose_open(bw_transpose *t, int b)
 {
   const piece *own = &t->pieces[t->first_block + b];
   t->open = own;
+  /* A whole block is where it was put. */
   if (t->peers == 1) return t->own + own->offset;
+  /* Where block b begins in what each rank sent: behind the blocks before it, which have as many
+   * planes as that rank. */
   for (int p = 0; p < t->peers; p++) {
     t->part[p] = p == t->me ? t->own + own->offset : t->other + t->other_start[p];
     for (int c = 0; p != t->me && c < b; c++)
@@ -228,6 +243,7 @@ static void move_row(const bw_transpose *t, int j, bool back)
 {
   const size_t width = (size_t)t->open->width;
   bw_real *whole = t->block + (size_t)j * (size_t)bw_grid_look(t->grid)->n[2] * width;
+  /* Along z the parts of the ranks follow each other in the order of the ranks. */
   for (int p = 0; p < t->peers; p++) {
     const size_t n = (size_t)t->peer_m[p] * width;
     bw_real *part = t->part[p] + (size_t)j * n;

@@ -14,22 +14,30 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
+/* The plan of a transpose, with its buffers. */
 typedef struct bw_transpose bw_transpose;
 
 /* A block of the Z side: global x-entries first .. first + width - 1. */
 typedef struct {
-  int first, width;
+  int first, width; /* 0 .. columns-1, and the number of entries */
 } bw_columns;
 
-/* `grain`: x-entries that stay together (2 for interleaved complex numbers; divides columns).
- * `grid` is borrowed. Collective. */
+/* *out = a plan for rows of `columns` x-entries. `grain`: x-entries that stay together (2 for
+ * interleaved complex numbers; divides columns). `grid` is borrowed until destroy. BW_EINPUT for a
+ * grain that does not divide columns, BW_EMEM. Collective. */
 bw_status bw_transpose_create(bw_grid *grid, int columns, int grain,
                               bw_transpose **out) BW_MUST_CHECK;
-void bw_transpose_destroy(bw_transpose **t); /* NULL is fine. Local. */
+
+/* Free *t and set it to NULL; NULL inside is fine. Local. */
+void bw_transpose_destroy(bw_transpose **t);
 
 /* Blocks of this rank (0 is possible), widest first; all but the last have the full width. */
-int bw_transpose_blocks(const bw_transpose *t);                /* Local. */
-bw_columns bw_transpose_columns(const bw_transpose *t, int b); /* Local. */
+int bw_transpose_blocks(const bw_transpose *t); /* Local. */
+
+/* The x-entries of block b, 0 <= b < blocks. Local. */
+bw_columns bw_transpose_columns(const bw_transpose *t, int b);
 
 /* Rows (j, k) .. (j, k + rows - 1), `stride` reals apart, into or out of the X side. Local. */
 void bw_transpose_put(bw_transpose *t, int j, int k, int rows, const bw_real *row,
@@ -50,3 +58,5 @@ void bw_transpose_store(bw_transpose *t, int j);
 
 /* Bytes to other ranks of one to_z and one to_x together, from this rank. Local. */
 size_t bw_transpose_volume(const bw_transpose *t);
+
+BW_END_DECLS

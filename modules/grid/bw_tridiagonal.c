@@ -8,37 +8,10 @@
  * Its diagonal is -(lower + upper) in each row. Doubling the last one makes it regular; the sum of
  * all rows, weighted so that the matrix drops out, says x_n = 0: the equations are met unchanged.
  */
-#include "bw_tridiagonal.h"
 #include "bw_memory.h"
-#include "grid_internal.h"
+#include "tridiagonal_internal.h"
 
 #include <string.h>
-
-enum { SUB, DIAGONAL, RIGHT, NEXT_F, NEXT_L, NEXT_G, PLANES }; /* what a rank tells of a line */
-enum { BEFORE, OWN, ANSWERS };                                 /* the separators it is told */
-enum { N = BW_TRIDIAGONAL_LINES };
-
-struct bw_tridiagonal {
-  bw_grid *grid;
-  int d; /* direction of the lines */
-  size_t lines;
-  int n, lo;           /* rows of all ranks, before this rank's */
-  int ranks, me, rows; /* in direction d; rows of this rank */
-  int inner;           /* rows between the separators: rows - 1, or rows */
-  bool cyclic;
-  bw_real *lower, *diagonal, *upper; /* (n) */
-  bw_real *pivot;                    /* (rows, N) reciprocals */
-  bw_real *zero;                     /* (N) zeros */
-  /* The lines are dealt out in consecutive portions. A portion of c lines is [PLANES][c] on the
-   * way to its solver and [ANSWERS][c] back. */
-  size_t *portion;                     /* (ranks+1) first line of each rank's portion */
-  size_t *tell_start, *tell_count;     /* (ranks) in `tell` */
-  size_t *hear_start, *hear_count;     /* in `hear`: [ranks][PLANES][my portion] */
-  size_t *reply_start, *reply_count;   /* in `reply`: [ranks][ANSWERS][my portion] */
-  size_t *answer_start, *answer_count; /* in `answer` */
-  bw_real *tell, *hear, *reply, *answer;
-  bw_real *work; /* (ranks, 3, N) */
-};
 
 /* Counts of `planes` numbers per line with everyone: mine of all portions, all of my portion. */
 static void count(const bw_tridiagonal *t, size_t planes, size_t *all_start, size_t *all_count,
@@ -66,11 +39,16 @@ static bw_status build(bw_tridiagonal *t)
   t->rows = v->m[t->d];
   for (size_t q = 0; q < sizeof table / sizeof *table; q++)
     BW_TRY(BW_ALLOCATE(table[q], r + 1));
+  /* Every rank of the line solves the separators of an equal portion of the lines. */
   for (size_t p = 0; p <= r; p++)
     t->portion[p] = t->lines * p / r;
+  /* Ahead every rank tells PLANES numbers of each line, back it gets ANSWERS: the lengths of all
+   * messages are fixed here. */
   count(t, PLANES, t->tell_start, t->tell_count, t->hear_start, t->hear_count);
   count(t, ANSWERS, t->answer_start, t->answer_count, t->reply_start, t->reply_count);
   const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
+  /* Coefficients are those of the whole line; pivots depend on the line's shift and are kept for
+   * one batch only. */
   BW_TRY(BW_ALLOCATE(&t->lower, n));
   BW_TRY(BW_ALLOCATE(&t->diagonal, n));
   BW_TRY(BW_ALLOCATE(&t->upper, n));
@@ -136,6 +114,7 @@ void bw_tridiagonal_set(bw_tridiagonal *t, const double lower[], const double di
     t->upper[j] = (bw_real)upper[j];
   }
   t->cyclic = cyclic;
+  /* The last row of a rank is its separator; the last rank of a line with two ends needs none. */
   t->inner = cyclic || t->me < t->ranks - 1 ? t->rows - 1 : t->rows;
 }
 
@@ -206,6 +185,8 @@ static const bw_real *row_shift(const bw_tridiagonal *t, const bw_tridiagonal_ba
 {
   const int at = t->lo + j;
   if (b->pinned == 0 || at != t->n - 1) return b->shift;
+  /* diagonal = -(lower + upper) of a singular line is doubled here, which makes the matrix
+   * regular. */
   memcpy(pinned, b->shift, (size_t)b->n * sizeof *pinned);
   for (int q = 0; q < b->pinned; q++)
     pinned[q] -= t->lower[at] + t->upper[at];
@@ -246,9 +227,12 @@ void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, con
     s.l[q] = -1; /* no row yet: the row before is X-, the first row the one to come */
     s.G[q] = -1;
   }
+  /* Down to the last row before the separator: afterwards x_first = F - L X- - G X+. */
   for (int j = 0; j < t->inner; j++)
     carry(n, t->lower[lo + j], t->diagonal[lo + j], t->upper[lo + j], b->scale,
           row_shift(t, b, j, pinned), f + j * b->pitch, &s);
+  /* The separator of the rank before contains our first row with this coefficient of its own
+   * row. */
   const bw_real u = t->upper[(lo + t->n - 1) % t->n];
   for (int q = 0; q < n; q++) {
     s.F[q] *= u;
@@ -258,7 +242,10 @@ void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, con
   to_portions(t, NEXT_F, b->first, n, s.F);
   to_portions(t, NEXT_L, b->first, n, s.L);
   to_portions(t, NEXT_G, b->first, n, s.G);
+  /* Without a separator of its own this rank has told all it has to. */
   if (t->inner == t->rows) return;
+  /* The separator's own row, with the row before it eliminated: -lower l' X- + (...) X+ =
+   * right-hand side. */
   const int last = t->rows - 1;
   const bw_real a = t->lower[lo + last], d = t->diagonal[lo + last];
   const bw_real *shift = row_shift(t, b, last, pinned), *f_last = f + last * b->pitch;
@@ -278,9 +265,12 @@ void bw_tridiagonal_finish(bw_tridiagonal *t, const bw_tridiagonal_batch *b, bw_
   bw_real pinned[N], before[N];
   const bw_real *f_before = t->zero, *pivot_before = t->zero;
   if (bw_tridiagonal_coupled(t)) {
+    /* The row before this rank's first is a separator, known since the join: it enters as a known
+     * value. */
     from_portions(t, BEFORE, b->first, n, before);
     f_before = before;
   }
+  /* Thomas' elimination downward; the first row has no pivot before it. */
   for (int j = 0; j < t->inner; j++) {
     const bw_real a = t->lower[lo + j], c_before = j == 0 ? 0 : t->upper[lo + j - 1];
     bw_real *pivot = t->pivot + (size_t)j * N, *row = f + j * b->pitch;
@@ -289,112 +279,10 @@ void bw_tridiagonal_finish(bw_tridiagonal *t, const bw_tridiagonal_batch *b, bw_
     pivot_before = pivot;
     f_before = row;
   }
+  /* This rank's separator is known too and is the row that the substitution begins with. */
   if (t->inner < t->rows) from_portions(t, OWN, b->first, n, f + t->inner * b->pitch);
+  /* Upward: every row below j holds x already. */
   for (int j = (t->inner < t->rows ? t->inner : t->rows - 1) - 1; j >= 0; j--)
     substitute(n, t->upper[lo + j], t->pivot + (size_t)j * N, f + (j + 1) * b->pitch,
                f + j * b->pitch);
-}
-
-/* ---- the systems of separators ---- */
-
-/* Plane `which` that rank p told of lines q0.. of my portion. */
-static const bw_real *told(const bw_tridiagonal *t, int p, int which, size_t q0)
-{
-  const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
-  return t->hear + t->hear_start[p] + (size_t)which * mine + q0;
-}
-
-/* Coefficients of separator p in line q: sub X_{p-1} + dia X_p + sup X_{p+1} = right. */
-typedef struct {
-  bw_real sub, dia, sup, right;
-} equation;
-
-static inline equation separator(const bw_real *const of[PLANES], int q)
-{
-  return (equation){of[SUB][q], of[DIAGONAL][q] - of[NEXT_L][q], -of[NEXT_G][q],
-                    of[RIGHT][q] - of[NEXT_F][q]};
-}
-
-static void planes_of(const bw_tridiagonal *t, int p, size_t q0, const bw_real *of[PLANES])
-{
-  for (int w = 0; w < PLANES; w++)
-    of[w] = told(t, w >= NEXT_F ? (p + 1) % t->ranks : p, w, q0);
-}
-
-/* x_p = y_p - z_p X_border for the separators below `inner`; those of a cyclic line hang on the
- * border, the last one (z = 0 else). y, z, c: (inner, 3, N) in work. */
-static void eliminate_separators(bw_tridiagonal *t, int inner, size_t q0, int n)
-{
-  const bw_real *of[PLANES], *before = NULL;
-  for (int p = 0; p < inner; p++) {
-    bw_real *y = t->work + (size_t)p * 3 * N, *z = y + N, *c = z + N;
-    planes_of(t, p, q0, of);
-    for (int q = 0; q < n; q++) {
-      const equation e = separator(of, q);
-      const bw_real y0 = p > 0 ? before[q] : 0, z0 = p > 0 ? before[N + q] : 0;
-      const bw_real c0 = p > 0 ? before[2 * N + q] : 0, a = p > 0 ? e.sub : 0;
-      const bw_real r = (bw_real)1 / (e.dia - a * c0);
-      const bw_real to_border = (p == 0 ? e.sub : 0) + (p == inner - 1 ? e.sup : 0);
-      y[q] = (e.right - a * y0) * r;
-      z[q] = ((t->cyclic ? to_border : 0) - a * z0) * r;
-      c[q] = p < inner - 1 ? e.sup * r : 0;
-    }
-    before = y;
-  }
-  for (int p = inner - 2; p >= 0; p--) {
-    bw_real *y = t->work + (size_t)p * 3 * N, *z = y + N;
-    const bw_real *c = z + N, *after = y + 3 * N;
-    for (int q = 0; q < n; q++) {
-      y[q] -= c[q] * after[q];
-      z[q] -= c[q] * after[N + q];
-    }
-  }
-}
-
-/* X of all separators of lines q0.. to everyone's reply. */
-static void solve_separators(bw_tridiagonal *t, size_t q0, int n)
-{
-  const int inner = t->ranks - 1; /* cyclic: all but the border; else all */
-  const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
-  const bw_real *first = t->work, *last = t->work + (size_t)(inner > 0 ? inner - 1 : 0) * 3 * N;
-  const bw_real *of[PLANES];
-  bw_real border[N] = {0};
-  eliminate_separators(t, inner, q0, n);
-  if (t->cyclic) {
-    planes_of(t, inner, q0, of);
-    for (int q = 0; q < n; q++) {
-      const equation e = separator(of, q);
-      if (inner == 0)
-        border[q] = e.right / (e.sub + e.dia + e.sup);
-      else
-        border[q] = (e.right - e.sub * last[q] - e.sup * first[q]) /
-                    (e.dia - e.sub * last[N + q] - e.sup * first[N + q]);
-    }
-  }
-  for (int p = 0; p < t->ranks; p++) {
-    const bw_real *y = t->work + (size_t)p * 3 * N, *z = y + N;
-    bw_real *own = t->reply + t->reply_start[p] + (size_t)OWN * mine + q0;
-    bw_real *next = t->reply + t->reply_start[(p + 1) % t->ranks] + (size_t)BEFORE * mine + q0;
-    for (int q = 0; q < n; q++)
-      own[q] = next[q] = p < inner ? y[q] - z[q] * border[q] : border[q];
-  }
-}
-
-static void keep_own(const bw_tridiagonal *t, const size_t from_start[], const size_t number[],
-                     const bw_real *from, const size_t to_start[], bw_real *to)
-{
-  memcpy(to + to_start[t->me], from + from_start[t->me], number[t->me] * sizeof *to);
-}
-
-void bw_tridiagonal_join(bw_tridiagonal *t)
-{
-  const size_t mine = t->portion[t->me + 1] - t->portion[t->me];
-  bw_grid_swap(t->grid, t->d, t->tell_start, t->tell_count, t->tell, t->hear_start, t->hear_count,
-               t->hear);
-  keep_own(t, t->tell_start, t->tell_count, t->tell, t->hear_start, t->hear);
-  for (size_t q0 = 0; q0 < mine; q0 += N)
-    solve_separators(t, q0, mine - q0 < N ? (int)(mine - q0) : N);
-  bw_grid_swap(t->grid, t->d, t->reply_start, t->reply_count, t->reply, t->answer_start,
-               t->answer_count, t->answer);
-  keep_own(t, t->reply_start, t->reply_count, t->reply, t->answer_start, t->answer);
 }

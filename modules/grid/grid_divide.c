@@ -25,8 +25,10 @@ static bool best(const bw_grid_config *c, int size, int ranks[3])
   bool found = false;
   long least = 0;
   for (int r1 = 1; r1 <= size; r1++) {
+    /* Every pair of factors of `size` is tried, fewest blocks in y first. */
     if (size % r1 != 0 || !both_fit(c, r1, size / r1)) continue;
     const long area = halo_area(c, r1, size / r1);
+    /* Of equals the earlier one stays: the one with fewer blocks in y. */
     if (found && area >= least) continue;
     found = true;
     least = area;
@@ -42,8 +44,10 @@ bw_status bw_grid__divide(const bw_grid_config *c, int size, int ranks[3])
              "grid: %d x %d cells in y and z are thinner than halo = %d", c->n[1], c->n[2],
              c->halo);
   ranks[0] = 1;
+  /* No wish of the caller: the division that sends least. */
   if (c->ranks[0] == 0 && c->ranks[1] == 0) {
     if (best(c, size, ranks)) return BW_OK;
+    /* Too many ranks for these cells: the message says how many would do. */
     int most = size;
     while (!best(c, most, ranks)) /* ends: 1 rank fits */
       most--;
@@ -52,6 +56,7 @@ bw_status bw_grid__divide(const bw_grid_config *c, int size, int ranks[3])
                    "halo = %d; %d ranks would",
                    size, c->n[1], c->n[2], c->halo, most);
   }
+  /* The caller has named the blocks: they must use all ranks and be as thick as a halo. */
   BW_REQUIRE(c->ranks[0] >= 1 && c->ranks[1] >= 1 && (long)c->ranks[0] * (long)c->ranks[1] == size,
              BW_EINPUT,
              "grid: ranks = %d x %d, but the communicator has %d; use 0, 0 to let it "

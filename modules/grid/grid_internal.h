@@ -1,5 +1,6 @@
 /* grid_internal.h -- shared by the sources of grid only. */
 #pragma once
+#include "bw_comm_mpi.h"
 #include "bw_grid.h"
 
 /* Fields that travel in one message; more are sent in turns, which bounds the buffers. */

@@ -6,15 +6,22 @@
 #pragma once
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Which kernel. */
 typedef enum {
   BW_KERNEL_ROMA3,   /* support 3 cells; the default */
   BW_KERNEL_PESKIN4, /* support 4 cells */
   BW_KERNEL_HAT2,    /* support 2 cells, linear interpolation */
-  BW_KERNEL_COUNT
+  BW_KERNEL_COUNT    /* how many there are */
 } bw_kernel_delta_id;
 
-enum { BW_KERNEL_MAX_SUPPORT = 4 };
+/* For arrays that take the weights of any kernel. */
+enum { BW_KERNEL_MAX_SUPPORT = 4 /* the largest `support` */ };
 
+/* A kernel: a row of the table; static storage. */
 typedef struct {
   const char *name;        /* "roma3": the word used in YAML */
   int support;             /* nodes per direction that can be non-zero */
@@ -33,3 +40,7 @@ const bw_kernel_delta *bw_kernel_delta_get(bw_kernel_delta_id id);
  * has weight[q n + i], q = 0..support-1. Local. */
 void bw_kernel_delta_weights(const bw_kernel_delta *kernel, size_t n, const double s[], int first[],
                              double weight[]);
+
+#ifdef __cplusplus
+}
+#endif

@@ -15,10 +15,12 @@ static bw_status check(const bw_grid_view *v, const bw_poisson_side side[3][2])
     for (int e = 0; e < 2; e++)
       BW_REQUIRE(side[d][e] >= BW_POISSON_PERIODIC && side[d][e] <= BW_POISSON_DIRICHLET, BW_EINPUT,
                  "poisson: side[%d][%d] = %d is no condition", d, e, (int)side[d][e]);
+    /* Periodic is a property of both sides of a direction, and of the grid. */
     const bool periodic = side[d][0] == BW_POISSON_PERIODIC;
     BW_REQUIRE(periodic == (side[d][1] == BW_POISSON_PERIODIC), BW_EINPUT,
                "poisson: %c is %s below and %s above; periodic comes in pairs", axis[d],
                side_name[side[d][0]], side_name[side[d][1]]);
+    /* 2D: every difference in z is zero, which suits any side that does not fix the value. */
     if (d == 2 && v->n[2] == 1) {
       BW_REQUIRE(side[2][0] != BW_POISSON_DIRICHLET && side[2][1] != BW_POISSON_DIRICHLET,
                  BW_EINPUT,
@@ -39,6 +41,8 @@ static void second_difference(const bw_grid_view *v, const bw_poisson_side side[
                               double diagonal[], double upper[])
 {
   const int n = v->n[1];
+  /* Rows as they are inside the box; the mirrored centres of the ghosts give the distance across a
+   * boundary face. */
   for (int j = 1; j <= n; j++) {
     const double height = v->y_face[j] - v->y_face[j - 1];
     lower[j - 1] = 1.0 / ((v->y_centre[j] - v->y_centre[j - 1]) * height);
@@ -46,6 +50,8 @@ static void second_difference(const bw_grid_view *v, const bw_poisson_side side[
     diagonal[j - 1] = -(lower[j - 1] + upper[j - 1]);
   }
   if (side[0] == BW_POISSON_PERIODIC) return;
+  /* The ghosts are gone from here on: phi_0 = phi_1 (Neumann) or -phi_1 (Dirichlet) joins the
+   * diagonal. */
   diagonal[0] += (side[0] == BW_POISSON_NEUMANN ? 1 : -1) * lower[0];
   diagonal[n - 1] += (side[1] == BW_POISSON_NEUMANN ? 1 : -1) * upper[n - 1];
   lower[0] = upper[n - 1] = 0.0;
@@ -60,6 +66,7 @@ static bw_status allocate(bw_poisson *p, int columns)
     BW_TRY(BW_ALLOCATE(y_arrays[q], (size_t)v->n[1]));
   BW_TRY(BW_ALLOCATE(&p->lambda_x, (size_t)columns));
   BW_TRY(BW_ALLOCATE(&p->lambda_z, (size_t)v->n[2]));
+  /* Rows on their way to the blocks each begin on a cache line. */
   p->row_stride = (columns + LINE - 1) / LINE * LINE;
   return BW_ALLOCATE(&p->rows, (size_t)p->row_stride * BW_POISSON__ROWS);
 }
@@ -87,6 +94,7 @@ static size_t count_lines(const bw_poisson *p)
 static void fill_eigenvalues(bw_poisson *p, int columns)
 {
   const bw_grid_view *v = bw_grid_look(p->grid);
+  /* A complex number of a Fourier row has one eigenvalue for its two entries. */
   for (int c = 0; c < columns; c++) {
     const int entry = c < v->n[0] ? c : v->n[0] - 1; /* a zero behind the reals: any will do */
     p->lambda_x[c] =
@@ -99,12 +107,15 @@ static void fill_eigenvalues(bw_poisson *p, int columns)
 static bw_status build(bw_poisson *p, const bw_poisson_side side[3][2])
 {
   const bw_grid_view *v = bw_grid_look(p->grid);
+  /* Without a Dirichlet side anywhere the constants are in the null space of the operator. */
   p->singular = true;
   for (int d = 0; d < 3; d++) {
     p->kind[d] = bw_poisson__find(side[d]);
     for (int e = 0; e < 2; e++)
       p->singular = p->singular && side[d][e] != BW_POISSON_DIRICHLET;
   }
+  /* What a transform of x yields decides how z reads a block: complex numbers, or real columns side
+   * by side. */
   p->real_x = p->kind[0]->family != BW_POISSON__FOURIER;
   p->coupled = v->ranks[1] > 1 || v->periodic[1];
   const int columns = bw_poisson__columns(p->kind[0], v->n[0]);
@@ -124,10 +135,12 @@ bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2], bw_
     p->grid = grid;
     st = build(p, side);
   }
+  /* Local work is done. What follows is collective, and needs to know the number of columns. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK)
     st = bw_transpose_create(grid, bw_poisson__columns(p->kind[0], bw_grid_look(grid)->n[0]), 2,
                              &p->transpose);
+  /* One line in y for every x-entry and every k of this rank's columns. */
   BW_THEN(st, bw_tridiagonal_create(grid, 1, count_lines(p), &p->tridiagonal));
   if (st == BW_OK) st = bw_comm_agree(comm, plan_z(p));
   if (st != BW_OK) bw_poisson_destroy(&p);

@@ -13,15 +13,26 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
+/* The solver for one grid and one set of conditions. */
 typedef struct bw_poisson bw_poisson;
 
-typedef enum { BW_POISSON_PERIODIC, BW_POISSON_NEUMANN, BW_POISSON_DIRICHLET } bw_poisson_side;
+/* The condition on one side of the box. */
+typedef enum {
+  BW_POISSON_PERIODIC, /* the other side goes on here; both sides of a direction */
+  BW_POISSON_NEUMANN,  /* d phi/dn = 0 on the boundary face */
+  BW_POISSON_DIRICHLET /* phi = 0 on the boundary face */
+} bw_poisson_side;
 
-/* side[d][0], side[d][1]: lower and upper condition in direction d; periodic ones in pairs and
- * only where the grid is periodic (BW_EINPUT otherwise). `grid` is borrowed. Collective. */
+/* *out = a solver; side[d][0], side[d][1]: lower and upper condition in direction d; periodic ones in pairs and
+ * only where the grid is periodic (BW_EINPUT otherwise; one cell in z takes either of periodic and
+ * Neumann). `grid` is borrowed until destroy. BW_EMEM. Collective. */
 bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2],
                             bw_poisson **out) BW_MUST_CHECK;
-void bw_poisson_destroy(bw_poisson **p); /* Collective. */
+
+/* Free *p and set it to NULL; NULL inside is fine. Local. */
+void bw_poisson_destroy(bw_poisson **p);
 
 /* In place: `phi` (a field, interior read as f [X/L^2], halos ignored) becomes the solution [X];
  * its halos are not updated. Collective. */
@@ -31,5 +42,11 @@ void bw_poisson_solve(bw_poisson *p, bw_real *phi);
  * cell-centred field). Collective. */
 void bw_poisson_solve_helmholtz(bw_poisson *p, double alpha, bw_real *phi);
 
-bool bw_poisson_singular(const bw_poisson *p);       /* Local. */
-double bw_poisson_removed_mean(const bw_poisson *p); /* of f, at the last solve. Local. */
+/* Has no side a Dirichlet condition, so that phi is known up to a constant? Local. */
+bool bw_poisson_singular(const bw_poisson *p);
+
+/* Mean of f over the box that the last solve removed [X/L^2]; 0 where the operator is not singular.
+ * Local. */
+double bw_poisson_removed_mean(const bw_poisson *p);
+
+BW_END_DECLS

@@ -31,8 +31,10 @@ bw_status bw_poisson__twiddle(int n, bw_real **out)
 void bw_poisson__cosine_row_in(int n, bw_real odd, const bw_real *restrict row, bw_real *restrict v)
 {
   const int evens = (n + 1) / 2;
+  /* v = x_0 x_2 x_4 ... */
   for (int i = 0; i < evens; i++)
     v[i] = row[2 * i];
+  /* ... x_5 x_3 x_1 from the end; the odd ones change sign for a sine transform. */
   for (int i = 0; i < n / 2; i++)
     v[n - 1 - i] = odd * row[2 * i + 1];
 }
@@ -52,12 +54,14 @@ void bw_poisson__cosine_row_combine(int n, const bw_real *restrict twiddle,
                                     const bw_real *restrict spectrum, bw_real *restrict out)
 {
   out[0] = 2 * spectrum[0];
+  /* Real x: X_k = 2 Re(w_k V_k) and X_{n-k} = -2 Im(w_k V_k). */
   for (int k = 1; k < (n + 1) / 2; k++) {
     const bw_real c = 2 * twiddle[2 * k], s = 2 * twiddle[2 * k + 1];
     const bw_real re = spectrum[2 * k], im = spectrum[2 * k + 1];
     out[k] = c * re + s * im;
     out[n - k] = s * re - c * im;
   }
+  /* k = n/2 is its own partner: V is real there and w = (1 - i)/sqrt(2). */
   if (n % 2 == 0) out[n / 2] = 2 * twiddle[n] * spectrum[n];
 }
 
@@ -66,6 +70,8 @@ void bw_poisson__cosine_row_split(int n, const bw_real *restrict twiddle,
 {
   spectrum[0] = in[0];
   spectrum[1] = 0;
+  /* 2 V_k = conj(w_k) (X_k - i X_{n-k}); only half of V is wanted, the inverse knows that v is
+   * real. */
   for (int k = 1; k < (n + 1) / 2; k++) {
     const bw_real c = twiddle[2 * k], s = twiddle[2 * k + 1];
     spectrum[2 * k] = c * in[k] + s * in[n - k];
@@ -113,16 +119,20 @@ void bw_poisson__cosine_columns_combine(int n, int width, const bw_real *restric
                                         const bw_real *restrict v, bw_real *restrict a)
 {
   scale_row(width, 2, v, a);
+  /* P = w_k V_k and Q = conj(w_k) V_{n-k}; two neighbouring entries are one complex number. */
   for (int k = 1; k < (n + 1) / 2; k++) {
     const bw_real c = twiddle[2 * k], s = twiddle[2 * k + 1];
     const bw_real *f = v + (ptrdiff_t)k * width, *g = v + (ptrdiff_t)(n - k) * width;
     bw_real *x = a + (ptrdiff_t)k * width, *y = a + (ptrdiff_t)(n - k) * width;
 #pragma omp simd
     for (int q = 0; q < width; q += 2) {
+      /* Real and imaginary part of x are two columns of their own: X = P + Q holds for both at
+       * once. */
       const bw_real p_re = c * f[q] + s * f[q + 1], p_im = c * f[q + 1] - s * f[q];
       const bw_real q_re = c * g[q] - s * g[q + 1], q_im = c * g[q + 1] + s * g[q];
       x[q] = p_re + q_re;
       x[q + 1] = p_im + q_im;
+      /* X_{n-k} = i (P - Q). */
       y[q] = q_im - p_im;
       y[q + 1] = p_re - q_re;
     }
@@ -136,6 +146,8 @@ void bw_poisson__cosine_columns_split(int n, int width, const bw_real *restrict 
                                       const bw_real *restrict a, bw_real *restrict v)
 {
   memcpy(v, a, (size_t)width * sizeof *v);
+  /* 2 V_k = conj(w_k) (X_k - i X_{n-k}) and 2 V_{n-k} = w_k (X_k + i X_{n-k}), for both columns at
+   * once. */
   for (int k = 1; k < (n + 1) / 2; k++) {
     const bw_real c = twiddle[2 * k], s = twiddle[2 * k + 1];
     const bw_real *x = a + (ptrdiff_t)k * width, *y = a + (ptrdiff_t)(n - k) * width;

@@ -62,6 +62,8 @@ static bw_status made(const bw_poisson__transform *t, const char *axis)
 
 int bw_poisson__columns(const bw_poisson__kind *kind, int n)
 {
+  /* Even in any case: along z a Fourier transform takes two neighbouring entries as one complex
+   * number. */
   return kind->family == BW_POISSON__FOURIER ? 2 * (n / 2 + 1) : (n + 1) / 2 * 2;
 }
 
@@ -74,6 +76,7 @@ bw_status bw_poisson__rows_create(const bw_poisson__kind *kind, int n, bw_poisso
   BW_TRY(BW_ALLOCATE(&t->spectrum, (size_t)n + 2));
   BW_TRY(bw_poisson__twiddle(n, &t->twiddle));
   BW_FFTW(complex) *spectrum = (BW_FFTW(complex) *)t->spectrum;
+  /* A cosine transform runs on the plan of a Fourier transform of the same length. */
   if (kind->family == BW_POISSON__OTHER) {
     t->forward = BW_FFTW(plan_r2r_1d)(n, t->work, t->spectrum, kind->real, BW_POISSON__EFFORT);
     t->backward = BW_FFTW(plan_r2r_1d)(n, t->spectrum, t->work, kind->real, BW_POISSON__EFFORT);
@@ -99,6 +102,7 @@ void bw_poisson__row_forward(const bw_poisson__transform *t, bw_real *in, bw_rea
     BW_FFTW(execute_r2r)(t->forward, in, out);
     break;
   }
+  /* The entry that makes the number of columns even. */
   if (t->n % 2 == 1) out[t->n] = 0;
 }
 
@@ -136,6 +140,7 @@ bw_status bw_poisson__columns_create(const bw_poisson__kind *kind, int n, int wi
       (size_t)width * sizeof(bw_real) % 64 == 0 || kind->family == BW_POISSON__COSINE;
   const unsigned flags = BW_POISSON__EFFORT | (aligned ? 0u : (unsigned)FFTW_UNALIGNED);
   BW_FFTW(complex) *z = (BW_FFTW(complex) *)t->work;
+  /* All columns of a block in one plan, side by side in memory, in place. */
   if (kind->family == BW_POISSON__OTHER) {
     t->forward = BW_FFTW(plan_many_r2r)(1, &n, width, t->work, NULL, width, 1, t->work, NULL, width,
                                         1, &kind->real, flags);
@@ -159,6 +164,7 @@ static void take_apart(int n, int width, bw_real *restrict a)
 #pragma omp simd
     for (int q = 0; q < width; q += 2) {
       const bw_real x_re = x[q], x_im = x[q + 1], y_re = y[q], y_im = y[q + 1];
+      /* A_k = (Z_k + conj Z_{n-k})/2 and B_k = (Z_k - conj Z_{n-k})/2i. */
       x[q] = (bw_real)0.5 * (x_re + y_re);
       x[q + 1] = (bw_real)0.5 * (x_im + y_im);
       y[q] = (bw_real)0.5 * (x_im - y_im);
@@ -198,6 +204,7 @@ void bw_poisson__columns_forward(const bw_poisson__transform *t, bw_real *a)
     bw_poisson__cosine_columns_combine(t->n, t->width, t->twiddle, t->work, a);
   } else
     run(t, t->forward, a);
+  /* Two real columns went through as one complex one: eigenvalues belong to each by itself. */
   if (t->separate) take_apart(t->n, t->width, a);
 }
 

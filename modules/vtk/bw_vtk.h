@@ -8,6 +8,9 @@
 #pragma once
 #include "bw_grid.h"
 
+BW_BEGIN_DECLS
+
+/* A field of the grid as it goes into a file. Everything is borrowed for the call. */
 typedef struct {
   const char *name;       /* "pressure" */
   const bw_real *data[3]; /* one field, or three for a vector (data[1] NULL: scalar). A NULL
@@ -21,27 +24,30 @@ typedef struct {
 const char *bw_vtk_grid_extension(const bw_grid *grid);
 
 /* Cell data of the grid as ImageData (uniform grid) or, when y is stretched, RectilinearGrid;
- * `path` has to end in the extension of that kind. Collective. */
+ * `path` has to end in the extension of that kind; field[count]. Collective. */
 bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
                             const bw_vtk_field field[]) BW_MUST_CHECK;
 
+/* The elements of an array. */
 typedef enum {
-  BW_VTK_FLOAT32,
-  BW_VTK_FLOAT64,
-  BW_VTK_INT32,
-  BW_VTK_INT64,
-  BW_VTK_UINT8
+  BW_VTK_FLOAT32, /* float */
+  BW_VTK_FLOAT64, /* double */
+  BW_VTK_INT32,   /* int32_t */
+  BW_VTK_INT64,   /* int64_t */
+  BW_VTK_UINT8    /* uint8_t */
 } bw_vtk_type;
 
+/* Values of points as they go into a file. Everything is borrowed for the call. */
 typedef struct {
-  const char *name;
+  const char *name; /* "damage" */
   bw_vtk_type type; /* of the array in memory and in the file */
   int components;   /* 1 or 3 */
   const void *data; /* (n, components) of this rank */
 } bw_vtk_array;
 
 /* Points as PolyData vertices, in rank order; position (n,3) of this rank [L]. n may differ and
- * be 0. Collective. */
+ * be 0 on some ranks; array[count], the same names, types and components on all of them.
+ * Collective. */
 bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
                               const double position[], int count,
                               const bw_vtk_array array[]) BW_MUST_CHECK;
@@ -52,3 +58,5 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
  * Collective. */
 bw_status bw_vtk_series_add(const bw_comm *comm, const char *path, double time,
                             const char *file) BW_MUST_CHECK;
+
+BW_END_DECLS

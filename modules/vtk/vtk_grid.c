@@ -29,6 +29,7 @@ static bw_status check(const bw_grid *grid, const char *path, int count, const b
   const size_t length = strlen(path), tail = strlen(extension);
   BW_REQUIRE(length > tail && strcmp(path + length - tail, extension) == 0, BW_EINPUT,
              "%s: a file of this grid has to end in %s", path, extension);
+  /* A missing name or array is the caller's slip: found before any file is begun. */
   for (int q = 0; q < count; q++)
     BW_REQUIRE(field[q].name != NULL && field[q].data[0] != NULL, BW_EINPUT,
                "%s: field %d of %d has no %s", path, q + 1, count,
@@ -52,11 +53,14 @@ static void describe(bw_vtk__writer *writer, bw_vtk__text *text, const bw_grid_v
   const uint64_t cells = (uint64_t)g->n[0] * (uint64_t)g->n[1] * (uint64_t)g->n[2];
   bw_vtk__begin(text, type);
   bw_vtk__add(text, "  <%s WholeExtent=\"0 %d 0 %d 0 %d\"", type, g->n[0], g->n[1], g->n[2]);
+  /* ImageData has its geometry in the head; RectilinearGrid has arrays of coordinates. */
   if (g->uniform_y)
     bw_vtk__add(text, " Origin=\"0 0 0\" Spacing=\"%.17g %.17g %.17g\"", g->spacing[0],
                 g->spacing[1], g->spacing[2]);
   bw_vtk__add(text, ">\n    <Piece Extent=\"0 %d 0 %d 0 %d\">\n", g->n[0], g->n[1], g->n[2]);
   if (!g->uniform_y) declare_coordinates(writer, text, g);
+  /* The order in which arrays are declared is the order in which their blocks follow in the
+   * file. */
   bw_vtk__add(text, "      <CellData>\n");
   for (int q = 0; q < count; q++) {
     const int nc = components(&field[q]);
@@ -80,6 +84,8 @@ static bw_status write_coordinates(bw_vtk__writer *writer, const bw_grid_view *g
     const size_t bytes = ((size_t)g->n[d] + 1) * sizeof(double);
     int64_t start = 0;
     double *x = NULL;
+    /* Every rank knows all coordinates; the first one writes them, the others take part in the
+     * call. */
     bw_status st = bw_comm_agree(writer->comm, BW_ALLOCATE(&x, (size_t)g->n[d] + 1));
     BW_THEN(st, bw_vtk__block(writer, bytes, &start));
     if (st == BW_OK) {
@@ -109,10 +115,13 @@ static void pack(const bw_grid_view *g, const bw_vtk_field *field, int k0, int p
     for (int j = 1; j <= g->m[1]; j++) {
       for (int c = 0; c < nc; c++) {
         const bw_real *a = field->data[c];
+        /* A component on faces becomes a value at the centre: (a[i-1] + a[i])/2, second order as
+         * the flow is. */
         const ptrdiff_t back = field->staggered ? g->stride[c] : 0;
         if (a != NULL)
           pack_row(g->m[0], a + bw_at(g, 1, j, k), back, scale, nc, out + c);
         else
+          /* VTK has no vectors of two components: the third is zero in 2D. */
           for (int i = 0; i < g->m[0]; i++)
             out[(ptrdiff_t)nc * i + c] = 0.0f;
       }
@@ -129,9 +138,12 @@ static bw_status write_field(bw_vtk__writer *writer, const bw_grid_view *g,
   const int64_t row = (int64_t)g->n[0] * nc * (int64_t)sizeof(float), plane = row * g->n[1];
   const int64_t whole = (int64_t)g->n[0] * g->n[1];
   int batch = 1;
+  /* Where a rank holds whole planes, many of them go out in one call. */
   if (g->ranks[1] == 1 && whole < BATCH_VALUES) batch = (int)(BATCH_VALUES / whole);
   int64_t start = 0;
+  /* The whole field's length stands before it; each rank then writes at offsets of its own. */
   BW_TRY(bw_vtk__block(writer, (uint64_t)(plane * g->n[2]), &start));
+  /* As many rounds as the rank with most planes has: the write is collective, and may be empty. */
   for (int k0 = 1; k0 <= most_planes; k0 += batch) {
     const int left = g->m[2] - k0 + 1;
     const int planes = left < 0 ? 0 : left < batch ? left : batch;
@@ -151,10 +163,12 @@ static bw_status write_blocks(bw_vtk__writer *writer, const bw_grid_view *g, int
   const size_t most = slab < BATCH_VALUES ? slab : (plane < BATCH_VALUES ? BATCH_VALUES : plane);
   int64_t planes = g->m[2];
   float *buffer = NULL;
+  /* The ranks divide z unevenly: the thickest block tells how many rounds there are. */
   bw_comm_max_int(writer->comm, 1, &planes);
   bw_status st = BW_OK;
   if (!g->uniform_y) st = write_coordinates(writer, g);
   BW_THEN(st, bw_comm_agree(writer->comm, BW_ALLOCATE(&buffer, 3 * most)));
+  /* In the order of the declarations, for the offsets in the head say so. */
   for (int q = 0; q < count; q++)
     BW_THEN(st, write_field(writer, g, &field[q], (int)planes, buffer));
   bw_release(&buffer);
@@ -167,6 +181,7 @@ bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
   const bw_grid_view *g = bw_grid_look(grid);
   bw_vtk__writer writer = {.comm = bw_grid_comm(grid)};
   bw_vtk__text text = {0};
+  /* Nothing is written for arguments that make no file. */
   bw_status st = bw_comm_agree(writer.comm, check(grid, path, count, field));
   if (st == BW_OK) {
     describe(&writer, &text, g, count, field);
@@ -174,5 +189,6 @@ bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
   }
   bw_release(&text.chars);
   BW_THEN(st, write_blocks(&writer, g, count, field));
+  /* Complete, the file gets its name; after a failure on any rank it disappears. */
   return bw_vtk__close(&writer, st);
 }

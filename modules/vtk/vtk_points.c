@@ -31,11 +31,13 @@ static void describe(bw_vtk__writer *writer, bw_vtk__text *text, uint64_t total,
               "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
               "      <PointData>\n",
               total, total);
+  /* Values first, then positions, then the vertices: the blocks follow in this order. */
   for (int q = 0; q < count; q++)
     bw_vtk__declare(writer, text, array[q].name, array[q].type, array[q].components,
                     total * (uint64_t)array[q].components);
   bw_vtk__add(text, "      </PointData>\n      <Points>\n");
   bw_vtk__declare(writer, text, "Points", BW_VTK_FLOAT32, 3, 3 * total);
+  /* Each point is a cell of its own, a vertex: ParaView's filters by value keep or drop cells. */
   bw_vtk__add(text, "      </Points>\n      <Verts>\n");
   bw_vtk__declare(writer, text, "connectivity", BW_VTK_INT64, 1, total);
   bw_vtk__declare(writer, text, "offsets", BW_VTK_INT64, 1, total);
@@ -59,14 +61,17 @@ static bw_status write_blocks(bw_vtk__writer *writer, uint64_t total, uint64_t b
   int64_t *index = NULL;
   bw_status st = BW_ALLOCATE(&x, 3 * n);
   BW_THEN(st, BW_ALLOCATE(&index, n));
+  /* Scratch memory is there on all ranks: what follows is collective. */
   st = bw_comm_agree(writer->comm, st);
   for (int q = 0; q < count; q++)
     BW_THEN(st, write_array(writer, total, before, n,
                             bw_vtk__kind_of(array[q].type)->bytes * (size_t)array[q].components,
                             array[q].data));
+  /* Positions as Float32, which is what the head declares. */
   for (size_t i = 0; st == BW_OK && i < 3 * n; i++)
     x[i] = (float)position[i];
   BW_THEN(st, write_array(writer, total, before, n, 3 * sizeof *x, x));
+  /* Connectivity: a vertex refers to the point of its own number, counted over all ranks. */
   for (size_t i = 0; st == BW_OK && i < n; i++)
     index[i] = (int64_t)(before + i);
   BW_THEN(st, write_array(writer, total, before, n, sizeof *index, index));
@@ -85,6 +90,7 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
   bw_vtk__text text = {0};
   BW_TRY(bw_comm_agree(comm, check(path, count, array, n)));
   int64_t total = (int64_t)n;
+  /* Points lie in the file in rank order: behind those of all lower ranks. */
   const int64_t before = bw_comm_prefix_sum(comm, total);
   bw_comm_sum_int(comm, 1, &total);
   describe(&writer, &text, (uint64_t)total, count, array);

@@ -15,6 +15,7 @@ static bw_status keep_earlier(bw_vtk__text *text, const char *path, char *old, d
 {
   BW_REQUIRE(strncmp(old, head, strlen(head)) == 0, BW_EIO,
              "%s is there and is not a time series of Breakwater; move it away", path);
+  /* What the run wrote from this time on before it was restarted is dropped. */
   for (char *line = old + strlen(head); *line != '\0';) {
     char *end = strchr(line, '\n');
     if (end != NULL) *end = '\0';
@@ -31,6 +32,7 @@ bw_status bw_vtk_series_add(const bw_comm *comm, const char *path, double time, 
 {
   bw_vtk__text text = {0};
   char *old = NULL;
+  /* The whole list is written anew, so that it is a valid file at any time. */
   bw_vtk__add(&text, "%s", head);
   bw_status st = BW_OK;
   if (bw_path_exists(comm, path)) {
@@ -38,9 +40,11 @@ bw_status bw_vtk_series_add(const bw_comm *comm, const char *path, double time, 
     BW_THEN(st, keep_earlier(&text, path, old, time));
   }
   bw_release(&old);
+  /* Only entries earlier than this one are left: times increase down the list. */
   bw_vtk__add(&text, "%s%.17g\" part=\"0\" file=\"", entry_begin, time);
   bw_vtk__add_escaped(&text, file);
   bw_vtk__add(&text, "\"/>\n  </Collection>\n</VTKFile>\n");
+  /* Memory may have run out on one rank in any of the additions above. */
   if (st == BW_OK) st = text.status;
   st = bw_comm_agree(comm, st);
   BW_THEN(st, bw_file_write_text(comm, path, text.chars));

@@ -23,6 +23,7 @@ void bw_vtk__add(bw_vtk__text *text, const char *fmt, ...)
 {
   va_list args;
   va_start(args, fmt);
+  /* A first pass measures, a second one prints; the arguments have to be begun anew for it. */
   const int length = vsnprintf(NULL, 0, fmt, args);
   va_end(args);
   reserve(text, (size_t)length + 1);

@@ -47,6 +47,7 @@ void bw_vtk__declare(bw_vtk__writer *writer, bw_vtk__text *text, const char *nam
   bw_vtk__add_escaped(text, name);
   bw_vtk__add(text, "\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%" PRIu64 "\"/>\n",
               components, writer->declared);
+  /* The next array begins behind this one's length and values. */
   writer->declared += sizeof(uint64_t) + values * kind->bytes;
 }
 
@@ -55,6 +56,7 @@ bw_status bw_vtk__open(bw_vtk__writer *writer, const char *path, const bw_vtk__t
   BW_TRY(bw_comm_agree(writer->comm, text->status));
   BW_TRY(bw_file_create(writer->comm, path, &writer->file));
   const bool first = bw_comm_rank(writer->comm) == 0;
+  /* All ranks hold the same head, so that all know where the first block begins. */
   writer->place = (int64_t)text->used;
   return bw_file_write_at_all(writer->file, 0, first ? text->used : 0, text->chars);
 }
@@ -65,6 +67,7 @@ bw_status bw_vtk__block(bw_vtk__writer *writer, uint64_t bytes, int64_t *start)
   const int64_t head = writer->place;
   *start = head + (int64_t)sizeof bytes;
   writer->place = *start + (int64_t)bytes;
+  /* The first rank writes the length; the values are written by whoever has them. */
   return bw_file_write_at_all(writer->file, head, first ? sizeof bytes : 0, &bytes);
 }
 
@@ -74,6 +77,7 @@ bw_status bw_vtk__close(bw_vtk__writer *writer, bw_status so_far)
   const bool first = bw_comm_rank(writer->comm) == 0;
   BW_THEN(so_far, bw_file_write_at_all(writer->file, writer->place, first ? sizeof closing - 1 : 0,
                                        closing));
+  /* Only a file that all ranks have written to the end gets its name. */
   if (so_far == BW_OK) return bw_file_close(&writer->file);
   bw_file_abandon(&writer->file);
   return so_far;

@@ -1,0 +1,50 @@
+#!/bin/sh
+# Every public header (modules/*/bw_*.h) compiles alone, without a warning, as C11 and as C++17;
+# gives its functions C linkage; and needs no mpi.h, but for the one that hands out a communicator.
+# usage: headers.sh SOURCE
+cd "$1" || exit 2
+may_need_mpi='modules/core/bw_comm_mpi.h'
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+bad=0
+
+complain() { bad=1; echo "$1"; }
+
+folders=
+for folder in modules/*/; do folders="$folders -I $folder"; done
+
+# compile HEADER STANDARD COMPILER FLAGS...: a program that includes nothing else
+compile() {
+  header=$1 standard=$2
+  shift 2
+  # shellcheck disable=SC2086 # a list of flags
+  printf '#include "%s"\ntypedef int not_empty;\n' "$(basename "$header")" |
+    "$@" -std="$standard" -Wall -Wextra -Wpedantic -Werror -D_POSIX_C_SOURCE=200809L \
+         $folders -fsyntax-only - >"$work/said" 2>&1 ||
+    complain "$header does not compile alone as $standard:
+$(cat "$work/said")"
+}
+
+# Does the header include mpi.h, by whatever way?
+needs_mpi() {
+  # shellcheck disable=SC2086 # a list of flags
+  printf '#include "%s"\n' "$1" | mpicc $folders -I . -M -x c - 2>"$work/said" | tr ' ' '\n' |
+    grep -qE '(^|/)mpi\.h$'
+}
+
+for header in modules/*/bw_*.h; do
+  c=${CC:-cc} cxx=${CXX:-c++}
+  if [ "$header" = "$may_need_mpi" ]; then
+    c=mpicc cxx=mpicxx
+  elif needs_mpi "$header"; then
+    complain "$header includes mpi.h: only $may_need_mpi may"
+  fi
+  compile "$header" c11 "$c" -x c
+  compile "$header" c++17 "$cxx" -x c++ -DOMPI_SKIP_MPICXX -DMPICH_SKIP_MPICXX
+  # What begins in the first column and ends in `);` or an attribute declares a function.
+  if grep -qE '^[^#/ ].*(\);|BW_MUST_CHECK;|BW_PRINTF\([0-9, ]*\);)' "$header" &&
+     ! grep -qE '^(BW_BEGIN_DECLS|extern "C" \{)' "$header"; then
+    complain "$header declares functions without BW_BEGIN_DECLS ... BW_END_DECLS (bw_decls.h)"
+  fi
+done
+exit $bad

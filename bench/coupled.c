@@ -48,6 +48,7 @@ static bw_status build_coupler(scene *s, bw_coupler_load_kind load)
   c.rho = 1000, c.nu = 1.0e-3, c.load = load;
   c.walled[1][0] = c.walled[1][1] = true;
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
+  /* The solid moves: its sub-steps are most of the cost. */
   bw_coupler_hold_solid(s->coupler, false);
   bw_coupler_watch(s->coupler, false); /* as in most steps of a run */
   return BW_OK;
@@ -91,15 +92,18 @@ static bw_status repeat(const bw_comm *comm, scene *s, double value[QUANTITIES])
       [PROBE] = BW_PART_PROBES,      [SOLID] = BW_PART_SOLID,     [SURFACE] = BW_PART_SURFACE};
   bw_timer_row rows[BW_PART_COUNT + 1];
   double total = 0.0;
+  /* All ranks begin together, with clocks at zero. */
   bw_comm_barrier(comm);
   bw_timer_reset(bw_coupler_timer(s->coupler));
   bw_ibm_mdf_cost_reset(bw_coupler_markers(s->coupler));
   for (int q = 0; q < STEPS; q++)
     BW_TRY(bw_coupler_step(s->coupler, DT));
+  /* Parts by the coupler's own timer, markers by their module's. */
   bw_timer_summary(bw_coupler_timer(s->coupler), comm, rows, &total);
   const bw_ibm_mdf_cost cost = bw_ibm_mdf_cost_of(bw_coupler_markers(s->coupler));
   double sum[4] = {cost.kernels, cost.images, cost.set, (double)cost.forced};
   bw_comm_sum(comm, 4, sum);
+  /* Per step, and per marker and iteration: three sub-steps of n_iter each. */
   value[STEP] = 1e3 * total / STEPS;
   for (int q = MOMENTUM; q <= SURFACE; q++)
     value[q] = rows[part[q]].share;
@@ -116,6 +120,7 @@ static bw_status report(bw_bench *b, scene *s, const char *name)
   bw_coupler_report r;
   for (int q = 0; q < REPETITIONS; q++)
     BW_TRY(repeat(bw_bench_comm(b), s, value[q]));
+  /* The median of each quantity by itself, over all repetitions. */
   for (int i = 0; i < QUANTITIES; i++) {
     for (int q = 0; q < REPETITIONS; q++)
       column[q] = value[q][i];

@@ -68,6 +68,7 @@ static bw_status transform_time(const bw_comm *comm, int n, bool real, double *s
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&a, (size_t)ROWS * (size_t)size)));
   BW_FFT(complex) *z = (BW_FFT(complex) *)a;
   fft_pair p;
+  /* Plans are measured, which overwrites the arrays: they are cleared afterwards. */
   for (int way = 0; way < 2; way++)
     if (!real)
       p.plan[way] = BW_FFT(plan_many_dft)(1, &n, ROWS, z, NULL, 1, n, z, NULL, 1, n,
@@ -79,6 +80,7 @@ static bw_status transform_time(const bw_comm *comm, int n, bool real, double *s
         BW_FFT(plan_many_dft_c2r)(1, &n, ROWS, z, NULL, 1, half, a, NULL, 1, size, FFTW_MEASURE);
   }
   memset(a, 0, sizeof *a * ROWS * (size_t)size);
+  /* 50 pairs of transforms of all rows; a pair per number. */
   *seconds = bw_bench_median(comm, run_pair, &p) / (50.0 * ROWS * n);
   for (int way = 0; way < 2; way++)
     BW_FFT(destroy_plan)(p.plan[way]);
@@ -125,6 +127,7 @@ static bw_status create(const bw_comm *comm, const fluid_case *c, bw_grid **grid
 {
   bw_grid_config g = bw_grid_config_default();
   bw_ns_channel_config f = bw_ns_channel_config_default();
+  /* A periodic channel at constant flow rate, or one from inflow to outflow. */
   for (int d = 0; d < 3; d++)
     g.n[d] = c->n[d], g.length[d] = c->length[d];
   g.periodic[0] = !c->inout, g.periodic[2] = true;
@@ -150,11 +153,13 @@ static void put_messages(bw_bench *b, const fluid_case *c, bw_grid *grid, fluid_
 {
   const bw_grid_view *g = bw_grid_look(grid);
   bw_grid_sent halo[2], swap[2];
+  /* What grid has counted before and after a few steps. */
   bw_grid_traffic(grid, &halo[0], &swap[0]);
   advance(w);
   bw_grid_traffic(grid, &halo[1], &swap[1]);
   const double substeps = 3.0 * w->steps, cells = (double)g->m[0] * g->m[1] * g->m[2];
   const double away = 1.0 - 1.0 / g->ranks[2];
+  /* The least: one face of four fields, two transposes of what is not on the rank already. */
   bw_bench_put(b, &(bw_bench_row){c->name, "halo_bytes_per_substep", "B",
                                   (double)(halo[1].bytes - halo[0].bytes) / substeps, NULL, NAN,
                                   4.0 * (double)bw_halo_volume(grid)});
@@ -176,15 +181,18 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, con
   fluid_work w = {.steps = c->steps};
   double transforms = NAN;
   malloc_trim(0); /* what the case before freed must not count as there already */
+  /* Resident memory before and after creation. */
   double bytes = -(double)bw_memory_resident();
   bw_status st = create(comm, c, &grid, &w.ns);
   bytes += (double)bw_memory_resident();
   BW_THEN(st, transforms_per_cell(comm, c->n, &transforms));
+  /* Half the limit: the field stays as it is over all repetitions. */
   if (st == BW_OK) {
     bw_comm_sum(comm, 1, &bytes);
     w.dt = 0.5 * bw_ns_channel_dt_max(w.ns);
     const double cells = (double)c->n[0] * c->n[1] * c->n[2];
     const double words = WORDS + IMPLICIT_WORDS[c->viscous];
+    /* Core-time: wall time of the slowest rank, times the number of ranks. */
     *ns_per_cell =
         1e9 * bw_bench_median(comm, advance, &w) * bw_comm_size(comm) / (3.0 * c->steps * cells);
     bw_bench_put(b, &(bw_bench_row){name, "core_ns_per_cell_substep", "ns", *ns_per_cell,
@@ -210,6 +218,7 @@ static bw_status scaling(bw_bench *b, const char *name, const fluid_case *c, dou
   bw_comm *self = NULL;
   double alone = NAN;
   bw_status st = BW_OK;
+  /* The others wait in the agreement below. */
   if (bw_comm_rank(comm) == 0) {
     st = bw_comm_self(&self);
     BW_THEN(st, measure(b, self, name, c, triad, &alone));
@@ -226,10 +235,12 @@ static void projection(bw_bench *b, double core_ns)
   const double n[3] = {4096, 2048, 2048}, ranks[2] = {100, 100};
   const double latency = 2e-6, bandwidth = 25e9 / 64.0; /* of a link that 64 ranks share [B/s] */
   const double m1 = n[1] / ranks[0], m2 = n[2] / ranks[1], cells = n[0] * m1 * m2;
+  /* Numbers sent by a rank in a sub-step: halos, lines of the tridiagonal solve, transposes. */
   const double halo = 9.0 * n[0] * (m1 + m2), lines = 8.0 * n[0] * m2 * (1.0 - 1.0 / ranks[0]);
   const double transposes = 2.0 * cells * (1.0 - 1.0 / ranks[1]);
   const double messages = 10.0 + 2.0 * (ranks[0] - 1.0) + 2.0 * (ranks[1] - 1.0) +
                           2.0 * log2(ranks[0] * ranks[1]); /* two sums over all ranks */
+  /* Work as measured here; the network's latency and bandwidth are assumed. */
   const double work = 1e-9 * core_ns * cells, wait = messages * latency;
   const double transfer = 8.0 * (halo + lines + transposes) / bandwidth;
   const bw_bench_row rows[] = {
@@ -248,6 +259,7 @@ static bw_status run(bw_bench *b)
   enum { LARGE, CHANNEL, INOUT, IMPLICIT_Y, IMPLICIT, CASES };
   const double pi = 3.14159265358979323846;
   fluid_case cases[CASES];
+  /* The small grid's rival unless said otherwise. */
   for (int q = 0; q < CASES; q++)
     cases[q] = (fluid_case){
         .n = {128, 64, 64}, .length = {2, 1, 1}, .steps = 10, .rival = 102, .rival_bytes = 203};
@@ -264,6 +276,7 @@ static bw_status run(bw_bench *b)
   cases[IMPLICIT].name = "implicit_128x64x64_np2", cases[IMPLICIT].rival = (double)NAN;
   cases[IMPLICIT].viscous = BW_VISCOUS_IMPLICIT;
   const bw_comm *comm = bw_bench_comm(b);
+  /* Bandwidth in this very run: what the floor is made of. */
   const double triad = bw_bench_triad(comm);
   double ns[CASES];
   bw_bench_put(
@@ -272,6 +285,7 @@ static bw_status run(bw_bench *b)
     BW_TRY(measure(b, comm, cases[q].name, &cases[q], triad, &ns[q]));
   bw_bench_put(b, &(bw_bench_row){cases[IMPLICIT].name, "price_over_explicit", "",
                                   ns[IMPLICIT] / ns[CHANNEL], "CaNS", 2.3, NAN});
+  /* The same cases on one rank. */
   BW_TRY(scaling(b, "channel_128x64x64_np1", &cases[CHANNEL], triad, ns[CHANNEL]));
   BW_TRY(scaling(b, "channel_192x128x160_np1", &cases[LARGE], triad, ns[LARGE]));
   projection(b, ns[LARGE]);

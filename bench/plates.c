@@ -30,6 +30,7 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
   bw_pd_bond_config c = bw_pd_bond_config_default();
   c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = m;
   c.contact = contact;
+  /* A block of whole particles. */
   const bw_shape block = {.kind = BW_SHAPE_BOX,
                           .upper = {size[0] * c.ds, size[1] * c.ds, size[2] * c.ds}};
   int64_t n = 0;
@@ -93,6 +94,7 @@ static bw_status broken(bw_bench *b, const bw_comm *self, bool contact)
   bw_status st = bw_pd_bond_account(pd, &e);
   const int64_t bonds = e.bonds;
   const double whole = ms_per_step(self, pd, &st);
+  /* Cut by planes every four spacings, then timed against itself when it was whole. */
   for (int cut = 4; cut < size[0] && st == BW_OK; cut += 4) {
     const double x = 1e-3 * cut, far = 1;
     st = bw_pd_bond_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
@@ -114,6 +116,7 @@ static bw_status halo(bw_bench *b, const bw_comm *comm)
   const int size[3] = {48, 32, 32};
   bw_pd_bond *pd = NULL;
   BW_TRY(box(comm, size, 3.0, false, &pd));
+  /* Copies of others' particles, on the rank that has most. */
   double copies = (double)(bw_pd_bond_get_extended(pd).n - bw_pd_bond_count(pd));
   bw_comm_max(comm, 1, &copies);
   put(b, "halo_48x32x32_np2", "copies_per_rank", "-", copies, NULL, NAN, 3.0 * 32 * 32);
@@ -129,10 +132,12 @@ static bw_status million(bw_bench *b, const bw_comm *comm, const char *name, dou
   double before = -(double)bw_memory_resident(), lists;
   bw_status st = box(comm, size, 3.0, false, &pd);
   if (st != BW_OK) return st;
+  /* Resident memory by which creation grew it. */
   before += (double)bw_memory_resident(), lists = (double)bw_pd_bond_list_bytes(pd);
   bw_comm_sum(comm, 1, &before);
   bw_comm_sum(comm, 1, &lists);
   const double n = (double)bw_pd_bond_total(pd);
+  /* Floor: lists once, positions and velocities in and out. */
   const double moved = lists + n * 12.0 * sizeof(bw_real); /* X, V in and out */
   *ms = ms_per_step(comm, pd, &st);
   put(b, name, "ms_per_step", "ms", *ms, NULL, NAN, 1e3 * moved / (triad * bw_comm_size(comm)));
@@ -159,6 +164,7 @@ static bw_status run(bw_bench *b)
   double one = NAN, two = NAN;
   bw_comm *self = NULL;
   bw_status st = bw_comm_self(&self);
+  /* Rank 0 alone first. */
   if (bw_comm_rank(comm) == 0) BW_THEN(st, alone(b, self, triad, &one));
   st = bw_comm_agree(comm, st); /* the others wait here */
   bw_comm_destroy(&self);

@@ -49,11 +49,13 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   bw_pd_bond_ledger e;
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_bond_account(pd, &e));
+  /* Each bond is evaluated from both of its ends. */
   if (st == BW_OK) {
     const double bonds = 2.0 * (double)e.bonds;
     const double seconds = bw_bench_solid_seconds(comm, pd, STEPS, &st);
     double bytes = (double)bw_pd_bond_list_bytes(pd);
     bw_comm_sum(comm, 1, &bytes);
+    /* Floor: lists, positions read and forces written once. */
     const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
     bw_bench_put(b, &(bw_bench_row){name, "ms_per_force_evaluation", "ms", 1e3 * seconds,
                                     isnan(rival) ? NULL : "LAMMPS peri/pmb", rival,
@@ -75,6 +77,7 @@ static bw_status run(bw_bench *b)
   const double triad = bw_bench_triad(comm);
   bw_comm *self = NULL;
   bw_status st = bw_comm_self(&self);
+  /* Rank 0 alone: a block on the lattice, then the same as a cloud. */
   if (bw_comm_rank(comm) == 0)
     BW_THEN(st, measure(b, self, "block_48x32x32_np1", 0, lammps(1), triad));
   if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "cloud_48x32x32_np1", 0.3, NAN, triad));

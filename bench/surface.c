@@ -41,10 +41,12 @@ static bw_status report(bw_bench *b, bw_pd_bond *pd, follower *f)
   const bw_comm *comm = bw_bench_comm(b);
   const char *name = "porous_np1";
   const double n = (double)bw_pd_interface_surface(f->interface).n;
+  /* 160 bytes a surface particle: what is read and told (head of this file). */
   const double floor_s = n * 160.0 / bw_bench_triad(comm);
   const double updating = bw_bench_median(comm, update, f) / CALLS;
   const double turning = bw_bench_median(comm, turn, f) / CALLS;
   BW_TRY(f->st);
+  /* In the same run, on the same clock. */
   const double step = bw_bench_solid_seconds(comm, pd, 4, &f->st);
   const bw_bench_row rows[] = {
       {name, "surface_particles", "-", n, NULL, NAN, NAN},

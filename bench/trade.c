@@ -67,6 +67,7 @@ static bw_status cylinder(const bw_comm *comm, const cylinder_choice *q, trade *
   c.reynolds = 25.0;
   c.cells_per_diameter = q->cells, c.kernel = q->kernel, c.n_iter = q->n_iter;
   c.retraction = q->retraction;
+  /* From nothing to the steady state: all that a user waits for. */
   const double start = core_seconds();
   bw_status st = cylinder_create(comm, &c, &f);
   BW_THEN(st, cylinder_advance(&f, settled));
@@ -150,6 +151,7 @@ static bw_status vortex(const bw_comm *comm, const vortex_choice *q, trade *out)
   c.nu = nu, c.viscous = q->viscous;
   bw_status st = bw_grid_create(comm, &g, &grid);
   BW_THEN(st, bw_ns_channel_create(grid, &c, &ns));
+  /* The same flow three times; the shortest time counts, the error is the same. */
   for (int repetition = 0; st == BW_OK && repetition < 3; repetition++) { /* the first warms up */
     st = bw_ns_channel_set_velocity(ns, vortex_velocity, &nu, 0.0);
     const int steps = (int)ceil(end / (q->share * bw_ns_channel_dt_max(ns)));
@@ -207,6 +209,7 @@ static bw_status wave_create(const bw_comm *comm, bw_pd_bond_config c, const int
   for (int d = 0; d < 3; d++)
     c.period[d] = size[d];
   bw_status st = BW_ALLOCATE(&site, 3 * (size_t)all);
+  /* A block that is periodic in all directions has no surface. */
   for (int64_t q = 0; st == BW_OK && q < all; q++) {
     site[3 * q] = (int32_t)(q % size[0]);
     site[3 * q + 1] = (int32_t)(q / size[0] % size[1]);
@@ -222,6 +225,7 @@ static bw_status wave_create(const bw_comm *comm, bw_pd_bond_config c, const int
   BW_TRY(BW_ALLOCATE(&w->A, 3 * w->n));
   BW_TRY(BW_ALLOCATE(&w->shape, w->n));
   bw_pd_bond_get_reference(w->pd, w->X);
+  /* Displaced by one wave along x, at rest. */
   for (size_t i = 0; i < w->n; i++) {
     w->shape[i] = sin(w->k * w->X[3 * i]);
     w->X[3 * i] += w->amplitude * w->shape[i];
@@ -257,6 +261,7 @@ static bw_status wave_cost(bw_pd_bond *pd, double *seconds)
   enum { WARM = 2, STEPS = 20 };
   const double dt = 0.9 * bw_pd_bond_dt_max(pd);
   double start = 0.0;
+  /* Time per unit of simulated time, at 0.9 of the limit. */
   for (int q = 0; q < WARM + STEPS; q++) {
     if (q == WARM) start = core_seconds();
     BW_TRY(bw_pd_bond_step(pd, dt));
@@ -277,6 +282,7 @@ static bw_status study_wave(bw_bench *b, const bw_comm *comm)
     c.horizon_ratio = 2 + q % 5;
     c.calibration = q < 5 ? BW_PD_CALIBRATION_NONE : BW_PD_CALIBRATION_LATTICE;
     bw_status st = wave_create(comm, c, (int[3]){length, length, length}, &w);
+    /* Speed omega/k against the classical one; the wave is 32 spacings long. */
     double seconds = NAN, omega = NAN;
     BW_THEN(st, wave_frequency(&w, &omega));
     const double error = fabs(omega / w.k / speed - 1.0);
@@ -301,6 +307,7 @@ static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, d
   bw_status st = wave_create(comm, c, (int[3]){8, 1, 1}, &w);
   BW_THEN(st, wave_frequency(&w, &omega));
   if (st == BW_OK) {
+    /* Against the lattice's own frequency: what is left is the integrator's error. */
     const double end = PERIODS * TURN / omega;
     const int steps = (int)ceil(end / (share * bw_pd_bond_dt_max(w.pd)));
     for (int q = 0; st == BW_OK && q < steps; q++)
@@ -308,8 +315,10 @@ static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, d
     bw_pd_bond_get_position(w.pd, w.X);
     bw_pd_bond_get_velocity(w.pd, w.V);
     bw_pd_bond_get_reference(w.pd, w.A);
+    /* Displacements. */
     for (size_t i = 0; i < 3 * w.n; i++)
       w.X[i] -= w.A[i];
+    /* Distance in the plane of displacement and velocity, over the amplitude. */
     out->error =
         hypot(wave_part(&w, w.X) / w.amplitude - 1.0, wave_part(&w, w.V) / (omega * w.amplitude));
     out->cost = (double)steps * (integrator == BW_PD_RK3 ? 3 : 1) / PERIODS;

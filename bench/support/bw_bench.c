@@ -28,6 +28,7 @@ static void put_number(FILE *f, const char *key, double x, const char *end)
 
 void bw_bench_put(bw_bench *b, const bw_bench_row *r)
 {
+  /* Only rank 0 writes. */
   if (b->file == NULL) return;
   fprintf(b->file, "%s\n  {\"case\": \"%s\", \"quantity\": \"%s\", ", b->rows++ > 0 ? "," : "",
           r->name, r->quantity);
@@ -39,6 +40,7 @@ void bw_bench_put(bw_bench *b, const bw_bench_row *r)
   put_number(b->file, "ratio_to_rival", r->rival != NULL ? r->value / r->rival_value : NAN, ", ");
   put_number(b->file, "ratio_to_floor", r->value / r->floor_value, "}");
   fflush(b->file);
+  /* The same for the eye. */
   printf("%-28s %-28s %10.4g %-12s", r->name, r->quantity, r->value, r->unit);
   if (r->rival != NULL)
     printf("  %5.2f of %s (%.4g)", r->value / r->rival_value, r->rival, r->rival_value);
@@ -63,6 +65,7 @@ double bw_bench_middle(int n, double x[])
 double bw_bench_median(const bw_comm *comm, void (*work)(void *), void *context)
 {
   double seconds[BW_BENCH_REPETITIONS];
+  /* Warms up caches and plans. */
   work(context);
   for (int q = 0; q < BW_BENCH_REPETITIONS; q++) {
     bw_comm_barrier(comm);
@@ -70,6 +73,7 @@ double bw_bench_median(const bw_comm *comm, void (*work)(void *), void *context)
     work(context);
     seconds[q] = bw_wall_time() - start;
   }
+  /* A repetition takes as long as its slowest rank. */
   bw_comm_max(comm, BW_BENCH_REPETITIONS, seconds);
   return bw_bench_middle(BW_BENCH_REPETITIONS, seconds);
 }
@@ -96,6 +100,7 @@ double bw_bench_triad(const bw_comm *comm)
   bw_status st = BW_ALLOCATE(&t.a, t.n);
   BW_THEN(st, BW_ALLOCATE(&t.b, t.n));
   BW_THEN(st, BW_ALLOCATE(&t.c, t.n));
+  /* All ranks at once, as they share the memory bus. NaN without memory. */
   if (bw_comm_agree(comm, st) == BW_OK)
     rate = 3.0 * sizeof(double) * (double)t.n / bw_bench_median(comm, triad, &t);
   bw_release(&t.a);
@@ -122,6 +127,7 @@ int bw_bench_main(int argc, char **argv, const char *name, bw_status (*run)(bw_b
 {
   bw_bench b = {0};
   bw_status st = bw_init(&argc, &argv, &b.comm);
+  /* Whether the file is there only rank 0 knows. */
   BW_THEN(st, bw_comm_agree(b.comm, open_file(&b, name)));
   BW_THEN(st, run(&b));
   if (b.file != NULL) {

@@ -92,6 +92,7 @@ static inline bw_status bending_check(const bending_config *c)
   BW_REQUIRE(fabs(c->channel.length / c->channel.cells[0] / h - 1.0) < 1e-9, BW_EINPUT,
              "channel.cells[0] = %d: cells must be squares, %g would give the spacing %g of y",
              c->channel.cells[0], c->channel.length / h, h);
+  /* The plate has to be a whole number of particles high. */
   BW_REQUIRE(fabs(rows - round(rows)) < 1e-6, BW_EINPUT,
              "plate.particles_across = %d: the spacing %g has to divide plate.height = %g",
              c->plate.particles_across, ds, c->plate.height);
@@ -121,12 +122,14 @@ static inline bw_status bending_make_fluid(bending_flow *f)
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config fluid = bw_ns_channel_config_default();
   f->h = c->channel.height / c->channel.cells[1];
+  /* One cell deep: its depth is h, so that cells are cubes. */
   grid.n[0] = c->channel.cells[0], grid.n[1] = c->channel.cells[1], grid.n[2] = 1;
   for (int d = 0; d < 3; d++)
     grid.length[d] = grid.n[d] * f->h;
   grid.periodic[2] = true;
   grid.halo = 2;
   BW_TRY(bw_grid_create(f->comm, &grid, &f->grid));
+  /* Laminar inflow, convective outflow; floor and ceiling are walls by default. */
   fluid.nu = c->fluid.viscosity;
   fluid.side[0][0] = (bw_ns_side){.kind = BW_SIDE_INFLOW,
                                   .profile = BW_PROFILE_POISEUILLE,
@@ -134,6 +137,7 @@ static inline bw_status bending_make_fluid(bending_flow *f)
   fluid.side[0][1].kind = BW_SIDE_OUTFLOW;
   fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
   BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
+  /* The stream starts as it enters, everywhere; the plate is met in the first step. */
   BW_TRY(bw_ns_channel_set_velocity(f->fluid, bending_stream, &f->config, 0.0));
   /* the whole height, from half a plate's height before it to one and a half behind */
   const double H = c->plate.height, x[2] = {c->plate.front - 0.5 * H, c->plate.front + 1.5 * H};
@@ -166,6 +170,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   const bending_plate *p = &f->config.plate;
   f->ds = p->thickness / p->particles_across;
   const double end = p->front + p->thickness, under = -p->clamped_layers * f->ds;
+  /* The plate, and the rows under the wall that hold it. */
   const bw_shape body[2] = {
       {.kind = BW_SHAPE_BOX, .lower = {p->front}, .upper = {end, p->height, f->h}},
       {.kind = BW_SHAPE_BOX,
@@ -178,6 +183,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   uint8_t *kind = NULL;
   bw_status st =
       bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n, &site, &kind);
+  /* Sites and kinds are copied into the solid, which divides them over the ranks. */
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);
@@ -197,6 +203,8 @@ static inline bw_status bending_create(const bw_comm *comm, const bending_config
   BW_TRY(bending_check(config));
   BW_TRY(bending_make_fluid(f));
   BW_TRY(bending_make_solid(f));
+  /* What the case file leaves to the case: the fluid's
+   * numbers, the floor that the plate leans on. */
   bw_coupler_config c = f->config.coupling;
   c.rho = config->fluid.density;
   c.nu = config->fluid.viscosity;
@@ -214,6 +222,7 @@ static inline void bending_tip(bending_flow *f, double tip[2])
   bw_pd_bond_get_position(f->solid, f->X);
   for (size_t i = 0; i < f->n; i++) {
     const double *x = f->X + 3 * i, *x0 = f->X0 + 3 * i;
+    /* Only columns about the middle line, in the reference shape. */
     if (fabs(x0[0] - p->front - 0.5 * p->thickness) > 0.6 * f->ds) continue;
     const double below = (p->height - x0[1]) / f->ds - 0.5; /* rows below the uppermost */
     const int row = below < 0.5 ? 0 : fabs(below - 3.0) < 0.5 ? 3 : -1;
@@ -222,6 +231,7 @@ static inline void bending_tip(bending_flow *f, double tip[2])
       sum[row + d] += x[d] - x0[d];
     sum[row + 2] += 1.0;
   }
+  /* Uppermost row and the third below it: means, and the slope between them. */
   bw_comm_sum(f->comm, 6, sum);
   for (int d = 0; d < 2; d++) {
     const double top = sum[d] / sum[2], lower = sum[3 + d] / sum[5];
@@ -236,6 +246,7 @@ static inline bw_status bending_look(bending_flow *f, bending_measure *m)
   BW_TRY(bw_coupler_measure(f->coupler, &r));
   bw_pd_bond_ledger e;
   BW_TRY(bw_pd_bond_account(f->solid, &e));
+  /* The report is of the whole depth; per unit depth it compares with two dimensions. */
   *m = (bending_measure){.given = r.work_given / f->h,
                          .received = e.external / f->h,
                          .kinetic = e.kinetic / f->h,

@@ -12,6 +12,7 @@ void bending_describe(bending_run *p)
   bw_log_info(log, "channel    %d x %d cells of %g m; plate %g x %g m, %lld particles of %g m",
               c->channel.cells[0], c->channel.cells[1], p->flow.h, c->plate.thickness, H,
               (long long)bw_pd_bond_total(p->flow.solid), p->flow.ds);
+  /* The numbers that the physics depends on. */
   bw_log_info(log, "groups     Re = U_b H/nu = %g, E* = E/(rho_f U_b^2) = %g, density ratio %g",
               U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
               c->plate.density / rho);
@@ -79,6 +80,7 @@ static bw_status write_plate(bending_run *p, const char *path)
   bw_status st = BW_ALLOCATE(&U, 3 * n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&damage, n));
+  /* Writing is collective: nobody goes on alone. */
   st = bw_comm_agree(p->flow.comm, st);
   if (st == BW_OK) {
     bw_pd_bond_get_position(p->flow.solid, p->flow.X);
@@ -117,6 +119,7 @@ static bw_status add_to_series(bending_run *p, const char *what, const char *ext
   snprintf(series, sizeof series, "%s.pvd", what);
   bw_status st = bw_case_path(p->run, name, &path);
   BW_THEN(st, bw_case_path(p->run, series, &series_path));
+  /* The series names the file only after it is there. */
   BW_THEN(st, write(p, path));
   const double time = bw_ns_channel_time(p->flow.fluid);
   BW_THEN(st, bw_vtk_series_add(p->flow.comm, series_path, time, name));
@@ -152,6 +155,7 @@ bw_status bending_restart(bending_run *p, const char *path)
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_open(p->flow.comm, path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/step", 1, &step);
+  /* Fluid, solid and load as they were saved. */
   BW_THEN(st, bw_coupler_load(p->flow.coupler, ck));
   BW_THEN(st, bw_checkpoint_close(&ck));
   bw_checkpoint_abandon(&ck);

@@ -11,6 +11,7 @@ static bw_status after_step(bending_run *p, bending_measure *m)
   const bending_output *out = &p->config->output;
   if (p->step % out->sample_every == 0) BW_TRY(bending_sample(p, m));
   if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(bending_picture(p));
+  /* 0 leaves pictures and checkpoints to the end of the run. */
   if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
     BW_TRY(bending_checkpoint(p));
   return BW_OK;
@@ -19,6 +20,7 @@ static bw_status after_step(bending_run *p, bending_measure *m)
 static bw_status advance(bending_run *p)
 {
   const bending_time *time = &p->config->time;
+  /* Whole steps: times that are multiples of the step are met in spite of rounding. */
   const int64_t end = (int64_t)ceil(time->end / time->step - 1e-9);
   const int64_t release = (int64_t)ceil(time->release / time->step - 1e-9);
   bending_measure m = {.slip = NAN};
@@ -28,7 +30,9 @@ static bw_status advance(bending_run *p)
   about.time_start = (double)p->step * time->step, about.time_end = time->end;
   bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
   while (st == BW_OK && p->step < end && !bw_stop_requested(p->flow.comm)) {
+    /* The plate is held while the flow starts, then let go. */
     bw_coupler_hold_solid(p->flow.coupler, p->step < release);
+    /* Probes are read only in steps that are measured. */
     bw_coupler_watch(p->flow.coupler, (p->step + 1) % p->config->output.sample_every == 0);
     st = bw_coupler_step(p->flow.coupler, time->step);
     p->step += st == BW_OK;
@@ -46,12 +50,15 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
   const bw_case_args *args = bw_case_args_of(p->run);
   BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
   bending_describe(p);
+  /* --check ends here: everything was built, nothing was run. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(bending_restart(p, args->restart));
   const double time = bw_ns_channel_time(p->flow.fluid);
+  /* A history that goes on is cut at the time of the checkpoint. */
   BW_TRY(bending_open_history(p, args->restart != NULL ? time : NAN));
   bw_stop_install();
   BW_TRY(advance(p));
+  /* The last state, whatever the intervals were. */
   BW_TRY(bending_picture(p));
   BW_TRY(bending_checkpoint(p));
   return bw_timer_report(bw_coupler_timer(p->flow.coupler), comm, bw_case_log(p->run));
@@ -61,6 +68,7 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
 {
   bending_run p = {.config = config, .run = run};
   bw_status st = run_case(&p, comm);
+  /* Closed also after a failure, so that the rows until then are on disk. */
   const bw_status closed = bw_history_close(comm, &p.history);
   BW_THEN(st, closed);
   bending_destroy(&p.flow);

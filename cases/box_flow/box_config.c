@@ -114,6 +114,7 @@ static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_n
   const char *dn = direction_name[d], *sn = end_name[s], *kind = word_of(kind_words, q->kind);
   const bool moves = q->velocity[0] != 0.0 || q->velocity[1] != 0.0 || q->velocity[2] != 0.0;
   const bool laminar = q->profile == BW_PROFILE_POISEUILLE;
+  /* A key that has no meaning for this kind of side is refused, not ignored. */
   BW_REQUIRE(q->kind == BW_SIDE_INFLOW || (!laminar && isnan(q->bulk_velocity)), BW_EINPUT,
              "sides.%s.%s: profile and bulk_velocity belong to an inflow, but kind is %s; leave "
              "them out",
@@ -130,6 +131,7 @@ static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_n
   BW_REQUIRE(!planar || q->velocity[2] == 0.0, BW_EINPUT,
              "sides.%s.%s.velocity: %g along z, but domain.cells has one cell there; give 0", dn,
              sn, q->velocity[2]);
+  /* What is given makes sense; whether it fits the other sides the solver says. */
   *side = (bw_ns_side){.kind = (bw_ns_side_kind)q->kind,
                        .profile = (bw_ns_profile)q->profile,
                        .bulk_velocity = q->bulk_velocity};
@@ -142,6 +144,7 @@ static bw_status sides_resolve(const box_config *c, bw_grid_config *grid,
 {
   const box_pair *pair[3] = {&c->sides.x, &c->sides.y, &c->sides.z};
   const bool planar = c->domain.cells[2] == 1;
+  /* Two dimensions have no sides in z, three need both. */
   BW_REQUIRE(planar != c->sides.has_z, BW_EINPUT, "sides.z is %s, but domain.cells has %d in z; %s",
              c->sides.has_z ? "given" : "missing", c->domain.cells[2],
              planar ? "leave sides.z out in two dimensions"
@@ -158,6 +161,7 @@ static bw_status sides_resolve(const box_config *c, bw_grid_config *grid,
       BW_TRY(side_resolve(side[s], planar, d, s, &fluid->side[d][s]));
   }
   if (!planar) return BW_OK;
+  /* One cell in z is a periodic direction of its own. */
   grid->periodic[2] = true;
   fluid->side[2][0].kind = fluid->side[2][1].kind = BW_SIDE_PERIODIC;
   return BW_OK;
@@ -176,6 +180,7 @@ static bw_status times_check(const box_config *c)
   BW_REQUIRE(isnan(t->step) || isnan(t->limit_share), BW_EINPUT,
              "time.step is %g and time.limit_share is %g; give one of them", t->step,
              t->limit_share);
+  /* Intervals have to divide each other, as the steps end on samples. */
   BW_REQUIRE(divides(t->end, o->sample_every), BW_EINPUT,
              "time.end is %g, no whole number of output.sample_every, %g", t->end, o->sample_every);
   BW_REQUIRE(isnan(t->step) || divides(o->sample_every, t->step), BW_EINPUT,
@@ -194,6 +199,7 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
 {
   *grid = bw_grid_config_default();
   *fluid = bw_ns_channel_config_default();
+  /* The case's numbers become those of grid and solver ... */
   memcpy(grid->n, c->domain.cells, sizeof grid->n);
   memcpy(grid->length, c->domain.length, sizeof grid->length);
   if (c->domain.stretch > 0.0) {
@@ -206,6 +212,7 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
     fluid->forcing = (bw_ns_forcing)c->forcing.kind;
     fluid->forcing_value = c->forcing.value;
   }
+  /* ... after what contradicts itself has been refused by its key. */
   BW_REQUIRE(c->domain.stretch == 0.0 || c->domain.faces[0] == 0, BW_EINPUT,
              "domain.stretch is %g and domain.faces is %s; give one of them", c->domain.stretch,
              c->domain.faces);
@@ -216,5 +223,6 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
              "forcing is %s, but sides.x is not periodic: there the sides drive the flow; leave "
              "forcing out or make x periodic",
              word_of(forcing_words, c->forcing.kind));
+  /* The solver's own check, before anything is allocated. */
   return bw_ns_channel_config_check(grid, fluid);
 }

@@ -34,6 +34,8 @@ static bw_status run_to_end(box_run *b)
   about.time_start = bw_ns_channel_time(b->fluid), about.time_end = b->config->time.end;
   bw_status st = bw_progress_create(bw_case_log(b->run), &about, &line);
   for (bool stop = false; st == BW_OK && !stop && b->intervals < end;) {
+    /* Samples, pictures and checkpoints happen between
+     * intervals only, so a restart repeats every step. */
     st = box_advance(b);
     stop = st == BW_OK && bw_stop_requested(comm);
     BW_THEN(st, after_interval(b, stop || b->intervals == end));
@@ -49,13 +51,16 @@ static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
   const bw_case_args *args = bw_case_args_of(b->run);
   bw_grid_config grid;
   bw_ns_channel_config fluid;
+  /* All contradictions are found before anything exists. */
   BW_TRY(box_resolve(config, &grid, &fluid));
   BW_TRY(box_create(b, comm, &grid, &fluid));
   BW_TRY(box_start_field(b));
   box_describe(b);
+  /* --check ends here: built, described, not run. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(box_restart(b, args->restart));
   BW_TRY(box_open_history(b, args->restart != NULL ? bw_ns_channel_time(b->fluid) : (double)NAN));
+  /* The first row is the start itself; a restart has it already. */
   if (args->restart == NULL) {
     box_sample(b);
     BW_TRY(box_picture(b));

@@ -31,6 +31,7 @@ void box_describe(box_run *b)
   const bw_grid_view *g = bw_grid_look(b->grid);
   const double cells = (double)g->n[0] * g->n[1] * g->n[2];
   const double limit = bw_ns_channel_dt_max(b->fluid);
+  /* The step at the start; later ones follow the field. */
   const double dt =
       isnan(b->config->time.step) ? b->config->time.limit_share * limit : b->config->time.step;
   const double steps = b->config->time.end / dt;
@@ -73,6 +74,7 @@ static int side_columns(const box_run *b, side_column column[COLUMNS - FIXED])
   for (int d = 0; d < dimensions; d++)
     for (int s = 0; s < 2; s++) {
       const int kind = s == 0 ? pair[d]->lower.kind : pair[d]->upper.kind;
+      /* Through in- and outflow a flux, on walls a stress per tangential direction. */
       if (has_flux((bw_ns_side_kind)kind)) column[n++] = (side_column){d, s, -1};
       for (int c = 0; c < dimensions && kind == BW_SIDE_WALL; c++)
         if (c != d) column[n++] = (side_column){d, s, c};
@@ -91,6 +93,7 @@ bw_status box_open_history(box_run *b, double restart_time)
   const int n = side_columns(b, column);
   for (int q = 0; q < FIXED; q++)
     names[q] = fixed[q];
+  /* Columns of the sides carry their names, e.g. flux_x_lower. */
   for (int q = 0; q < n; q++) {
     const side_column *c = &column[q];
     if (c->component < 0)
@@ -116,6 +119,7 @@ void box_sample(box_run *b)
   double row[COLUMNS] = {bw_ns_channel_time(b->fluid), now.bulk_velocity,
                          now.kinetic_energy,           bw_ns_channel_divergence(b->fluid),
                          now.pressure_gradient,        b->dt};
+  /* Each side is integrated anew; they are few. */
   for (int q = 0; q < n; q++) {
     const bw_ns_side_report side = bw_ns_channel_side(b->fluid, column[q].d, column[q].s);
     row[FIXED + q] = column[q].component < 0 ? side.flux : side.stress[column[q].component];

@@ -10,6 +10,7 @@ bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid
   const char *path = b->config->domain.faces;
   bw_grid_config g = *grid;
   double *faces = NULL;
+  /* A table of faces takes the place of the stretching. */
   if (path[0] != 0) {
     BW_TRY(bw_grid_read_table(comm, path, g.n[1], g.length[1], &faces));
     g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
@@ -38,6 +39,7 @@ static void start_velocity(const double x[3], double t, void *context, double u[
   (void)t;
   for (int d = 0; d < 3; d++)
     u[d] = start->velocity[d];
+  /* Vortices are added; the solver projects the sum. */
   for (int q = 0; q < start->n_vortices; q++) {
     const box_vortex *v = &start->vortices[q];
     const double a = (x[0] - v->centre[0]) / v->radius, b = (x[1] - v->centre[1]) / v->radius;
@@ -63,11 +65,13 @@ bw_status box_advance(box_run *b)
     const double longest =
         isnan(time->step) ? time->limit_share * bw_ns_channel_dt_max(b->fluid) : time->step;
     /* at least one: at rest an implicit viscous term sets no limit */
+    /* As few steps as the limit allows, of equal length over what is left. */
     left = (int64_t)fmax(1.0, ceil(span / longest * (1.0 - 1e-12)));
     b->dt = span / (double)left;
     BW_TRY(bw_ns_channel_step(b->fluid, b->dt));
   }
   b->intervals++;
+  /* Exactly the end: rounding does not add up over intervals. */
   bw_ns_channel_set_time(b->fluid, end);
   return BW_OK;
 }
@@ -96,6 +100,7 @@ bw_status box_checkpoint(box_run *b)
   BW_THEN(st, bw_checkpoint_create(bw_grid_comm(b->grid), path, &ck));
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "box_flow"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", NUMBERS, numbers));
+  /* w does not exist in two dimensions. */
   for (int q = 0; q < FIELDS && st == BW_OK; q++)
     if (field[q] != NULL)
       st = bw_checkpoint_put_field(ck, field_name[q], b->grid, q % 3, q < 3, field[q]);
@@ -113,6 +118,7 @@ bw_status box_restart(box_run *b, const char *path)
   list_fields(b, field);
   BW_TRY(bw_checkpoint_open(bw_grid_comm(b->grid), path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", NUMBERS, numbers);
+  /* Another interval would mean other steps. */
   if (st == BW_OK && numbers[2] != b->config->output.sample_every)
     st = BW_FAIL(BW_EINPUT, "%s was written with output.sample_every = %g, not %g; keep it", path,
                  numbers[2], b->config->output.sample_every);
@@ -122,6 +128,7 @@ bw_status box_restart(box_run *b, const char *path)
   if (st == BW_OK) st = bw_checkpoint_close(&ck);
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
+  /* Fields are read; numbers and halos complete the state. */
   b->intervals = (int64_t)numbers[0], b->steps = (int64_t)numbers[1], b->dt = numbers[4];
   bw_ns_channel_set_gradient(b->fluid, numbers[3]);
   bw_ns_channel_set_time(b->fluid, numbers[0] * numbers[2]);

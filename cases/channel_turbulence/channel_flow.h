@@ -58,6 +58,7 @@ static inline int channel_row(const bw_grid_view *g, int plane)
   const int n = g->n[1];
   const double y = (double)channel_heights[plane % CHANNEL_HEIGHTS] / 360.0;
   int best = 1;
+  /* Nearest centre of the lower half; the other plane is its mirror image. */
   for (int j = 2; j <= (n + 1) / 2; j++)
     if (fabs(g->y_centre[j] - y) <= fabs(g->y_centre[best] - y)) best = j;
   return plane < CHANNEL_HEIGHTS ? best : n + 1 - best;
@@ -67,6 +68,7 @@ static inline int channel_row(const bw_grid_view *g, int plane)
 static inline double channel_noise(const double x[3], int c)
 {
   uint64_t s = 0x9e3779b97f4a7c15u * (uint64_t)(c + 1);
+  /* Hash of the place, so that the noise belongs to the point and not to a rank. */
   for (int d = 0; d < 3; d++) {
     s ^= (uint64_t)(int64_t)llround(x[d] * 1048576.0) + 0x9e3779b97f4a7c15u + (s << 6) + (s >> 2);
     s = (s ^ (s >> 30)) * 0xbf58476d1ce4e5b9u; /* the mixing steps of splitmix64 */
@@ -83,10 +85,12 @@ static inline void channel_initial(const double x[3], double t, void *context, d
 {
   const channel_config *q = context;
   const double pi = acos(-1.0), y = x[1];
+  /* Whole waves in the periodic box, as near to 0.8 h and 2 h as it allows. */
   const double kz = 2.0 * pi * fmax(1.0, round(q->length[2] / 0.8)) / q->length[2];
   const double kx = 2.0 * pi * fmax(1.0, round(q->length[0] / 2.0)) / q->length[0];
   const double f = pow(sin(pi * y), 2.0), df = pi * sin(2.0 * pi * y), a = q->perturbation;
   (void)t;
+  /* Everything but the parabola vanishes at the walls with sin^2(pi y). */
   u[0] = 6.0 * y * (1.0 - y) + a * f * sin(kx * x[0]) * sin(kz * x[2] + 1.0);
   u[1] = a * f * (cos(kz * x[2]) + 0.5 * cos(kx * x[0] + 0.7) * cos(0.5 * kz * x[2]));
   u[2] = -a * df / kz * sin(kz * x[2]) + 0.5 * a * f * sin(kx * x[0] + 2.0);
@@ -117,12 +121,14 @@ static inline bw_status channel_grid(const bw_comm *comm, const channel_config *
       q->stretch == 0.0 || q->faces == NULL, BW_EINPUT,
       "domain.stretch = %g and domain.faces = %s both say where the faces in y are; give one",
       q->stretch, q->faces);
+  /* Uniform, tanh, or as the file says. */
   if (q->stretch > 0.0) g.y_stretch = BW_STRETCH_TANH, g.y_stretch_strength = q->stretch;
   if (q->faces != NULL) {
     BW_TRY(bw_grid_read_table(comm, q->faces, g.n[1], g.length[1], &faces));
     g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
   }
   bw_status st = bw_grid_create(comm, &g, grid);
+  /* Both halves are averaged, so they must be alike. */
   if (faces != NULL) BW_THEN(st, channel_symmetric(bw_grid_look(*grid), q->faces));
   bw_release(&faces);
   return st;
@@ -136,19 +142,23 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
   BW_REQUIRE(config->length[1] == 1.0, BW_EINPUT,
              "channel: the height is %g, but h is the unit of length; give 1", config->length[1]);
   BW_TRY(channel_grid(comm, config, &f->grid));
+  /* Walls in y are the default. */
   bw_ns_channel_config c = bw_ns_channel_config_default();
   for (int s = 0; s < 2; s++)
     c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
   c.nu = 1.0 / config->reynolds;
   c.viscous = (bw_ns_viscous)config->viscous;
+  /* U_b = 1 by definition: the gradient follows, and with it Re_tau. */
   c.forcing = BW_FORCING_FLOW_RATE;
   c.forcing_value = 1.0;
   BW_TRY(bw_ns_channel_create(f->grid, &c, &f->fluid));
   BW_TRY(bw_ns_statistics_create(f->fluid, &f->statistics));
+  /* Correlations and spectra at five heights of both halves. */
   int row[CHANNEL_PLANES];
   for (int plane = 0; plane < CHANNEL_PLANES; plane++)
     row[plane] = channel_row(bw_grid_look(f->grid), plane);
   BW_TRY(bw_ns_correlations_create(f->fluid, CHANNEL_PLANES, row, &f->correlations));
+  /* One buffer carries either state to disk. */
   const size_t a = bw_ns_statistics_state_size(f->statistics);
   const size_t b = bw_ns_correlations_state_size(f->correlations);
   return bw_comm_agree(comm, BW_ALLOCATE(&f->state, a > b ? a : b));
@@ -173,18 +183,22 @@ static inline bw_status channel_advance(channel_flow *f)
   const double end = (double)(f->intervals + 1) * q->interval;
   double impulse = 0.0;
   int64_t n = 0;
+  /* The number of steps left is chosen anew after each, as the field changes. */
   for (int64_t left = 1; left > 0; left--, n++) {
     const double span = end - bw_ns_channel_time(f->fluid);
     left = (int64_t)ceil(span / (q->courant_share * bw_ns_channel_dt_max(f->fluid)));
     const double dt = span / (double)left;
     BW_TRY(bw_ns_channel_step(f->fluid, dt));
+    /* Mean gradient of the interval, for Re_tau. */
     impulse += dt * bw_ns_channel_gradient(f->fluid); /* that of the last sub-step */
   }
   f->dt = q->interval / (double)n;
   f->gradient = impulse / q->interval;
   f->steps += n;
   f->intervals++;
+  /* Exactly the end, so that a restart has the same times. */
   bw_ns_channel_set_time(f->fluid, end);
+  /* Only what has forgotten the start is sampled. */
   if (channel_sampling(f)) {
     bw_ns_statistics_sample(f->statistics);
     bw_ns_correlations_sample(f->correlations);
@@ -208,6 +222,7 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "statistics",
                                         (int)bw_ns_statistics_state_size(f->statistics), f->state));
+  /* The statistics are on disk: the buffer is free for the correlations. */
   bw_ns_correlations_get_state(f->correlations, f->state);
   BW_THEN(st,
           bw_checkpoint_put_numbers(ck, "correlations",
@@ -228,6 +243,7 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_open(bw_grid_comm(f->grid), path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress);
+  /* Another interval would mean other steps and other samples. */
   if (st == BW_OK && fabs(progress[2] / f->config->interval - 1.0) > 1e-12)
     st = BW_FAIL(BW_EINPUT, "%s was written with samples every %g h/U_b, not %g", path, progress[2],
                  f->config->interval);
@@ -241,12 +257,14 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
                                           f->state));
     BW_THEN(st, bw_ns_correlations_set_state(f->correlations, f->state));
   }
+  /* Fields by global cells: any number of ranks. */
   for (int c = 0; c < 4; c++)
     BW_THEN(st,
             bw_checkpoint_get_field(ck, channel_field_name[c], f->grid, c % 3, false, field[c]));
   BW_THEN(st, bw_checkpoint_close(&ck));
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
+  /* Numbers and halos complete the state. */
   f->steps = (int64_t)progress[1];
   bw_ns_channel_set_gradient(f->fluid, progress[3]);
   bw_ns_channel_set_time(f->fluid, progress[0] * progress[2]);
@@ -258,6 +276,7 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
 static inline bw_ns_estimate channel_u_tau(const channel_flow *f, bw_ns_estimate work[])
 {
   bw_ns_statistics_profile(f->statistics, BW_NS_PROFILE_SHEAR, true, work);
+  /* u_tau^2 = tau_w/rho; the interval is that of the root. */
   const double u = sqrt(work[0].mean);
   return (bw_ns_estimate){u, 0.5 * work[0].interval / u};
 }

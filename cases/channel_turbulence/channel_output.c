@@ -33,6 +33,7 @@ double channel_record(channel_flow *f, bw_history *history)
 {
   const bw_ns_summary now = bw_ns_channel_summary(f->fluid);
   const double *L = f->config->length, half = 0.5 * f->config->reynolds; /* (h/2) U_b/nu */
+  /* Mean of both walls; the gradient's Re_tau belongs to the interval, this one to the instant. */
   const double shear = 0.5 * (bw_ns_channel_side(f->fluid, 1, 0).stress[0] +
                               bw_ns_channel_side(f->fluid, 1, 1).stress[0]);
   const double re_tau = half * sqrt(fmax(0.0, shear));
@@ -98,10 +99,12 @@ static void write_table(FILE *out, const channel_flow *f, bool faces, int n_colu
   const double re = f->config->reynolds;
   const size_t rows = (size_t)g->n[1] + 1;
   fputs("y_over_h[-],y_plus[-]", out);
+  /* Head line, and all profiles at once. */
   for (int c = 0; c < n_columns; c++) {
     fprintf(out, ",%s[-],%s_ci95[-]", columns[c].name, columns[c].name);
     bw_ns_statistics_profile(f->statistics, columns[c].kind, true, work + (size_t)c * rows);
   }
+  /* The lower half: folded profiles are symmetric. */
   for (int j = faces ? 0 : 1; j <= (faces ? g->n[1] / 2 : (g->n[1] + 1) / 2); j++) {
     const double y = faces ? g->y_face[j] : g->y_centre[j];
     fprintf(out, "\n%.9g,%.9g", y, y * u_tau * re);
@@ -118,6 +121,7 @@ static void write_scalars(FILE *out, const channel_flow *f, bw_ns_estimate work[
 {
   const int n = f->config->cells[1];
   const double half = 0.5 * f->config->reynolds;
+  /* Everything in wall units follows from u_tau. */
   const bw_ns_estimate u = channel_u_tau(f, work);
   bw_ns_statistics_profile(f->statistics, BW_NS_PROFILE_U, true, work);
   const int c = (n + 1) / 2;
@@ -146,6 +150,7 @@ static bw_status put_columns(bw_checkpoint *ck, const channel_flow *f, bool face
   const int first = faces ? 0 : 1, rows = faces ? g->n[1] / 2 + 1 : (g->n[1] + 1) / 2;
   double *error = numbers + g->n[1] + 1;
   char name[96];
+  /* Heights first, then a pair of arrays per column. */
   for (int j = 0; j < rows; j++)
     numbers[j] = faces ? g->y_face[j] : g->y_centre[j + 1];
   snprintf(name, sizeof name, "%s/y_over_h", folder);
@@ -165,6 +170,7 @@ static bw_status put_columns(bw_checkpoint *ck, const channel_flow *f, bool face
 
 bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck)
 {
+  /* Without two batches there is no interval. */
   if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;
   const size_t rows = (size_t)f->config->cells[1] + 1;
   bw_ns_estimate *work = NULL;
@@ -174,6 +180,7 @@ bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck)
   st = bw_comm_agree(bw_grid_comm(f->grid), st);
   BW_THEN(st, put_columns(ck, f, false, CENTRES, centre_columns, work, numbers));
   BW_THEN(st, put_columns(ck, f, true, FACES, face_columns, work, numbers));
+  /* The unit of all others, with its own interval. */
   if (st == BW_OK) {
     const bw_ns_estimate u = channel_u_tau(f, work);
     const double re_tau[2] = {0.5 * f->config->reynolds * u.mean,
@@ -192,6 +199,7 @@ bw_status channel_profiles(channel_flow *f, const bw_case *run)
   if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;
   bw_ns_estimate *work = NULL;
   bw_status st = BW_ALLOCATE(&work, (size_t)CENTRES * (size_t)(f->config->cells[1] + 1));
+  /* All ranks hold the sums; one writes. */
   for (int q = 0; q < 3 && st == BW_OK && bw_comm_rank(comm) == 0; q++) {
     char *path = NULL;
     st = bw_case_path(run, names[q], &path);

@@ -20,6 +20,7 @@ static void fill_column(const channel_flow *f, int table, int c, double u_tau, d
   const int d = tables[table].direction, lags = f->config->cells[d] / 2 + 1;
   for (int r = 0; r < lags; r++)
     of[r] = 0.0;
+  /* A plane and its mirror image in the other half. */
   for (int side = 0; side < 2; side++) {
     const int plane = c / 3 + side * CHANNEL_HEIGHTS;
     if (tables[table].spectrum)
@@ -29,6 +30,7 @@ static void fill_column(const channel_flow *f, int table, int c, double u_tau, d
     for (int r = 0; r < lags; r++)
       of[r] += 0.5 * half[r];
   }
+  /* Correlations over R(0), spectra per wave number over u_tau^2. */
   const double band = 2.0 * acos(-1.0) / f->config->length[d];
   const double unit = tables[table].spectrum ? band * u_tau * u_tau : of[0];
   for (int r = 0; r < lags; r++)
@@ -54,12 +56,14 @@ static void write_table(FILE *out, const channel_flow *f, int table, double u_ta
 {
   const int lags = f->config->cells[tables[table].direction] / 2 + 1;
   fputs(tables[table].spectrum ? "k_h[-]" : "r_over_h[-]", out);
+  /* Head line, and all columns at once. */
   for (int c = 0; c < COLUMNS; c++) {
     char name[32];
     column_name(c, sizeof name, name);
     fprintf(out, ",%s[-]", name);
     fill_column(f, table, c, u_tau, column + c * lags, column + COLUMNS * lags);
   }
+  /* k = 0 does not fit a logarithmic axis; r = 0 is 1. */
   for (int r = tables[table].spectrum ? 1 : 0; r < lags; r++) {
     fprintf(out, "\n%.9g", abscissa(f, table, r));
     for (int c = 0; c < COLUMNS; c++)
@@ -109,6 +113,7 @@ static bw_status put_table(bw_checkpoint *ck, const channel_flow *f, int table, 
 static bw_status each_table(channel_flow *f, const bw_case *run, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(f->grid);
+  /* Before the first sample there is nothing to divide by. */
   if (bw_ns_correlations_samples(f->correlations) == 0) return BW_OK;
   const int *n = f->config->cells, most = (n[0] > n[2] ? n[0] : n[2]) / 2 + 1;
   double *column = NULL;
@@ -116,6 +121,7 @@ static bw_status each_table(channel_flow *f, const bw_case *run, bw_checkpoint *
   bw_status st = BW_ALLOCATE(&column, (size_t)most * (COLUMNS + 1));
   BW_THEN(st, BW_ALLOCATE(&rows, (size_t)n[1] + 1));
   st = bw_comm_agree(comm, st);
+  /* All ranks make the same columns; csv is written by one, HDF5 by all. */
   const double u_tau = st == BW_OK ? channel_u_tau(f, rows).mean : 0.0;
   for (int q = 0; q < TABLES && st == BW_OK; q++)
     if (ck != NULL)

@@ -46,12 +46,14 @@ static bw_status run_to_end(channel_flow *f, const channel_case *c, const bw_cas
   about.time_start = (double)f->intervals * interval, about.time_end = (double)end * interval;
   bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
   for (bool stop = false; st == BW_OK && !stop && f->intervals < end;) {
+    /* One interval; everything else happens between two. */
     st = channel_advance(f);
     if (st != BW_OK) break;
     const double re_tau = channel_record(f, history);
     bw_progress_update(line, f->steps, bw_ns_channel_time(f->fluid), "Re_tau %.1f, %ld samples",
                        re_tau, bw_ns_statistics_samples(f->statistics));
     stop = bw_stop_requested(comm);
+    /* Also when asked to stop: nothing of the run is lost. */
     if (stop || f->intervals % every == 0 || f->intervals == end) st = save(f, run);
     if (stop) bw_log_warn(bw_case_log(run), "asked to stop: continue with --restart checkpoint.h5");
   }
@@ -68,6 +70,7 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   channel_flow f;
   bw_status st = channel_create(comm, &config, &f);
   if (st == BW_OK) channel_describe(&f, c, bw_case_log(run));
+  /* --check has built and described everything, and ends. */
   if (st == BW_OK && !args->check) {
     bw_stop_install();
     st = args->restart != NULL ? channel_load(&f, args->restart) : channel_start(&f);

@@ -54,6 +54,7 @@ static inline bw_status body_flow_box(const bw_comm *comm, const body_box *b, bo
   const bw_ibm_mdf_config body = {b->kernel, b->n_iter};
   *f = (body_flow){0};
   grid.halo = 2;
+  /* A flat box is one periodic cell deep. */
   for (int d = 0; d < 3; d++) {
     grid.n[d] = b->n[d];
     grid.length[d] = b->n[d] * b->h;
@@ -82,12 +83,15 @@ static inline bw_status body_flow_step(body_flow *f)
   bw_real *const *u = bw_ns_channel_velocity(f->fluid);
   const size_t size = bw_grid_look(f->grid)->size;
   BW_TRY(bw_ns_channel_check(f->fluid, f->dt));
+  /* The markers' force is summed over the three sub-steps. */
   bw_ibm_mdf_begin_step(f->body);
   for (int r = 0; r < 3; r++) {
     bw_ns_channel_predict(f->fluid, r, f->dt);
+    /* A body force acts as the pressure gradient does, with gamma_r dt. */
     for (int d = 0; d < 3; d++) /* halos too: predict leaves them valid */
       for (size_t q = 0; f->drive[d] != NULL && q < size; q++)
         u[d][q] += (bw_real)(gamma[r] * f->dt) * f->drive[d][q];
+    /* No slip, with the full dt (ERRATA 18). */
     bw_ibm_mdf_force(f->body, u, f->dt);
     bw_ns_channel_project(f->fluid, r, f->dt);
     for (size_t q = 0; q < size; q++)
@@ -138,6 +142,7 @@ static inline void body_circle(body_surface *s, size_t from, size_t n, const dou
 {
   const double turn = 2.0 * acos(-1.0) / (double)n;
   for (size_t q = 0; q < n && from + q < s->n; q++) {
+    /* Half a spacing off the axes, so that no point lies on the line of symmetry. */
     const double c = cos(turn * ((double)q + 0.5)), d = sin(turn * ((double)q + 0.5));
     double *X = s->X + 3 * (from + q), *N = s->N + 3 * (from + q);
     X[0] = centre[0] + R * c, X[1] = centre[1] + R * d, X[2] = 0.5 * h;
@@ -158,6 +163,7 @@ static inline void body_sphere(body_surface *s, const double centre[3], double R
 {
   const double pi = acos(-1.0), golden = pi * (3.0 - sqrt(5.0));
   for (size_t q = 0; q < s->n; q++) {
+    /* Equal steps in height are equal areas; turned by the golden angle the points are even. */
     const double z = 1.0 - (2.0 * (double)q + 1.0) / (double)s->n, r = sqrt(1.0 - z * z);
     const double N[3] = {r * cos(golden * (double)q), r * sin(golden * (double)q), z};
     for (int d = 0; d < 3; d++) {

@@ -75,6 +75,7 @@ static bw_status write_wall(cylinder_flow *f, const char *path)
   BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s", path);
   fprintf(out, "theta[deg],p[rho U_b^2],tau[rho U_b^2]\n");
   for (size_t q = 0; q < f->wall.n; q++) {
+    /* p = -t.n, and the part of t along the wall, clockwise from the front. */
     const double *n = f->wall.N + 3 * q, *t = f->traction + 3 * q;
     fprintf(out, "%.4f,%.8g,%.8g\n", atan2(n[1], -n[0]) * 180.0 / acos(-1.0),
             -(t[0] * n[0] + t[1] * n[1]), t[0] * n[1] - t[1] * n[0]);
@@ -93,6 +94,7 @@ bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
   bw_status st = bw_case_path(run, "wall.csv", &wall);
   BW_THEN(st, bw_case_path(run, "fluid.vti", &fluid));
   BW_THEN(st, bw_case_path(run, "body.vtp", &body));
+  /* Traction by the parabola, from the pressure that acted; rank 0 has all points. */
   if (st == BW_OK) {
     bw_probe_traction(f->probe[BW_PROBE_QUADRATIC], u, p, NULL, f->traction, NULL);
     if (bw_comm_rank(comm) == 0) st = write_wall(f, wall);

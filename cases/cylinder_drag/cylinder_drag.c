@@ -16,6 +16,7 @@ static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case
   bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
   double t = 0.0, last = HUGE_VAL;
   for (bool steady = false; st == BW_OK && !steady && t < c->until.latest;) {
+    /* A sample per interval; steady is when two of them agree. */
     st = cylinder_advance(f, c->until.interval);
     if (st != BW_OK || bw_stop_requested(comm)) break;
     const cylinder_drag d = cylinder_measure(f);
@@ -50,6 +51,7 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
              "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = cylinder_create(comm, &c->cylinder, &f);
   if (st == BW_OK) cylinder_describe(&f, c, bw_case_log(run));
+  /* --check has built and described everything, and ends. */
   if (st == BW_OK && !args->check) {
     bw_stop_install();
     st = cylinder_open_history(comm, run, &history);

@@ -75,6 +75,7 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   const cylinder_config *c = &f->config;
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config fluid = bw_ns_channel_config_default();
+  /* Lengths in diameters; the channel is rounded to whole cells. */
   f->h = 1.0 / c->cells_per_diameter;
   double height = 1.0 / c->blockage;
   grid.n[0] = (int)lround((c->upstream + c->downstream) * c->cells_per_diameter);
@@ -87,6 +88,7 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   height = grid.length[1];
   BW_TRY(bw_grid_create(comm, &grid, &f->flow.grid));
 
+  /* U_b = d = 1. Laminar inflow, convective outflow, walls. */
   fluid.nu = 1.0 / c->reynolds;
   fluid.side[0][0].kind = BW_SIDE_INFLOW;
   fluid.side[0][0].profile = BW_PROFILE_POISEUILLE;
@@ -97,6 +99,7 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   BW_TRY(bw_ns_channel_create(f->flow.grid, &fluid, &f->flow.fluid));
   BW_TRY(bw_ns_channel_set_velocity(f->flow.fluid, cylinder_poiseuille, &height, 0.0));
 
+  /* Momentum is balanced over a box of two diameters about the cylinder. */
   const int size = c->cells_per_diameter;
   const int x = (int)lround(c->upstream * size), y = grid.n[1] / 2;
   return bw_ns_channel_watch_box(f->flow.fluid, (int[3]){x - size, y - size, 0},
@@ -120,6 +123,7 @@ static inline bw_status cylinder_make_body(const bw_comm *comm, cylinder_flow *f
   config.kernel = (bw_kernel_delta_id)f->config.kernel;
   config.n_iter = f->config.n_iter;
   BW_TRY(bw_ibm_mdf_create(f->flow.grid, &config, &f->flow.body));
+  /* Markers stand inside the nominal surface (ERRATA 21). */
   if (isnan(f->config.retraction)) f->config.retraction = bw_ibm_mdf_retraction(&config);
   body_surface markers = {0};
   bw_status st = cylinder_surface(comm, f, 0.5 - f->config.retraction * f->h, &markers);
@@ -133,6 +137,7 @@ static inline bw_status cylinder_make_probes(const bw_comm *comm, cylinder_flow 
   BW_TRY(cylinder_surface(comm, f, 0.5, &f->wall)); /* nominal surface, d = 1 */
   BW_TRY(BW_ALLOCATE(&f->traction, 3 * f->wall.n));
   f->area = acos(-1.0) / (double)body_circle_size(0.5, f->h) * f->h;
+  /* Both profiles read the same flow. */
   for (int p = 0; p < 2; p++) {
     bw_probe_config config = bw_probe_config_default();
     config.rho = 1.0;
@@ -162,10 +167,12 @@ static inline cylinder_drag cylinder_measure(cylinder_flow *f)
   const double scale = 2.0 / f->h; /* 1/(0.5 rho U_b^2 d depth) */
   bw_real *const *u = bw_ns_channel_velocity(f->flow.fluid);
   const bw_ibm_mdf_report r = bw_ibm_mdf_measure(f->flow.body, u);
+  /* Force of the markers on the fluid, reversed (ERRATA 18). */
   cylinder_drag drag = {.reaction = -scale * r.total_force[0], .slip = r.slip_after};
   double box[3];
   bw_ns_channel_control_volume(f->flow.fluid, box);
   drag.control_volume = -scale * box[0];
+  /* Traction times area, from the pressure that acted over the step. */
   for (int p = 0; p < 2; p++) {
     bw_probe_traction(f->probe[p], u, f->flow.pressure, NULL, f->traction, NULL);
     for (size_t q = 0; q < f->wall.n; q++)

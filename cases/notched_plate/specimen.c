@@ -18,6 +18,7 @@ static bool loaded(const specimen *p, const specimen_load *load, const double x[
 {
   double depth, along;
   edge_place(&p->config, load->edge, x, &depth, &along);
+  /* Sites on the border of the rows or of the loaded part are outside it. */
   const double tie = TIE * p->ds;
   return depth < load->rows * p->ds - tie && along > load->from + tie && along < load->to - tie;
 }
@@ -58,6 +59,7 @@ static bw_pd_bond_config material(const specimen *p)
 {
   const specimen_solid *s = &p->config.solid;
   const specimen_shape *shape = &p->config.shape;
+  /* The lattice's axes, turned; the plate itself is not. */
   const double turn = shape->lattice_angle * acos(-1.0) / 180.0;
   const double e[2] = {cos(turn), sin(turn)};
   bw_pd_bond_config c = bw_pd_bond_config_default();
@@ -75,6 +77,7 @@ static bw_pd_bond_config material(const specimen *p)
   c.disorder = s->disorder;
   c.disorder_seed = s->disorder_seed;
   c.contact = s->contact;
+  /* Rows of a rotation in the plane. */
   c.axes[0][0] = e[0], c.axes[0][1] = e[1];
   c.axes[1][0] = -e[1], c.axes[1][1] = e[0];
   const double half[2] = {0.5 * shape->length, 0.5 * shape->height};
@@ -89,6 +92,7 @@ static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site
 {
   const specimen_shape *s = &p->config.shape;
   const int columns = (int)lround(s->length / p->ds), rows = (int)lround(s->height / p->ds);
+  /* A turned lattice needs sites far beyond its own rows and columns to cover the corners. */
   const int over = s->lattice_angle == 0.0 ? 0 : columns + rows;
   const int layers = c->geometry == BW_PD_3D ? (int)lround(s->thickness / p->ds) : 1;
   int64_t n = 0;
@@ -99,6 +103,7 @@ static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site
         double x[3] = {0.0, 0.0, 0.0};
         for (int d = 0; d < 2; d++)
           x[d] = c->origin[d] + at[0] * c->axes[0][d] + at[1] * c->axes[1][d];
+        /* Outside the plate, or in a hole. */
         if (!inside(p, x)) continue;
         if (site != NULL) {
           site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
@@ -115,6 +120,7 @@ static bw_status cut_notches(specimen *p)
   for (int q = 0; q < p->config.n_notches; q++) {
     const specimen_notch *k = &p->config.notches[q];
     const double below = -p->ds, above = p->config.shape.thickness + p->ds;
+    /* A line in the plane; in three dimensions a rectangle through the thickness. */
     const bool solid = p->config.solid.geometry == BW_PD_3D;
     const double z = solid ? below : 0.0;
     const double a[3] = {k->from[0], k->from[1], z}, b[3] = {k->to[0], k->to[1], z};
@@ -137,6 +143,7 @@ static bw_status own_loads(specimen *p, const uint8_t all[])
 static bw_status make_solid(specimen *p)
 {
   const bw_pd_bond_config c = material(p);
+  /* Counted first, then listed. */
   const int64_t n = scan(p, &c, NULL, NULL, NULL);
   BW_REQUIRE(n > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
              p->config.shape.thickness, p->ds);
@@ -147,6 +154,7 @@ static bw_status make_solid(specimen *p)
   BW_THEN(st, BW_ALLOCATE(&kind, (size_t)n));
   st = bw_comm_agree(p->comm, st);
   if (st == BW_OK) (void)scan(p, &c, site, loads, kind);
+  /* Every rank has the whole list; the solid divides it. */
   BW_THEN(st, bw_pd_bond_create(p->comm, &c, n, site, kind, &p->solid));
   BW_THEN(st, own_loads(p, loads));
   BW_THEN(st, cut_notches(p));
@@ -164,6 +172,7 @@ static void share_tractions(specimen *p)
   const bool solid = p->config.solid.geometry == BW_PD_3D;
   const double depth = solid ? p->ds * round(s->thickness / p->ds) : s->thickness;
   int64_t count[SPECIMEN_LOADS] = {0};
+  /* Who takes the load, on all ranks. */
   for (int q = 0; q < p->config.n_loads; q++)
     for (size_t h = 0; h < p->n; h++)
       count[q] += p->loads[h] >> q & 1;
@@ -172,6 +181,7 @@ static void share_tractions(specimen *p)
     const specimen_load *load = &p->config.loads[q];
     const bool upright = load->edge == SPECIMEN_LEFT || load->edge == SPECIMEN_RIGHT;
     const double length = upright ? s->height : s->length;
+    /* Loaded length times depth is the area; its force is shared equally by volume. */
     const double part = fmin(load->to, length) - fmax(load->from, 0.0);
     const double volume = (double)count[q] * bw_pd_bond_volume(p->solid);
     p->share[q] = count[q] > 0 ? part * depth / volume : 0.0;
@@ -186,6 +196,7 @@ static void apply_traction(specimen *p)
   for (int q = 0; q < p->config.n_loads; q++) {
     const specimen_load *load = &p->config.loads[q];
     if (load->kind != SPECIMEN_TRACTION) continue;
+    /* Share of the final value at this time. */
     const double part = load->rise > 0.0 ? fmin(1.0, p->time / load->rise) : 1.0;
     p->rising = p->rising || part < 1.0;
     for (size_t h = 0; h < p->n; h++)
@@ -204,6 +215,7 @@ static bw_status apply_velocity(specimen *p)
   BW_THEN(st, BW_ALLOCATE(&V, 3 * p->n));
   st = bw_comm_agree(p->comm, st);
   if (st == BW_OK) {
+    /* Held velocities and those given at the start; all others begin at rest. */
     for (int q = 0; q < p->config.n_loads; q++) {
       const specimen_load *load = &p->config.loads[q];
       for (size_t h = 0; load->kind != SPECIMEN_TRACTION && h < p->n; h++)
@@ -253,6 +265,7 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   BW_TRY(check(&p->config));
   p->ds = config->shape.length / config->shape.particles;
   p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, NAN, 0.0};
+  /* Particles and cut notches; nothing acts yet. */
   BW_TRY(make_solid(p));
   bw_status st = BW_ALLOCATE(&p->X0, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&p->damage, p->n));
@@ -262,9 +275,11 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   BW_THEN(st, bw_pd_crack_track_note(&p->track, 0.0, 0.0));
   BW_TRY(bw_comm_agree(comm, st));
   bw_pd_bond_get_reference(p->solid, p->X0);
+  /* Loads at t = 0. */
   share_tractions(p);
   apply_traction(p);
   BW_TRY(apply_velocity(p));
+  /* What the notches cracked is no part of the crack that is followed. */
   bw_pd_bond_get_damage(p->solid, p->damage);
   for (size_t h = 0; h < p->n; h++)
     p->notched[h] = p->damage[h] > BW_PD_CRACK_LEVEL;
@@ -285,6 +300,7 @@ bw_status specimen_step(specimen *p)
   BW_TRY(bw_pd_bond_step(p->solid, p->config.time.step));
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
+  /* A load that is complete need not be told again. */
   if (p->rising) apply_traction(p);
   if (p->steps % p->config.follow.every == 0) BW_TRY(specimen_look(p));
   return BW_OK;

@@ -16,9 +16,11 @@ bw_status specimen_find(specimen *p, bw_pd_crack *crack)
   const bw_pd_crack_config look = bw_pd_crack_config_default();
   const specimen_follow *f = &p->config.follow;
   bw_pd_bond_get_damage(p->solid, p->damage);
+  /* Notches do not count. */
   for (size_t h = 0; h < p->n; h++)
     if (p->notched[h]) p->damage[h] = 0.0;
   BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, crack));
+  /* The window first, then what hangs together with the notch's tip. */
   bw_pd_crack_crop(crack, f->lower, f->upper);
   return bw_comm_agree(p->comm, bw_pd_crack_join(crack, f->from[0], f->from[1], gap(p)));
 }
@@ -45,10 +47,12 @@ bw_status specimen_branches(specimen *p, specimen_fork *out)
   const double notch = p->config.follow.from[0] + 0.5 * p->ds;
   bw_pd_crack crack;
   BW_TRY(specimen_find(p, &crack));
+  /* Where it forks; branches are counted half way from there to the tip. */
   *out = (specimen_fork){.x = fork_of(p, &crack), .middle = {NAN, NAN}};
   const double from = isnan(out->x) ? notch : out->x, tip = p->crack.tip[0];
   const double station = from + p->ds * floor(0.5 * (tip - from) / p->ds);
   out->branches = bw_pd_crack_branches(&crack, station, 0.5 * p->ds, gap(p), 2, out->middle);
+  /* Just behind the fork and just before the tip. */
   out->angle_first = bw_pd_crack_angle(&crack, from, from + ANGLED, p->ds, gap(p));
   out->angle_last = bw_pd_crack_angle(&crack, tip - ANGLED, tip, p->ds, gap(p));
   bw_pd_crack_release(&crack);
@@ -61,6 +65,7 @@ static bool at_an_end(const specimen *p, const double x[2])
   const specimen_shape *s = &p->config.shape;
   const double near = 1.5 * p->ds;
   double gap = fmin(fmin(x[0], s->length - x[0]), fmin(x[1], s->height - x[1]));
+  /* A hole is an end as an edge is. */
   for (int q = 0; q < p->config.n_holes; q++) {
     const specimen_hole *o = &p->config.holes[q];
     gap = fmin(gap, hypot(x[0] - o->centre[0], x[1] - o->centre[1]) - o->radius);
@@ -80,10 +85,12 @@ static bw_status find_tip(specimen *p)
   bw_pd_crack crack;
   BW_TRY(specimen_find(p, &crack));
   double tip[2] = {NAN, NAN};
+  /* The farthest particle; reach never shrinks. */
   const double reach = bw_pd_crack_reach(&crack, f->from[0], f->from[1], tip);
   if (reach > c->reach) c->reach = reach, c->tip[0] = tip[0], c->tip[1] = tip[1];
   if (isnan(c->t_branch)) note_time(&c->t_branch, !isnan(fork_of(p, &crack)), p->time);
   bw_pd_crack_release(&crack);
+  /* Each moment is noted once, when it is first seen. */
   note_time(&c->t_start, c->reach > 1.5 * p->ds, p->time);
   note_time(&c->t_end, !isnan(c->t_start) && at_an_end(p, c->tip), p->time);
   return bw_comm_agree(p->comm, bw_pd_crack_track_note(&p->track, p->time, c->reach));
@@ -105,6 +112,7 @@ double specimen_speed(const specimen *p, double window)
 
 bw_status specimen_look(specimen *p)
 {
+  /* Where nothing broke the crack is where it was. */
   if (broke(p)) {
     note_time(&p->crack.t_first, true, p->time);
     BW_TRY(find_tip(p));

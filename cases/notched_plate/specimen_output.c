@@ -39,6 +39,7 @@ bw_status specimen_sample(specimen *p, bw_history *history)
   bw_pd_bond_ledger e;
   BW_TRY(bw_pd_bond_account(p->solid, &e));
   const specimen_crack *c = &p->crack;
+  /* What is left of the work is the error of the integration in time. */
   const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
   const double row[COLUMNS] = {p->time,    c->tip[0],        c->tip[1],         c->reach,
                                c->speed,   (double)e.broken, e.kinetic,         e.elastic,
@@ -53,6 +54,7 @@ static bw_status write_particles(specimen *p, const char *path)
   bw_status st = BW_ALLOCATE(&X, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&U, 3 * p->n));
   st = bw_comm_agree(p->comm, st);
+  /* Present places, with the displacement from the reference shape. */
   if (st == BW_OK) {
     bw_pd_bond_get_position(p->solid, X);
     bw_pd_bond_get_damage(p->solid, p->damage);
@@ -74,6 +76,7 @@ bw_status specimen_picture(specimen *p, const bw_case *run)
   bw_status st = bw_case_path(run, name, &path);
   BW_THEN(st, bw_case_path(run, "damage.pvd", &series));
   BW_THEN(st, write_particles(p, path));
+  /* The series names the file only after it is there. */
   BW_THEN(st, bw_vtk_series_add(p->comm, series, p->time, name));
   bw_release(&path);
   bw_release(&series);
@@ -86,6 +89,7 @@ static bw_status write_crack(specimen *p, const bw_pd_crack *crack, const char *
   char *text = NULL;
   bw_status st = bw_comm_agree(p->comm, BW_ALLOCATE(&text, ROW * (crack->n + 1)));
   if (st != BW_OK) return st;
+  /* One text, written by rank 0. */
   size_t used = (size_t)snprintf(text, ROW, "x[m],y[m]\n");
   for (size_t q = 0; q < crack->n; q++)
     used += (size_t)snprintf(text + used, ROW, "%.9g,%.9g\n", crack->s[q], crack->t[q]);
@@ -125,6 +129,7 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   specimen_fork fork;
   bw_pd_bond_ledger e;
   BW_TRY(bw_pd_bond_account(p->solid, &e));
+  /* Collective measures first, then the log of rank 0. */
   BW_TRY(specimen_fit(p, &line));
   BW_TRY(specimen_branches(p, &fork));
   bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",

@@ -17,9 +17,11 @@ static bw_status run_phase(porous_run *p)
   about.step_start = p->step, about.step_end = f->steps;
   about.time_start = bw_ns_channel_time(p->fluid);
   about.time_end = about.time_start + (double)(f->steps - p->step) * f->time_step;
+  /* What the solid may do in this phase. */
   porous_enter_phase(p);
   bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
   for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
+    /* Probes are read only in steps that are measured. */
     bw_coupler_watch(p->coupler, porous_sample_due(p));
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
     if (st != BW_OK) break;
@@ -29,6 +31,7 @@ static bw_status run_phase(porous_run *p)
     bw_progress_update(line, p->step, bw_ns_channel_time(p->fluid),
                        "%s, pressure drop %.2f p0, %.0f broken bonds", porous_phase_name[p->phase],
                        drop, p->broken);
+    /* A phase ends by its steps, or when the pressure drop rests. */
     done = p->step >= f->steps || porous_settled(p, drop);
     p->stopped = bw_stop_requested(p->comm);
   }
@@ -47,9 +50,11 @@ static bw_status end_phase(porous_run *p)
     bw_log_info(bw_case_log(p->run),
                 "steady flow: pressure drop %.1f p0 (POROUS, with pores it does not print: 190)",
                 porous_pressure_drop(p));
+  /* The state at the end, whatever the intervals were. */
   BW_TRY(porous_sample(p));
   BW_TRY(porous_picture(p));
   if (p->phase != PHASE_FLOW) BW_TRY(porous_stress_csv(p));
+  /* The checkpoint belongs to the beginning of the next phase. */
   snprintf(name, sizeof name, "checkpoint-%s.h5", porous_phase_name[p->phase]);
   p->phase++;
   p->step = 0;
@@ -64,12 +69,14 @@ static bw_status run_case(porous_run *p)
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(porous_restart(p, args->restart));
   BW_TRY(porous_open_history(p, args->restart != NULL ? bw_ns_channel_time(p->fluid) : NAN));
+  /* The first good state, for a divergence in the first steps. */
   bw_status st = porous_keep(p);
   bw_stop_install();
   while (st == BW_OK && p->phase < PHASE_COUNT && !p->stopped) {
     st = run_phase(p);
     BW_THEN(st, end_phase(p));
   }
+  /* Diverged: the last good state goes to disk, and the message says where. */
   if (st == BW_EDIVERGED || st == BW_ECFL) st = porous_save_last_good(p, st);
   BW_THEN(st, porous_fragments_csv(p));
   BW_THEN(st, porous_cost(p));

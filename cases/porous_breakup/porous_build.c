@@ -24,10 +24,12 @@ static bw_status build_fluid(porous_run *p)
   bw_grid_config grid = bw_grid_config_default();
   memcpy(grid.n, q->domain.cells, sizeof grid.n);
   memcpy(grid.length, q->domain.length, sizeof grid.length);
+  /* Markers and probes need a halo of two. */
   grid.periodic[2] = true;
   grid.halo = 2;
   BW_TRY(bw_grid_create(p->comm, &grid, &p->grid));
 
+  /* Laminar inflow, convective outflow, walls in y by default. */
   bw_ns_channel_config flow = bw_ns_channel_config_default();
   flow.nu = q->fluid.viscosity;
   flow.side[0][0] = (bw_ns_side){.kind = BW_SIDE_INFLOW,
@@ -42,6 +44,7 @@ static bw_status build_solid(porous_run *p)
 {
   const porous_config *q = p->config;
   bw_pd_bond_config solid = bw_pd_bond_config_default();
+  /* Particles at the fluid's spacing: ds = dx (ERRATA 17). */
   solid.ds = q->domain.length[1] / q->domain.cells[1];
   solid.horizon_ratio = q->solid.horizon_ratio;
   solid.rho = q->solid.density;
@@ -51,6 +54,7 @@ static bw_status build_solid(porous_run *p)
   solid.integrator = (bw_pd_integrator)q->solid.integrator;
   solid.damping_pair = q->solid.damping_pair;
   solid.contact = q->solid.contact;
+  /* Bonds cross the periodic seam as the fluid does. */
   solid.period[2] = q->domain.length[2];
   int64_t n = 0;
   int32_t *site = NULL;
@@ -99,6 +103,7 @@ static bw_status watch_medium(porous_run *p)
   const int first = (int)floor(q->medium.front / h + 0.5), clear = 2;
   const int last = (int)floor((q->medium.front + q->medium.length) / h + 0.5);
   const int n = q->domain.cells[0];
+  /* Two cells clear of the medium, where markers spread nothing. */
   const int lo[3] = {first - clear > 0 ? first - clear : 0, 0, 0};
   const int hi[3] = {last + clear < n ? last + clear : n, q->domain.cells[1], q->domain.cells[2]};
   return bw_ns_channel_watch_box(p->fluid, lo, hi);
@@ -106,11 +111,13 @@ static bw_status watch_medium(porous_run *p)
 
 bw_status porous_build(porous_run *p)
 {
+  /* Refused before anything is allocated. */
   BW_TRY(check_combinations(p->config));
   BW_TRY(build_fluid(p));
   BW_TRY(build_solid(p));
   BW_TRY(build_coupler(p));
   BW_TRY(watch_medium(p));
+  /* The flow begins uniform; the first phase waits until it has settled. */
   return bw_ns_channel_set_velocity(p->fluid, uniform_stream, (void *)(uintptr_t)p->config, 0.0);
 }
 
@@ -133,6 +140,7 @@ static bw_status describe_cost(porous_run *p)
   const double bonds = 2.0 * (double)e.bonds;
   double bytes = (double)bw_memory_resident(), seconds = 0.0;
   bw_comm_sum(p->comm, 1, &bytes);
+  /* Sub-steps of the solid dominate. */
   for (int k = 0; k < PHASE_COUNT; k++) {
     const porous_phase *f = porous_phase_of(p->config, k);
     const int substeps = k == PHASE_FLOW ? 0 : bw_coupler_substeps(p->coupler, f->time_step);
@@ -153,9 +161,11 @@ bw_status porous_describe(porous_run *p)
                          round(q->medium.length / q->domain.length[1] * q->domain.cells[1]) *
                          q->domain.cells[2];
   const int64_t total = bw_pd_bond_total(p->solid);
+  /* Sizes. */
   bw_log_info(log, "channel    %d x %d x %d cells, spacing %g m, %d ranks", q->domain.cells[0],
               q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
               bw_comm_size(p->comm));
+  /* Then the groups that the physics depends on, and each phase's step against its limit. */
   bw_log_info(log,
               "medium     %lld particles in the channel, %lld with the clamped layer; "
               "horizon/spacing %g",

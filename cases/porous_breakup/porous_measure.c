@@ -76,6 +76,7 @@ bool porous_settled(porous_run *p, double drop)
   const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
   const double elapsed = bw_ns_channel_time(p->fluid) - p->last_drop_time;
   if (elapsed < SETTLED_AFTER * t0) return false;
+  /* Relative change per h/U_b. */
   const double change = fabs(drop - p->last_drop) / fabs(drop) * t0 / elapsed;
   p->last_drop = drop;
   p->last_drop_time = bw_ns_channel_time(p->fluid);
@@ -87,6 +88,7 @@ bool porous_sample_due(const porous_run *p)
   const porous_config *q = p->config;
   const porous_phase *f = porous_phase_of(q, p->phase);
   const double t0 = q->domain.length[1] / q->fluid.bulk_velocity;
+  /* After the coming step, with half a step to spare against rounding. */
   const double elapsed = bw_ns_channel_time(p->fluid) + 1.5 * f->time_step - p->last_drop_time;
   return (p->step + 1) % q->output.sample_every == 0 || p->step + 1 >= f->steps ||
          elapsed >= SETTLED_AFTER * t0; /* the phase may end */
@@ -106,6 +108,7 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
     for (int d = 0; d < 3; d++)
       d2 += (x[d] - X0[3 * i + d]) * (x[d] - X0[3 * i + d]);
     most[1] = fmax(most[1], d2);
+    /* From here on the medium alone. */
     if (X0[3 * i + 1] < 0.0) continue; /* the clamped layer is not part of the medium */
     sums[0] += x[0] > lower && x[0] < upper && x[1] > 0.0 && x[1] < L[1];
     sums[1] += damage[i];
@@ -128,9 +131,11 @@ static bw_status measure_fragments(porous_run *p, double row[])
   bw_pd_fragment *piece = NULL;
   size_t n = 0, held = 0;
   BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece));
+  /* The piece that is held is no fragment. */
   for (size_t q = 0; p->config->medium.clamped_layers > 0 && q < n; q++)
     if (piece[q].label == 0) held = q;
   double detached = 0.0, largest = 0.0, fastest = 0.0;
+  /* How much has come off, the largest and the fastest piece. */
   for (size_t q = 0; q < n; q++) {
     const double *v = piece[q].velocity;
     if (q == held) continue;
@@ -151,6 +156,7 @@ static bw_status measure_solid(porous_run *p, double row[])
   const size_t n = bw_pd_bond_count(p->solid);
   bw_pd_bond_ledger e;
   BW_TRY(bw_pd_bond_account(p->solid, &e));
+  /* Warned once: from here on contact may have been overrun. */
   if (e.closest < BW_PD_TOO_CLOSE && !p->warned)
     bw_log_warn(bw_case_log(p->run),
                 "pieces hit each other so hard that particles came within %.2f of a spacing: they "
@@ -162,6 +168,7 @@ static bw_status measure_solid(porous_run *p, double row[])
   BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&damage, n));
   st = bw_comm_agree(p->comm, st);
+  /* The ledger and what the particles show. */
   if (st == BW_OK) {
     bw_pd_bond_get_position(p->solid, X);
     bw_pd_bond_get_reference(p->solid, X0);
@@ -195,6 +202,7 @@ static double permeability(const porous_config *q, double drop)
 bw_status porous_measure(porous_run *p, double row[COL_COUNT])
 {
   bw_coupler_report r;
+  /* Forces by three routes, slip, masses. */
   BW_TRY(bw_coupler_measure(p->coupler, &r));
   row[COL_TIME] = bw_ns_channel_time(p->fluid);
   row[COL_PHASE] = p->phase + 1;

@@ -56,6 +56,7 @@ static bw_status lattice(const porous_config *q, medium_body *b)
   const porous_medium *m = &q->medium;
   BW_TRY(check_lattice(q));
   BW_TRY(BW_ALLOCATE(&b->shape, 3));
+  /* A box, less spheres on the sites of a lattice. */
   b->shape[0] = box_of(q);
   b->shape[1] = (bw_shape){.kind = (bw_shape_kind)m->lattice,
                            .remove = true,
@@ -79,10 +80,13 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
   bw_shape *ball = NULL;
   int balls = 0, count = 0;
   c.radius_min = r->radius[0], c.radius_max = r->radius[1];
+  /* Any overlap is allowed, so places are independent of each other ... */
   c.gap = -2.0 * c.radius_max;
+  /* ... and a share `porosity` is in at least one ball when their volumes add up to this. */
   c.fraction = -log1p(-r->porosity);
   c.seed = (uint64_t)r->seed;
   c.periodic[2] = true;
+  /* Balls whose centre is outside still reach in. */
   for (int d = 0; d < 3; d++) {
     const double beyond = c.periodic[d] ? 0.0 : c.radius_max;
     c.lower[d] = box.lower[d] - beyond, c.upper[d] = box.upper[d] + beyond;
@@ -90,6 +94,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
   snprintf(b->key, sizeof b->key, "medium.random.porosity = %g", r->porosity);
   BW_TRY(bw_shape_pack_spheres(&c, &balls, &count, &ball));
   const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 2);
+  /* A box, less all balls; room for the slab that may follow. */
   if (st == BW_OK) {
     b->shape[0] = box;
     for (int k = 0; k < count; k++) {
@@ -123,6 +128,7 @@ static bw_status image(const porous_config *q, medium_body *b)
   snprintf(b->key, sizeof b->key, "medium.image.solid = [%g, %g] of %s", m->solid[0], m->solid[1],
            m->file);
   BW_TRY(bw_shape_mask_read_image(m->file, m->solid[0], m->solid[1], &b->mask));
+  /* An image smaller than the medium would leave a part of it empty. */
   for (int d = 0; d < 3; d++) {
     if (!isnan(m->voxel)) b->mask->spacing[d] = m->voxel;
     const double have = b->mask->spacing[d] * (double)b->mask->size[d];
@@ -150,6 +156,7 @@ static bw_status choose(const porous_medium *m, medium_way *way)
 {
   const bool pores = !isnan(m->pitch) || !isnan(m->radius_over_pitch);
   const int given = pores + m->has_random + m->has_image + m->has_surface;
+  /* Exactly one description of the pores. */
   BW_REQUIRE(
       given == 1, BW_EINPUT,
       "medium: %d of pitch with radius_over_pitch, random, image and surface are given; give "
@@ -182,9 +189,11 @@ static bool way_through(labyrinth *l)
 {
   size_t queued = 0;
   bool through = false;
+  /* Every open cell of the inflow is entered ... */
   for (int k = 0; k < l->n[2]; k++)
     for (int j = 0; j < l->n[1]; j++)
       enter(l, (int[3]){0, j, k}, &queued);
+  /* ... and the front moves on over faces until it reaches the outflow. */
   for (size_t next = 0; next < queued && !through; next++) {
     const size_t cell = l->queue[next], row = cell / (size_t)l->n[0];
     const int at[3] = {(int)(cell % (size_t)l->n[0]), (int)(row % (size_t)l->n[1]),
@@ -205,6 +214,7 @@ static bw_status check_way(const porous_config *q, const char *key, int64_t n, c
   const size_t cells = (size_t)l.n[0] * (size_t)l.n[1] * (size_t)l.n[2];
   bw_status st = BW_ALLOCATE(&l.closed, cells);
   BW_THEN(st, BW_ALLOCATE(&l.queue, cells));
+  /* Particles sit on the fluid's cells: a site is a cell. */
   for (int64_t k = 0; st == BW_OK && k < n; k++) {
     const int32_t *at = site + 3 * k;
     if (at[1] < 0) continue; /* the slab */
@@ -225,9 +235,11 @@ static bw_status fill(const porous_config *q, medium_way way, medium_body *b, in
 {
   static const double origin[3] = {0.0, 0.0, 0.0};
   BW_TRY(way(q, b));
+  /* The slab comes last: it is under the box and takes nothing from it. */
   if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
   BW_TRY(bw_shape_fill(b->count, b->shape, spacing(q), origin, false, n, site, kind));
   int64_t above = 0;
+  /* The slab alone is no medium. */
   for (int64_t k = 0; k < *n; k++)
     above += (*site)[3 * k + 1] >= 0;
   BW_REQUIRE(above > 0, BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores",
@@ -241,6 +253,7 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
   medium_way way = NULL;
   medium_body body = {0};
   *site = NULL, *kind = NULL;
+  /* Every rank makes the same list. */
   bw_status st = choose(&q->medium, &way);
   BW_THEN(st, fill(q, way, &body, n, site, kind));
   bw_release(&body.shape);

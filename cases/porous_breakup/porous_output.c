@@ -50,10 +50,12 @@ static bw_status write_solid(porous_run *p, const char *path)
   BW_THEN(st, BW_ALLOCATE(&U, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&damage, n));
   BW_THEN(st, BW_ALLOCATE(&piece, n));
+  /* What follows is collective. */
   st = bw_comm_agree(p->comm, st);
   BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), piece, &n_fragments,
                                         &fragments));
   BW_THEN(st, porous_tensors_make(p, &t));
+  /* Present places; U holds the reference shape until it is taken off. */
   if (st == BW_OK) {
     bw_pd_bond_get_position(p->solid, X);
     bw_pd_bond_get_velocity(p->solid, V);
@@ -90,6 +92,7 @@ static bw_status add_to_series(porous_run *p, const char *what, const char *exte
   snprintf(series, sizeof series, "%s.pvd", what);
   bw_status st = bw_case_path(p->run, name, &path);
   BW_THEN(st, bw_case_path(p->run, series, &series_path));
+  /* The series names the file only after it is there. */
   BW_THEN(st, write(p, path));
   BW_THEN(st, bw_vtk_series_add(p->comm, series_path, bw_ns_channel_time(p->fluid), name));
   bw_release(&path);
@@ -119,6 +122,7 @@ bw_status porous_keep(porous_run *p)
 bw_status porous_save_last_good(porous_run *p, bw_status cause)
 {
   char what[1024];
+  /* The message of the failure, before saving replaces it. */
   snprintf(what, sizeof what, "%s", bw_last_message());
   BW_TRY(porous_checkpoint(p, "checkpoint-good.h5", true));
   return BW_FAIL(cause,
@@ -139,6 +143,7 @@ bw_status porous_checkpoint(porous_run *p, const char *name, bool kept)
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "porous_breakup"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", N_PROGRESS,
                                         kept ? p->kept_progress : progress));
+  /* State and progress belong together: both of now, or both of the last good state. */
   BW_THEN(st, kept ? bw_coupler_save_kept(p->coupler, ck) : bw_coupler_save(p->coupler, ck));
   if (st == BW_OK) st = bw_checkpoint_close(&ck);
   bw_checkpoint_abandon(&ck);
@@ -170,6 +175,7 @@ bw_status porous_restart(porous_run *p, const char *path)
 bw_status porous_after_step(porous_run *p)
 {
   const porous_output *out = &p->config->output;
+  /* Good states first, so that a failure while writing leaves one. */
   if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
   if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
   if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
@@ -186,6 +192,7 @@ bw_status porous_fragments_csv(porous_run *p)
   char *path = NULL;
   bw_status st = bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece);
   BW_THEN(st, bw_case_path(p->run, "fragments.csv", &path));
+  /* All ranks have the list; one writes. */
   if (st == BW_OK && bw_comm_rank(p->comm) == 0) {
     FILE *f = fopen(path, "w");
     if (f == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);

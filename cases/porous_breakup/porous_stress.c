@@ -17,6 +17,7 @@ bw_status porous_tensors_make(porous_run *p, porous_tensors *t)
   BW_THEN(st, BW_ALLOCATE(&t->strain, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&t->von_mises, n));
   st = bw_comm_agree(p->comm, st);
+  /* One tensor after the other in the same array: stress, then strain from F. */
   if (st == BW_OK) {
     bw_pd_stress_compute(p->solid, F, tensor);
     bw_pd_stress_von_mises(n, tensor, t->von_mises);
@@ -55,8 +56,10 @@ static bw_status densities(const porous_run *p, const porous_tensors *t,
   bw_status st = BW_ALLOCATE(&value, n);
   BW_THEN(st, BW_ALLOCATE(&weight, n));
   st = bw_comm_agree(p->comm, st);
+  /* Clamped particles weigh nothing. */
   for (size_t i = 0; st == BW_OK && i < n; i++)
     weight[i] = (kind[i] & BW_PD_PRESCRIBED) == 0;
+  /* Each over the value at which a bond would break. */
   for (int c = 0; c < CURVES && st == BW_OK; c++) {
     for (size_t i = 0; i < n; i++) {
       const double of[CURVES] = {t->stress[3 * i], t->von_mises[i], t->strain[3 * i]};
@@ -77,8 +80,10 @@ bw_status porous_stress_csv(porous_run *p)
   char text[ROW * (BINS + 3)], name[64], *path = NULL;
   BW_TRY(porous_tensors_make(p, &t));
   bw_status st = densities(p, &t, density, outside);
+  /* The densities hold all that is needed. */
   porous_tensors_release(&t);
   BW_TRY(st);
+  /* All ranks make the same text; rank 0 writes it. */
   int used =
       snprintf(text, 3 * ROW,
                "# limit: stress %.9g Pa, strain %.9g; outside the range: %.3g %.3g %.3g\n"

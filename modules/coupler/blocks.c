@@ -32,6 +32,7 @@ static int8_t face_of(const double axes[3][3], const double N[3])
 {
   int best = 0;
   double most = 0.0;
+  /* A tie within rounding must not depend on the rank or the compiler: the first axis wins. */
   for (int d = 0; d < 3; d++) {
     const double along = axes[d][0] * N[0] + axes[d][1] * N[1] + axes[d][2] * N[2];
     if (fabs(along) > most + 1e-6) most = fabs(along), best = 2 * d + (along > 0.0);
@@ -44,10 +45,12 @@ static int64_t block_of(const bw_pd_bond_config *s, int k, const double X0[3])
 {
   int64_t packed = 0;
   for (int d = 0; d < 3; d++) {
+    /* Whole lattice steps from the origin, in the lattice's own axes. */
     double along = 0.0;
     for (int e = 0; e < 3; e++)
       along += (X0[e] - s->origin[e]) * s->axes[d][e];
     const double block = floor(floor(along / s->ds) / k);
+    /* Masked, as block numbers may be negative. */
     packed = (packed << BITS) | ((int64_t)block & (((int64_t)1 << BITS) - 1));
   }
   return packed;
@@ -64,6 +67,7 @@ bw_status bw_coupler__blocks_create(bw_coupler *c)
   BW_THEN(st, BW_ALLOCATE(&b->send, ROW * c->n));
   st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
   if (st != BW_OK) return st;
+  /* The first surface: faces and blocks belong to the reference shape and never change. */
   const bw_pd_surface surface = bw_pd_interface_surface(c->interface);
   bw_pd_bond_get_reference(c->solid, c->X);
   for (size_t i = 0; i < c->n; i++) {
@@ -80,6 +84,7 @@ bw_status bw_coupler__blocks_create(bw_coupler *c)
 static bool plan_is_stale(bw_coupler *c)
 {
   bw_coupler__blocks *b = &c->blocks;
+  /* The surface changed, or a particle on it lost a bond and gets a marker of its own. */
   double stale = b->n_surface != c->n_surface ||
                  memcmp(b->particle, c->particle, c->n_surface * sizeof *c->particle) != 0;
   if (stale == 0.0 && b->events != bw_pd_bond_events(c->solid)) stale = 1.0;
@@ -102,6 +107,7 @@ static int by_key_and_id(const void *a, const void *b)
 static int64_t key_of(const bw_coupler *c, int32_t p)
 {
   const bw_coupler__blocks *b = &c->blocks;
+  /* New faces and damaged particles move by themselves, so no block may speak for them. */
   if (b->face[p] < 0 || b->broken[p] > 0) return OWN_MARKER | bw_pd_bond_id(c->solid)[p];
   return ((int64_t)b->face[p] << (3 * BITS)) | b->block[p];
 }
@@ -125,10 +131,12 @@ static bw_status number_markers(bw_coupler__blocks *b, const int64_t received[])
   BW_THEN(st, BW_ALLOCATE(&b->marker, n));
   BW_THEN(st, BW_ALLOCATE(&b->receive, ROW * n));
   b->n = 0;
+  /* Sorted by block and id: neither order nor numbers depend on who sent a member. */
   for (size_t q = 0; st == BW_OK && q < n; q++)
     list[q] = (member_key){received[2 * q], received[2 * q + 1], (int32_t)q};
   if (st == BW_OK && n > 0) qsort(list, n, sizeof *list, by_key_and_id);
   for (size_t q = 0; st == BW_OK && q < n; q++) {
+    /* A new block begins: the next marker. */
     if (q == 0 || list[q].key != list[q - 1].key) b->n++;
     b->order[q] = list[q].member;
     b->marker[list[q].member] = (int32_t)(b->n - 1);
@@ -158,24 +166,29 @@ static bw_status make_plan(bw_coupler *c)
   bw_pd_bond_get_broken(c->solid, b->broken);
   bw_status st = BW_ALLOCATE(&rank, n);
   BW_THEN(st, BW_ALLOCATE(&send, 2 * n));
+  /* Members name their block; the rank that gathers it follows from the block alone. */
   for (size_t q = 0; st == BW_OK && q < n; q++) {
     send[2 * q] = key_of(c, c->particle[q]);
     send[2 * q + 1] = bw_pd_bond_id(c->solid)[c->particle[q]];
     rank[q] = rank_of(send[2 * q], bw_comm_size(comm));
   }
   st = bw_comm_agree(comm, st);
+  /* The old plan is for another surface. */
   bw_exchange_destroy(&b->plan);
   BW_THEN(st, bw_exchange_create(comm, n, rank, &b->plan));
+  /* Plans exist on all ranks: how many members each got decides the sizes. */
   if (st == BW_OK) {
     b->n_members = bw_exchange_received(b->plan);
     st = bw_comm_agree(comm, BW_ALLOCATE(&receive, 2 * b->n_members));
   }
   if (st == BW_OK) {
+    /* Each rank numbers the markers it will hand over. */
     bw_exchange_forward(b->plan, 2 * sizeof *send, send, receive);
     st = number_markers(b, receive);
     BW_THEN(st, allocate_markers(b));
     st = bw_comm_agree(comm, st);
   }
+  /* What plan_is_stale compares the next surface with. */
   memcpy(b->particle, c->particle, n * sizeof *c->particle);
   b->n_surface = n;
   b->events = bw_pd_bond_events(c->solid);
@@ -192,6 +205,7 @@ static void gather_markers(bw_coupler *c)
   memset(b->X, 0, 3 * b->n * sizeof *b->X);
   memset(b->V, 0, 3 * b->n * sizeof *b->V);
   memset(b->area, 0, b->n * sizeof *b->area);
+  /* In the fixed order of blocks and ids, so that sums are the same on any number of ranks. */
   for (size_t q = 0; q < b->n_members; q++) {
     const double *row = b->receive + ROW * b->order[q];
     const size_t m = (size_t)b->marker[b->order[q]];
@@ -202,6 +216,7 @@ static void gather_markers(bw_coupler *c)
     }
   }
   for (size_t m = 0; m < b->n; m++) {
+    /* Area of the block times the grid spacing is the marker's volume. */
     b->dV[m] = b->area[m] * c->h; /* ERRATA 17 */
     for (int d = 0; d < 3; d++)
       b->X[3 * m + d] /= b->area[m], b->V[3 * m + d] /= b->area[m];
@@ -212,6 +227,7 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c)
 {
   bw_coupler__blocks *b = &c->blocks;
   if (plan_is_stale(c)) BW_TRY(make_plan(c));
+  /* Area, place and velocity of each member to the rank of its marker. */
   for (size_t q = 0; q < c->n_surface; q++) {
     b->send[ROW * q] = c->area[q];
     memcpy(b->send + ROW * q + 1, c->marker_X + 3 * q, 3 * sizeof *b->send);
@@ -225,12 +241,14 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c)
 void bw_coupler__blocks_reaction(bw_coupler *c)
 {
   bw_coupler__blocks *b = &c->blocks;
+  /* Force of the step on the fluid, per marker. */
   bw_ibm_mdf_marker_force(c->ibm, b->force);
   for (size_t q = 0; q < b->n_members; q++) { /* the row's place is free: force per area */
     const size_t m = (size_t)b->marker[q];
     for (int d = 0; d < 3; d++)
       b->receive[3 * q + d] = -c->config.rho * b->force[3 * m + d] / b->area[m]; /* ERRATA 18 */
   }
+  /* Back to the members, who take it by their own share of the area. */
   bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, c->force);
   for (size_t q = 0; q < c->n_surface; q++)
     for (int d = 0; d < 3; d++)

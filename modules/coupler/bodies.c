@@ -19,6 +19,7 @@ bw_status bw_coupler__bodies_create(bw_coupler *c)
   const bool planar = bw_pd_bond_settings(c->solid)->geometry != BW_PD_3D;
   bw_pd_wall wall[BW_PD_WALLS];
   int n = 0;
+  /* The box lies where n.x > offset. Outflows let bodies pass, periodic sides are no walls. */
   for (int d = 0; d < (planar ? 2 : 3); d++)
     for (int s = 0; s < 2; s++) {
       const bw_ns_side_kind kind = fluid->side[d][s].kind;
@@ -30,6 +31,7 @@ bw_status bw_coupler__bodies_create(bw_coupler *c)
   bw_status st = BW_ALLOCATE(&c->stays, bw_pd_bond_get_extended(c->solid).n);
   BW_THEN(st, BW_ALLOCATE(&c->gone, c->n));
   BW_THEN(st, BW_ALLOCATE(&c->link, (size_t)bw_pd_bond_max_family(c->solid)));
+  /* Walls act through contact; without it there is nothing to tell the solid. */
   st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
   if (st != BW_OK || !bw_pd_bond_settings(c->solid)->contact) return st;
   return bw_pd_bond_set_walls(c->solid, n, wall);
@@ -51,8 +53,11 @@ void bw_coupler__push_solid(bw_coupler *c)
   const double excess = bw_pd_bond_settings(c->solid)->rho - c->config.rho;
   double more[3];
   for (int d = 0; d < 3; d++)
+    /* Weight less buoyancy. */
     more[d] = excess * c->config.gravity[d];
+  /* The gradient that drives the fluid pushes the solid's volume as well (ERRATA 31). */
   if (probed) more[0] += c->config.rho * bw_ns_channel_driving(c->fluid);
+  /* V is scratch here: velocities are read anew after the solid has moved. */
   for (size_t i = 0; i < c->n; i++)
     for (int d = 0; d < 3; d++)
       c->V[3 * i + d] = c->F[3 * i + d] + more[d];
@@ -63,6 +68,7 @@ void bw_coupler__push_solid(bw_coupler *c)
 static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  /* To leave, all of the cube has to be outside; to be inside, its centre. */
   const double half = open_only ? 0.5 * bw_pd_bond_settings(c->solid)->ds : 0.0;
   for (int d = 0; d < 3; d++) {
     if (g->periodic[d] || (g->n[d] == 1 && g->halo[d] == 0)) continue;
@@ -87,6 +93,7 @@ static int64_t find_beyond(bw_coupler *c)
   const uint8_t *kind = bw_pd_bond_kind(c->solid), settled = BW_PD_PRESCRIBED | BW_PD_RETIRED;
   int64_t n = 0;
   bw_pd_bond_get_position(c->solid, c->X);
+  /* Held particles stay, retired ones are gone already. */
   for (size_t i = 0; i < c->n; i++) {
     c->gone[i] = !(kind[i] & settled) && is_beyond(c, c->X + 3 * i, true);
     n += c->gone[i];
@@ -109,8 +116,11 @@ static bool is_kept(bw_coupler *c, size_t i)
 static int64_t keep_joined(bw_coupler *c)
 {
   int64_t count[2]; /* kept in this round, gone */
+  /* At first everything that is not beyond an outflow stays. */
   for (size_t i = 0; i < c->n; i++)
     c->stays[i] = !c->gone[i];
+  /* Staying spreads along bonds that hold, also to copies
+   * on other ranks, until it reaches nobody new. */
   do {
     bw_pd_bond_fill_extended(c->solid, sizeof *c->stays, c->stays, c->stays);
     memset(count, 0, sizeof count);
@@ -128,6 +138,7 @@ static int64_t keep_joined(bw_coupler *c)
 /* Pieces that are wholly beyond an outflow are retired: they fly on and cost nothing. */
 bw_status bw_coupler__let_go(bw_coupler *c)
 {
+  /* Most steps end at the first of these questions. */
   if (!c->has_outflow || find_beyond(c) == 0 || keep_joined(c) == 0) return BW_OK;
   return bw_pd_bond_retire(c->solid, c->gone);
 }
@@ -139,6 +150,7 @@ void bw_coupler__count_mass(bw_coupler *c, double mass[3])
   const double of_one = bw_pd_bond_settings(c->solid)->rho * bw_pd_bond_volume(c->solid);
   int64_t count[3] = {0};
   bw_pd_bond_get_position(c->solid, c->X);
+  /* Counted, not summed: the three add up to all particles to the last bit. */
   for (size_t i = 0; i < c->n; i++) {
     const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, c->X + 3 * i, false);
     count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0]++;

@@ -22,6 +22,7 @@ bw_coupler_config bw_coupler_config_default(void)
 
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
 {
+  /* Required values start as NaN, which fails every comparison. */
   BW_REQUIRE(q->rho > 0.0, BW_EINPUT, "coupler: rho = %g: the fluid's density must be > 0", q->rho);
   BW_REQUIRE(q->nu > 0.0, BW_EINPUT, "coupler: nu = %g: the viscosity must be > 0", q->nu);
   BW_REQUIRE(q->solid_safety > 0.0 && q->solid_safety <= 1.0, BW_EINPUT,
@@ -37,6 +38,7 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
   BW_REQUIRE(q->marker_spacing >= 0.0 && q->marker_spacing <= 4.0, BW_EINPUT,
              "coupler: marker_spacing = %g grid spacings: must lie in [0, 4] (wider leaks)",
              q->marker_spacing);
+  /* Markers and probes reach two cells. */
   BW_REQUIRE(g->uniform_y && g->halo[1] >= 2, BW_EINPUT,
              "coupler: the grid must be uniform in y and have a halo of 2 (has %d)", g->halo[1]);
   return BW_OK;
@@ -51,11 +53,13 @@ static bw_status create_parts(bw_coupler *c)
   bw_pd_interface_config surface = bw_pd_interface_config_default();
   ibm.kernel = c->config.kernel;
   ibm.n_iter = c->config.iterations;
+  /* Left open: the retraction at which a cylinder's drag has no error (ERRATA 21). */
   if (isnan(c->config.retraction)) c->config.retraction = bw_ibm_mdf_retraction(&ibm);
   probe.length = c->config.probe_length;
   probe.profile = c->config.probe_profile;
   probe.rho = c->config.rho;
   probe.nu = c->config.nu;
+  /* The box of the fluid is that of the walls the solid leans on. */
   memcpy(surface.walled, c->config.walled, sizeof surface.walled);
   memcpy(surface.upper, g->length, sizeof surface.upper);
   memset(surface.lower, 0, sizeof surface.lower);
@@ -92,6 +96,7 @@ bw_timer *bw_coupler_timer(bw_coupler *c)
 static bw_status create_arrays(bw_coupler *c)
 {
   BW_TRY(bw_timer_create(BW_PART_COUNT, parts, &c->timer));
+  /* A row per particle suffices for ever: the surface can be no larger. */
   const size_t n = c->n = bw_pd_bond_count(c->solid);
   double **vector[N_VECTORS];
   list_vectors(c, vector);
@@ -101,6 +106,7 @@ static bw_status create_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
+  /* Iterations repeat a step from a state that has to be kept. */
   if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__iteration_create(c));
   BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &c->p_mean));
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
@@ -117,20 +123,25 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   bw_status st = BW_ALLOCATE(&c, 1);
   st = bw_comm_agree(bw_grid_comm(grid), st);
   if (st != BW_OK) return st;
+  /* From here on destroy can take the object, whatever is missing. */
   c->config = *config;
   c->fluid = fluid;
   c->solid = solid;
+  /* A solid at rest in a flow that settles: what most runs begin with. */
   c->held = c->watched = true;
   c->h = g->spacing[0];
+  /* Both ends of each bond are evaluated. */
   bw_pd_bond_ledger ledger = {0};
   st = bw_pd_bond_account(solid, &ledger);
   c->bonds = 2.0 * (double)ledger.bonds / bw_comm_size(bw_grid_comm(grid));
   BW_THEN(st, create_parts(c));
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
+  /* Whole particles share a marker; a spacing below one of theirs gives each its own. */
   const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
   c->block = (int)fmax(1.0, floor(k + 1e-9));
   BW_THEN(st, bw_coupler__bodies_create(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
+  /* Markers and probes stand where the solid is. */
   BW_THEN(st, bw_coupler__follow_surface(c));
   if (st != BW_OK) bw_coupler_destroy(&c);
   *out = c;

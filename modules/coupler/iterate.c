@@ -26,6 +26,7 @@ static const double THETA = 0.8;      /* ringing: -2/3 */
 bw_status bw_coupler__iteration_create(bw_coupler *c)
 {
   bw_coupler__iteration *t = &c->iteration;
+  /* The last try of a step teaches nothing, so there is a column less than tries. */
   const int most = c->config.coupling_iterations - 1;
   t->room = most < BW_COUPLER__COLUMNS ? most : BW_COUPLER__COLUMNS;
   BW_TRY(bw_coupler__state_create(c, &t->start));
@@ -68,10 +69,13 @@ static double compare(bw_coupler *c, double dt)
 {
   bw_coupler__iteration *t = &c->iteration;
   double *V = c->accel, sums[2] = {0.0, 0.0}; /* scratch */
+  /* The solid has answered: X_{n+1}, V_{n+1}. */
   bw_pd_bond_get_position(c->solid, c->X);
   bw_coupler__marker_velocity(c, V);
+  /* theta (X_{n+1} - X_n)/dt + (1 - theta) V_{n+1}, per particle. */
   for (size_t i = 0; i < 3 * c->n; i++)
     t->answer[i] = THETA * (c->X[i] - t->X[i]) / dt + (1.0 - THETA) * c->V[i];
+  /* At the markers: the same change as of the particle, on top of what its spin adds. */
   for (size_t q = 0; q < c->n_surface; q++)
     for (size_t d = 0; d < 3; d++) {
       const size_t i = 3 * q + d, p = 3 * (size_t)c->particle[q] + d;
@@ -80,6 +84,7 @@ static double compare(bw_coupler *c, double dt)
       sums[0] += t->residual[i] * t->residual[i];
       sums[1] += answer * answer;
     }
+  /* Relative to the answer, over all ranks. */
   bw_comm_sum(bw_pd_bond_comm(c->solid), 2, sums);
   return sums[0] > 0.0 ? sqrt(sums[0] / fmax(sums[1], 1e-300)) : 0.0;
 }
@@ -88,6 +93,7 @@ static double compare(bw_coupler *c, double dt)
 static void project(const bw_coupler *c, const double a[], double out[])
 {
   const bw_coupler__iteration *t = &c->iteration;
+  /* One message for all scalar products, that with itself included. */
   for (int i = 0; i <= t->columns; i++) {
     const double *b = i < t->columns ? t->q[i] : a;
     out[i] = 0.0;
@@ -110,6 +116,7 @@ static void learn(bw_coupler *c)
 {
   bw_coupler__iteration *t = &c->iteration;
   double f[BW_COUPLER__COLUMNS + 1], whole = 0.0, *q = t->q[t->columns], *d = t->d[t->columns];
+  /* dr: the new residual less the one before. */
   for (size_t k = 0; k < 3 * c->n_surface; k++)
     q[k] = t->residual[k] - q[k];
   for (int pass = 0; pass < 2; pass++) { /* Gram and Schmidt; once more for their rounding */
@@ -119,8 +126,10 @@ static void learn(bw_coupler *c)
     subtract(c, f, t->d, d);
   }
   project(c, q, f);
+  /* What dr has that earlier columns do not. */
   const double left = sqrt(f[t->columns]);
   if (!(left > LEAST_NEW * whole)) return;
+  /* q of length 1; d in the same combination, so that d is still the dV of this dr. */
   for (size_t k = 0; k < 3 * c->n_surface; k++)
     q[k] /= left, d[k] /= left;
   t->columns++;
@@ -144,15 +153,20 @@ static void improve(bw_coupler *c)
   const double omega = c->config.load_relaxation;
   double f[BW_COUPLER__COLUMNS + 1];
   forget(t);
+  /* The next column's place takes this try's dV and residual, from which `learn` makes it. */
   double *rest = t->q[t->columns], *dV = t->d[t->columns];
+  /* r = sum_i f_i q_i + rest: the first part is known to vanish with - sum_i f_i d_i. */
   project(c, t->residual, f);
   memcpy(rest, t->residual, 3 * c->n_surface * sizeof *rest);
   subtract(c, f, t->q, rest);
+  /* Of the rest nothing is known: it is relaxed. */
   for (size_t k = 0; k < 3 * c->n_surface; k++)
     dV[k] = omega * rest[k];
+  /* The quasi-Newton step for what is known. */
   subtract(c, f, t->d, dV);
   for (size_t k = 0; k < 3 * c->n_surface; k++)
     t->guess[k] += dV[k];
+  /* Kept for the difference with the residual of the next try. */
   memcpy(rest, t->residual, 3 * c->n_surface * sizeof *rest);
 }
 
@@ -160,23 +174,31 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
 {
   bw_coupler__iteration *t = &c->iteration;
   const bw_coupler__work work = c->work;
+  /* Every try begins here: fluid and solid at t, markers at the old surface. */
   bw_coupler__state_capture(c, &t->start);
   bw_pd_bond_get_position(c->solid, t->X);
+  /* The first guess: the surface moves on as it does. */
   memcpy(t->guess, c->marker_V, 3 * c->n_surface * sizeof *t->guess);
+  /* Columns of earlier steps are not used, so that a restart repeats the step exactly. */
   t->columns = 0;
   for (c->iterations = 1;; c->iterations++) {
+    /* Work is that of the try that counts, the last one. */
     c->work = work;
     BW_TRY(give_guess(c));
     BW_TRY(bw_coupler__advance_fluid(c, dt));
     BW_TRY(bw_coupler__load_solid(c, dt, 1.0));
     BW_TRY(bw_coupler__advance_solid(c, dt));
+    /* Does the surface move as the fluid was told? */
     c->residual = compare(c, dt);
     if (c->residual <= c->config.coupling_residual) break;
     if (c->iterations == c->config.coupling_iterations) break;
+    /* From the second try on there is a difference to learn from. */
     if (c->iterations > 1) learn(c);
     improve(c);
+    /* Back to t for another try; the last one is not undone. */
     BW_TRY(bw_coupler__state_restore(c, &t->start));
   }
+  /* A step that used up its tries is counted, not refused: the report tells. */
   c->unconverged += c->residual > c->config.coupling_residual;
   memcpy(c->V_before, t->answer, 3 * c->n * sizeof *c->V_before); /* what the fluid was told */
   return BW_OK;

@@ -28,22 +28,27 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .unconverged = c->unconverged};
   double box[3], mass[3];
   int64_t count[2];
+  /* Probes that load the solid were read in the step; others are read now, if p is known. */
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
   const bool known = probed || c->p_mean_known || !c->stepped;
   if (!probed && known) BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
+  /* Three routes: markers (ERRATA 18), probes, momentum of a box. */
   bw_ns_channel_control_volume(c->fluid, box);
   for (int d = 0; d < 3; d++) {
     r.force_reaction[d] = -c->config.rho * ibm.total_force[d];
     r.force_control_volume[d] = -c->config.rho * box[d];
     r.force_probe[d] = known ? c->force_probe[d] : NAN;
   }
+  /* This rank's shares; the sums over ranks follow. */
   for (size_t q = 0; q < c->n_surface; q++)
     r.surface_area += c->area[q];
+  /* The pressure that probes see lacks the gradient that drives the fluid (ERRATA 31). */
   r.force_probe[0] += c->config.rho * bw_ns_channel_driving(c->fluid) * bw_coupler__wetted(c);
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);
   bw_comm_sum(comm, 1, &r.work_late);
+  /* What is inside, passing out and gone. */
   bw_coupler__count_mass(c, mass);
   r.mass_inside = mass[0], r.mass_out = mass[1], r.mass_left = mass[2];
   count_probes(c, count);

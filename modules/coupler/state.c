@@ -31,6 +31,7 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
 {
   bw_real *field[N_FIELDS];
   list_fields(c, field);
+  /* In two dimensions there is no w. */
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
   BW_TRY(BW_ALLOCATE(&s->rows, BW_PD_RESTART_ROW * c->n));
@@ -43,15 +44,20 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   bw_real *field[N_FIELDS];
+  /* Fields with their halos, so that nothing has to be exchanged on the way back. */
   list_fields(c, field);
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) memcpy(s->field[q], field[q], g->size * sizeof *field[q]);
+  /* What else the fluid goes on from: time, and the gradient of a constant flow rate. */
   s->fluid_numbers[0] = bw_ns_channel_time(c->fluid);
   s->fluid_numbers[1] = bw_ns_channel_gradient(c->fluid);
+  /* The solid: motion and ledger as its restart wants them, and which bonds hold. */
   bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
+  /* Work is kept as the sum of all ranks, which a restart may divide otherwise. */
   s->work[0] = c->work.given, s->work[1] = c->work.late;
   bw_comm_sum(bw_pd_bond_comm(c->solid), 2, s->work);
   bw_pd_bond_get_bits(c->solid, s->bits);
+  /* The relaxed load and the velocity before belong to the state: both act in the next step. */
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   s->filled = true;
@@ -70,12 +76,14 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
   const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  /* Fields by global cells, particles by id: any number of ranks can read them. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
+  /* Everything of the particles, as rows. */
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(
@@ -89,12 +97,14 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
   const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  /* The mirror image of write_state, in the same order. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
+  /* Rows find their particles by id. */
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
                                  s->rows));
   BW_TRY(
@@ -111,10 +121,13 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   list_fields(c, field);
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) memcpy(field[q], s->field[q], g->size * sizeof *field[q]);
+  /* Numbers before refresh, which makes halos and the Courant number of this time. */
   bw_ns_channel_set_time(c->fluid, s->fluid_numbers[0]);
   bw_ns_channel_set_gradient(c->fluid, s->fluid_numbers[1]);
   bw_ns_channel_refresh(c->fluid);
+  /* Nothing that was derived from the other state may be used. */
   c->p_mean_known = c->stepped = c->motion_known = false;
+  /* The solid goes on to the same bits; the load that acts on it is part of what follows. */
   BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
   BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
@@ -138,10 +151,13 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
   if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, bw_coupler__state_create(c, &c->kept)));
+  /* Read as a whole first: a bad file leaves fluid and solid as they were. */
   BW_TRY(read_state(c, &c->kept, ck));
   c->kept.filled = true;
+  /* Work was saved as the sum of all ranks: one of them gets it. */
   const double own = bw_comm_rank(comm) == 0 ? 1.0 : 0.0;
   c->work = (bw_coupler__work){own * c->kept.work[0], own * c->kept.work[1]};
   BW_TRY(bw_coupler__state_restore(c, &c->kept));
+  /* The surface follows from bonds and places. */
   return bw_coupler__follow_surface(c);
 }

@@ -26,8 +26,10 @@ static void add_pressure(bw_coupler *c, int r)
   const bw_real *p = bw_ns_channel_pressure(c->fluid);
   const bw_real weight = (bw_real)gamma[r];
   bw_real *restrict mean = c->p_mean;
+  /* Until the third sub-step the mean is not complete. */
   c->p_mean_known = false;
   if (!bw_coupler__probes_look(c)) return;
+  /* Only the box that probes can read is gathered. */
   if (r == 0) bw_coupler__find_reach(c);
   for (int k = c->reach[2][0]; k <= c->reach[2][1]; k++)
     for (int j = c->reach[1][0]; j <= c->reach[1][1]; j++) {
@@ -45,6 +47,7 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   c->stepped = true;
   bw_timer_start(c->timer, BW_PART_FORCING);
+  /* Markers of the surface at t, with its velocity; their force of the step begins at zero. */
   const bw_status st = bw_coupler__place_markers(c);
   bw_ibm_mdf_begin_step(c->ibm);
   bw_timer_stop(c->timer, BW_PART_FORCING);
@@ -60,12 +63,14 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
     const double before = bw_ns_channel_cost(c->fluid).poisson;
     bw_ns_channel_project(c->fluid, r, dt); /* div u = 0, pressure updated */
     bw_timer_stop(c->timer, BW_PART_MOMENTUM);
+    /* The time of the Poisson solve is taken out of the projection's. */
     bw_timer_move(c->timer, BW_PART_MOMENTUM, BW_PART_POISSON,
                   bw_ns_channel_cost(c->fluid).poisson - before);
     bw_timer_start(c->timer, BW_PART_PROBES);
     add_pressure(c, r); /* what the probes will read */
     bw_timer_stop(c->timer, BW_PART_PROBES);
   }
+  /* u and p at t + dt. Are they finite, and is the step still possible? */
   return bw_ns_channel_check(c->fluid, dt);
 }
 
@@ -74,12 +79,16 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   bw_timer_start(c->timer, BW_PART_PROBES);
   const bool probes = c->config.load == BW_LOAD_PROBES;
   bw_status st = BW_OK;
+  /* The reaction loads the solid or tells the work that the fluid gave. */
   if (!probes || c->config.count_work) bw_coupler__reaction_force(c);
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
+  /* Forces act on the surface, outside the centres: they bring a moment with them. */
   bw_coupler__carry_force(c, probes ? 0.5 * bw_pd_bond_settings(c->solid)->ds
                                     : bw_coupler__marker_offset(c));
+  /* F' <- (1 - w) F' + w F against the added mass (bw_coupler.h). */
   bw_coupler__relax_load(c, dt, relaxation);
+  /* With weight and buoyancy: from here on the solid knows its load. */
   bw_coupler__push_solid(c);
   bw_timer_stop(c->timer, BW_PART_PROBES);
   return st;
@@ -91,9 +100,11 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
   const int substeps = bw_coupler_substeps(c, dt);
   bw_status st = BW_OK;
   bw_timer_start(c->timer, BW_PART_SOLID);
+  /* The surface's acceleration over the step will be told from it. */
   bw_pd_bond_get_velocity(c->solid, c->V_before);
   for (int q = 0; q < substeps; q++)
     BW_THEN(st, bw_pd_bond_step(c->solid, dt / substeps));
+  /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
   bw_timer_stop(c->timer, BW_PART_SOLID);
   return st;
@@ -115,6 +126,7 @@ static void count_work(bw_coupler *c, double dt)
   const bool rk3 = bw_pd_bond_settings(c->solid)->integrator == BW_PD_RK3;
   bw_timer_work(c->timer, BW_PART_MOMENTUM, cells);
   bw_timer_work(c->timer, BW_PART_POISSON, cells);
+  /* Three sub-steps, each with all iterations over all markers. */
   bw_timer_work(c->timer, BW_PART_FORCING,
                 3.0 * c->config.iterations * (double)(c->block > 1 ? c->blocks.n : c->n_surface));
   if (!c->held)
@@ -125,11 +137,14 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
 {
   if (dt != c->checked_dt)
     BW_TRY(bw_ns_channel_check(c->fluid, dt)); /* later: by the step before */
+  /* Every step ends with a check of the same dt. */
   c->checked_dt = dt;
   count_work(c, dt);
   c->iterations = 1;
+  /* A held solid: the fluid alone, around markers that do not move. */
   if (c->held) return bw_coupler__advance_fluid(c, dt);
   if (c->config.coupling_iterations > 1) {
+    /* The same phases, repeated until both sides agree. */
     BW_TRY(bw_coupler__iterate(c, dt));
   } else {
     BW_TRY(bw_coupler__advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */

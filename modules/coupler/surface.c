@@ -27,12 +27,14 @@ double bw_coupler__marker_offset(const bw_coupler *c)
  * their spin; computed once for each motion of the solid. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
 {
+  /* Collective, and therefore once for each motion of the solid. */
   if (!c->motion_known) {
     bw_pd_interface_turn(c->interface, c->turn);
     bw_pd_bond_get_velocity(c->solid, c->V);
     c->motion_known = true;
   }
   for (size_t q = 0; q < c->n_surface; q++) {
+    /* V + out spin x N: a surface that turns moves faster than its particles' centres. */
     const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
@@ -51,6 +53,7 @@ void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 void bw_coupler__tell_surface(bw_coupler *c, const double V[])
 {
   double *before = c->root_V; /* scratch */
+  /* What the markers do now; the difference is put on the particles' velocities. */
   bw_coupler__marker_velocity(c, before);
   for (size_t q = 0; q < c->n_surface; q++)
     for (size_t d = 0; d < 3; d++)
@@ -67,18 +70,21 @@ static void place(bw_coupler *c)
   size_t n = 0;
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
+    /* Ghost layers and what has left do not meet the fluid. */
     if (!within_box(g, X)) continue;
     for (int d = 0; d < 3; d++) {
       c->root[3 * n + d] = X[d] + out * N[d];
       c->marker_X[3 * n + d] = X[d] + in * N[d];
       c->normal[3 * n + d] = N[d];
     }
+    /* Rows of the surface are thinned out to those inside, which remember where they came from. */
     c->area[n] = s.A[q];
     c->marker_dV[n] = s.A[q] * c->h; /* ERRATA 17 */
     c->row[n] = (int32_t)q;
     c->particle[n++] = s.particle[q];
   }
   c->n_surface = n;
+  /* The surface has moved: its velocities are those of now. */
   c->motion_known = false;
   bw_coupler__marker_velocity(c, c->marker_V);
 }
@@ -88,6 +94,7 @@ static void place(bw_coupler *c)
 static bool inside_is_stale(bw_coupler *c)
 {
   const size_t n = c->n_surface;
+  /* Another set of particles is news at once; the same set as soon as it has moved. */
   const bool known = c->inside_known && n == c->n_inside &&
                      memcmp(c->particle_inside, c->particle, n * sizeof *c->particle) == 0;
   double moved = known ? 0.0 : INFINITY;
@@ -95,6 +102,7 @@ static bool inside_is_stale(bw_coupler *c)
     const double far = fabs(c->root[i] - c->root_inside[i]);
     moved = far > moved ? far : moved;
   }
+  /* All ranks mark anew or none does. */
   bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 1, &moved);
   return moved > 0.1 * c->h;
 }
@@ -124,23 +132,28 @@ static bw_status mark_inside(bw_coupler *c)
   bw_pd_bond_get_position(c->solid, c->X);
   bw_status st = BW_ALLOCATE(&owner, c->n);
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
+  /* Every particle, not only the surface, to the rank that owns its cell. */
   for (size_t p = 0; st == BW_OK && p < c->n; p++) {
     const int rank = within_box(g, c->X + 3 * p) ? bw_grid_owner(grid, c->X + 3 * p) : -1;
     if (rank < 0) continue;
     memcpy(send + 3 * n, c->X + 3 * p, 3 * sizeof *send);
     owner[n++] = rank;
   }
+  /* Only now may collective calls follow: an allocation may have failed on one rank. */
   st = bw_comm_agree(bw_grid_comm(grid), st);
   BW_THEN(st, bw_exchange_create(bw_grid_comm(grid), n, owner, &plan));
   BW_THEN(st,
           bw_comm_agree(bw_grid_comm(grid), BW_ALLOCATE(&receive, 3 * bw_exchange_received(plan))));
   if (st == BW_OK) {
     bw_exchange_forward(plan, 3 * sizeof *send, send, receive);
+    /* Cells with a particle in them are what a probe must
+     * not end in; halos too, as tips look there. */
     memset(c->inside, 0, g->size * sizeof *c->inside);
     for (size_t q = 0; q < bw_exchange_received(plan); q++)
       c->inside[cell_of(g, receive + 3 * q)] = 1;
     bw_halo_update(grid, 1, &c->inside);
     st = bw_comm_agree(bw_grid_comm(grid), bw_probe_set_obstacles(c->probe, c->inside));
+    /* What inside_is_stale will compare with. */
     memcpy(c->root_inside, c->root, 3 * c->n_surface * sizeof *c->root);
     memcpy(c->particle_inside, c->particle, c->n_surface * sizeof *c->particle);
     c->n_inside = c->n_surface;
@@ -155,9 +168,13 @@ static bw_status mark_inside(bw_coupler *c)
 
 bw_status bw_coupler__follow_surface(bw_coupler *c)
 {
+  /* Who is surface, where, with which normal. */
   BW_TRY(bw_pd_interface_update(c->interface));
+  /* Markers, roots, velocities of those inside the box. */
   place(c);
   if (c->block > 1) BW_TRY(bw_coupler__blocks_follow(c));
+  /* They are handed over at the next step's beginning:
+   * until then the old forces can be asked for. */
   c->markers_moved = true;
   bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
   return BW_OK;
@@ -178,6 +195,7 @@ void bw_coupler__find_reach(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   double far[6] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY};
+  /* Largest coordinates and largest negative ones: one maximum over ranks for both. */
   for (size_t q = 0; q < c->n_surface; q++)
     for (int d = 0; d < 3; d++) {
       far[d] = fmax(far[d], c->root[3 * q + d]);
@@ -185,9 +203,11 @@ void bw_coupler__find_reach(bw_coupler *c)
     }
   bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 6, far);
   for (int d = 0; d < 3; d++) {
+    /* A probe, and three cells for half a stencil, the kernel and what it moves in a step. */
     const double h = g->spacing[d], more = c->config.probe_length * c->h / h + 3.0;
     const int lowest = 1 - g->halo[d], highest = g->m[d] + g->halo[d];
     const double from = floor(-far[3 + d] / h - more), to = ceil(far[d] / h + more);
+    /* A box that crosses a periodic seam is seen from both ends: the whole direction. */
     const bool around = g->periodic[d] && (from < 1.0 || to > g->n[d]); /* seen from both ends */
     const bool none = !(from <= to);
     c->reach[d][0] = none || around ? lowest : (int)fmax(lowest, from - g->lo[d]);
@@ -201,10 +221,12 @@ void bw_coupler__find_reach(bw_coupler *c)
 static void surface_motion(bw_coupler *c, double dt)
 {
   const double drive[3] = {bw_ns_channel_driving(c->fluid)};
+  /* On the nominal surface, where probes begin. */
   bw_coupler__surface_velocity(c, 0.5 * bw_pd_bond_settings(c->solid)->ds, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (int d = 0; d < 3; d++) {
+      /* dU/dt of ERRATA 19, less the force per mass that p does not hold (ERRATA 31). */
       const double a = c->held ? 0.0 : (c->V[3 * p + d] - c->V_before[3 * p + d]) / dt;
       c->accel[3 * q + d] = a - drive[d];
     }
@@ -215,12 +237,16 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   const bw_real *p = c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
+  /* Obstacles before points: setting points decides which probes are shortened. */
   if (inside_is_stale(c)) BW_TRY(mark_inside(c));
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
+  /* Velocity, spin and acceleration of the roots. */
   surface_motion(c, dt);
   bw_probe_set_velocity(c->probe, c->root_V, c->spin);
+  /* t on each root (POROUS 3.83 to 3.94), from the pressure that acted over the step. */
   bw_probe_traction(c->probe, u, p, c->accel, c->traction, c->flag);
   bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
+  /* t A_h per surface particle; its sum is the second of the three routes. */
   memset(c->force_probe, 0, sizeof c->force_probe);
   for (size_t q = 0; q < c->n_surface; q++)
     for (int d = 0; d < 3; d++) {
@@ -232,6 +258,7 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 
 void bw_coupler__reaction_force(bw_coupler *c)
 {
+  /* A block's force goes back to its members. */
   if (c->block > 1) {
     bw_coupler__blocks_reaction(c);
     return;
@@ -263,6 +290,7 @@ void bw_coupler__carry_force(bw_coupler *c, double out)
 {
   memset(c->load, 0, 3 * c->n * sizeof *c->load);
   memset(c->moment, 0, 3 * c->n * sizeof *c->moment);
+  /* F on the particle and the moment out N x F on its row of the interface. */
   for (size_t q = 0; q < c->n_surface; q++) {
     const double *N = c->normal + 3 * q, *force = c->force + 3 * q;
     double *load = c->load + 3 * (size_t)c->particle[q],
@@ -273,6 +301,7 @@ void bw_coupler__carry_force(bw_coupler *c, double out)
       moment[d] = out * (N[e] * force[f] - N[f] * force[e]);
     }
   }
+  /* Moments become couples on the line elements that tell the spin: power stays what it is. */
   bw_pd_interface_twist(c->interface, c->moment, c->load);
 }
 
@@ -281,6 +310,7 @@ void bw_coupler__carry_force(bw_coupler *c, double out)
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
 {
   const double w = relaxation, volume = bw_pd_bond_volume(c->solid);
+  /* Power before and after give what of the new load is held back. */
   const double before = c->config.count_work ? power(c) : 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)
     c->F[i] = (1.0 - w) * c->F[i] + w * c->load[i] / volume;

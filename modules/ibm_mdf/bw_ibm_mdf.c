@@ -17,6 +17,7 @@ double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
       [BW_KERNEL_PESKIN4] = {0.48, 0.44, 0.42, 0.41},
       [BW_KERNEL_HAT2] = {0.26, 0.24, 0.23, 0.23},
   };
+  /* The columns double: n_iter from 2, 4, 8 on. */
   int column = 0;
   while (column < COLUMNS - 1 && config->n_iter >= 2 << column)
     column++;
@@ -27,6 +28,7 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
 {
   const bw_grid_view *g = bw_grid_look(grid);
   *out = NULL;
+  /* What follows from the arguments alone fails on every rank alike, before anything is agreed. */
   BW_REQUIRE(config->n_iter >= 1, BW_EINPUT, "n_iter: at least 1 forcing iteration, found %d",
              config->n_iter);
   BW_REQUIRE((int)config->kernel >= 0 && config->kernel < BW_KERNEL_COUNT, BW_EINPUT,
@@ -41,6 +43,7 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
       "the immersed boundary counts the cells of a rank in 31 bits, found %zu: use more ranks",
       g->size);
 
+  /* From here on a rank may fail alone, so every status is agreed. */
   bw_ibm_mdf *ib = NULL;
   bw_status st = BW_ALLOCATE(&ib, 1);
   BW_TRY(bw_comm_agree(bw_grid_comm(grid), st));
@@ -53,6 +56,8 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
   ib->n_iter = config->n_iter;
   ib->cell_volume = g->spacing[0] * g->spacing[1] * g->spacing[2];
   bw_ibm_mdf__find_blocks(ib);
+  /* Kernels are chosen once, by support and dimension, so
+   * that their loops have constant lengths. */
   ib->interpolate = bw_ibm_mdf__interpolator(ib->kernel->support, g->n[2] == 1);
   ib->spread = bw_ibm_mdf__spreader(ib->kernel->support, g->n[2] == 1);
   *out = ib;
@@ -65,6 +70,7 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib)
   bw_ibm_mdf *b = *ib;
   bw_exchange_destroy(&b->plan);
   bw_exchange_destroy(&b->image_plan);
+  /* All of them may be NULL: the object may be half built. */
   void *const arrays[] = {
       &b->sent_from, &b->destination, &b->item,   &b->answer, &b->received, &b->order, &b->swap,
       &b->key,       &b->key_swap,    &b->V,      &b->dV,     &b->QdV,      &b->reply, &b->cast_to,
@@ -102,11 +108,13 @@ static double velocity_to_force(bw_ibm_mdf *ib, const bw_ibm_mdf__stencils *s, d
   const double *restrict V = ib->V, *restrict dV = ib->dV;
   double *restrict QdV = ib->QdV, slip = 0.0;
   bw_real *restrict U = ib->U;
+  /* POROUS 3.80: Q += (V - U)/dt. U is not needed any more and takes what is spread. */
   for (size_t m = s->begin; m < s->end; m++)
     for (size_t i = 3 * m; i < 3 * m + 3; i++) {
       const double lack = V[i] - (double)U[i];
       slip += lack * lack;
       QdV[i] += lack * dV[m] * per_step;
+      /* dt Q dV/h^3: dt is the full one (ERRATA 18), dV area times spacing (ERRATA 17). */
       U[i] = (bw_real)(lack * dV[m] * per_volume);
     }
   return slip;
@@ -120,11 +128,13 @@ static double force_held(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
   enum { BEHIND = BW_KERNEL_MAX_SUPPORT };
   double slip = 0.0;
   for (int k = 0; k < ib->g->m[2] + BEHIND; k++) {
+    /* POROUS 3.79 at the markers of layer k, whose velocity nobody has changed yet. */
     if (k < ib->g->m[2]) {
       const bw_ibm_mdf__stencils s = stencils(ib, ib->layer[k], ib->layer[k + 1]);
       ib->interpolate(&s, u, ib->U);
       slip += velocity_to_force(ib, &s, dt);
     }
+    /* POROUS 3.81, 3.82 of a layer that no later marker reads. */
     if (k >= BEHIND) {
       const bw_ibm_mdf__stencils s = stencils(ib, ib->layer[k - BEHIND], ib->layer[k - BEHIND + 1]);
       ib->spread(&s, ib->U, u);
@@ -140,20 +150,24 @@ static double power_iteration(bw_ibm_mdf *ib, bw_real *field)
 {
   bw_real *const u[3] = {field, field, ib->g->n[2] == 1 ? NULL : field};
   double sum[3] = {0.0, 0.0, 0.0}; /* <x, x>, <x, Ax>, <Ax, Ax> */
+  /* A is applied to x by spreading it into an empty field and reading it back. */
   memset(field, 0, ib->g->size * sizeof *field);
   for (size_t m = 0; m < ib->held; m++) {
     ib->U[3 * m] = (bw_real)(ib->reply[m] * ib->dV[m] / ib->cell_volume);
     ib->U[3 * m + 1] = ib->U[3 * m + 2] = 0;
   }
+  /* Images spread for blocks whose halo a marker reaches, as in the forcing itself. */
   bw_ibm_mdf__give_images(ib);
   spread_from(ib, 0, u);
   gather_velocity(ib, u);
+  /* Rayleigh quotient in the scalar product in which A is self-adjoint. */
   for (size_t m = 0; m < ib->held; m++) {
     const double x = ib->reply[m], Ax = (double)ib->U[3 * m], dV = ib->dV[m];
     sum[0] += dV * x * x, sum[1] += dV * x * Ax, sum[2] += dV * Ax * Ax;
     ib->reply[m] = Ax;
   }
   bw_comm_sum(bw_grid_comm(ib->grid), 3, sum);
+  /* Normalised, so that repeated application neither over- nor underflows. */
   for (size_t m = 0; m < ib->held && sum[2] > 0.0; m++)
     ib->reply[m] /= sqrt(sum[2]);
   return sum[0] > 0.0 ? sum[1] / sum[0] : 0.0;
@@ -165,11 +179,13 @@ bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
   double largest = 0.0;
   bw_real *field = NULL;
   BW_TRY(bw_comm_agree(bw_grid_comm(ib->grid), bw_field_create(ib->grid, &field)));
+  /* Any start will do that is not orthogonal to the largest eigenvector: the same slip everywhere. */
   for (size_t m = 0; m < ib->held; m++)
     ib->reply[m] = 1.0;
   for (int q = 0; q < TURNS; q++)
     largest = power_iteration(ib, field);
   bw_release(&field);
+  /* The slip goes through I - A: it grows where an eigenvalue of A is above 2. */
   BW_REQUIRE(largest <= 2.0, BW_EINPUT,
              "markers: forcing would grow by %.2f per iteration, they stand for more volume than "
              "they have room for: give each its area times the grid spacing, or use fewer",
@@ -180,13 +196,16 @@ bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
 {
   if (ib->markers == ib->outside) return;
+  /* POROUS 3.79 to 3.82, n_iter times: what one spreading leaves of the slip the next takes. */
   for (int s = 0; s < ib->n_iter; s++) {
     const double start = bw_wall_time();
     const double slip = force_held(ib, u, dt);
     if (s == 0) ib->slip_sum = slip;
     const double held = bw_wall_time();
+    /* Other blocks learn what the markers near them spread ... */
     bw_ibm_mdf__give_images(ib);
     const double given = bw_wall_time();
+    /* ... and add it themselves, halos included: no field has to be exchanged. */
     spread_from(ib, ib->held, u);
     ib->cost.images += given - held;
     ib->cost.kernels += bw_wall_time() - given + held - start;
@@ -212,6 +231,7 @@ void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib)
 /* held (sorted) values in reply's order -> the caller's array; markers outside get zero. */
 static void return_to_caller(bw_ibm_mdf *ib, double out[])
 {
+  /* Markers outside the box were not sent; theirs stays zero. */
   if (ib->n > 0) memset(out, 0, 3 * ib->n * sizeof *out);
   if (ib->plan == NULL) return;
   bw_exchange_backward(ib->plan, 3 * sizeof *ib->reply, ib->reply, ib->answer);
@@ -238,9 +258,11 @@ void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[])
 void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3])
 {
   if (ib->plan == NULL) return;
+  /* The caller's order to that of the routes, then to the ranks that hold the markers. */
   for (size_t i = 0; i < ib->n_sent; i++)
     memcpy(ib->answer + 3 * i, F + 3 * ib->sent_from[i], 3 * sizeof *F);
   bw_exchange_forward(ib->plan, 3 * sizeof *F, ib->answer, ib->reply);
+  /* Sorted by cell, and already times dV/h^3, as the kernels want it. */
   for (size_t m = 0; m < ib->held; m++)
     for (int c = 0; c < 3; c++)
       ib->U[3 * m + c] =
@@ -255,6 +277,7 @@ bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3])
   double sum[5] = {ib->slip_sum, 0.0, 0.0, 0.0, 0.0};
   double most[3] = {(double)ib->held, -HUGE_VAL, -HUGE_VAL}; /* held, dV/h^3, -dV/h^3 */
   gather_velocity(ib, u);
+  /* The velocity now at the markers: the slip after the last call of force. */
   for (size_t m = 0; m < ib->held; m++) {
     const double volume = ib->dV[m] / ib->cell_volume;
     most[1] = fmax(most[1], volume);
@@ -265,6 +288,7 @@ bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3])
       sum[2 + c] += ib->QdV[3 * m + c];
     }
   }
+  /* Sums and maxima of all ranks in one message each. */
   bw_comm_sum(comm, 5, sum);
   bw_comm_max(comm, 3, most);
   const double inside = (double)(ib->markers - ib->outside);

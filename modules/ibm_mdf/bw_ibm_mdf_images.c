@@ -25,14 +25,18 @@ static void find_line(const bw_ibm_mdf *ib, int d, bw_ibm_mdf__blocks *b)
   const bw_grid_view *g = ib->g;
   const int ranks = g->ranks[d];
   *b = (bw_ibm_mdf__blocks){.low = -HUGE_VAL, .high = HUGE_VAL};
+  /* This block first, then its neighbours in turn. */
   for (int q = 0; q < IBM_BLOCKS; q++) {
     const int at = g->coord[d] + steps[q], turns = (at + 2 * ranks) / ranks - 2;
+    /* Beyond the end of the line: a periodic image, or nothing. */
     if (turns != 0 && (!g->periodic[d] || g->halo[d] == 0)) continue;
     const int c = at - turns * ranks, start = bw_grid_block_start(g, d, c);
     const int size = bw_grid_block_start(g, d, c + 1) - start;
     b->coord[b->n] = c;
+    /* Where the block begins as seen from this one, with the turns around the period. */
     b->start[b->n] = start + turns * g->n[d] - g->lo[d];
     b->size[b->n] = size;
+    /* Between low and high no other block is reached: most markers need no further test. */
     if (steps[q] < 0) b->low = fmax(b->low, b->start[b->n] + size + reach_above(ib, d));
     if (steps[q] > 0) b->high = fmin(b->high, b->start[b->n] - reach_below(ib, d));
     b->n++;
@@ -50,6 +54,7 @@ static unsigned reached(const bw_ibm_mdf *ib, int d, double s)
 {
   const bw_ibm_mdf__blocks *b = &ib->blocks[d];
   unsigned bits = 1;
+  /* Far from every other block. */
   if (s >= b->low && s <= b->high) return bits;
   for (int q = 1; q < b->n; q++) {
     const double there = s - b->start[q];
@@ -64,11 +69,13 @@ static void cast_one(bw_ibm_mdf *ib, unsigned m, const double s[3], const int at
 {
   const bw_ibm_mdf__blocks *b = ib->blocks;
   const int rank = b[1].coord[at[1]] + ib->g->ranks[1] * b[2].coord[at[2]];
+  /* A new image, or one that goes to another rank than before, asks for a new plan. */
   *changed |= q >= ib->cast;
   if (q >= ib->cast_room) return;
   *changed |= ib->cast_to[q] != rank;
   ib->cast_to[q] = rank;
   ib->cast_from[q] = m;
+  /* The place is handed over in the numbering of the block that gets it. */
   for (int d = 0; d < 3; d++)
     ib->cast_item[q].s[d] = s[d] - b[d].start[at[d]];
 }
@@ -80,8 +87,10 @@ static size_t cast_marker(bw_ibm_mdf *ib, unsigned m, size_t q, bool *changed)
   unsigned bits[3];
   for (int d = 0; d < 3; d++)
     bits[d] = reached(ib, d, s[d]);
+  /* Only its own block: no image. */
   if (bits[0] == 1 && bits[1] == 1 && bits[2] == 1) return q;
   int at[3];
+  /* Every combination of reached blocks in x, y and z but the marker's own. */
   for (at[2] = 0; bits[2] >> at[2] != 0; at[2]++)
     for (at[1] = 0; bits[1] >> at[1] != 0; at[1]++)
       for (at[0] = 0; bits[0] >> at[0] != 0; at[0]++) {
@@ -131,11 +140,13 @@ static bw_status plan_images(bw_ibm_mdf *ib, size_t n)
   const bw_comm *comm = bw_grid_comm(ib->grid);
   bw_status st = BW_OK;
   bool changed = true;
+  /* The list was only counted beyond its room; it is made again with enough. */
   if (n > ib->cast_room) {
     st = reserve_cast(ib, n);
     if (st == BW_OK) cast_all(ib, &changed);
   }
   BW_TRY(bw_comm_agree(comm, st));
+  /* The old plan is of no use, whatever happens from here on. */
   ib->cast = n;
   ib->images = 0;
   bw_exchange_destroy(&ib->image_plan);
@@ -148,15 +159,18 @@ bw_status bw_ibm_mdf__cast_images(bw_ibm_mdf *ib)
 {
   bool changed = ib->image_plan == NULL || ib->held + ib->images > ib->stencil_room;
   const size_t n = cast_all(ib, &changed);
+  /* One rank with news makes all of them take part in a new plan. */
   int64_t news = changed;
   bw_comm_sum_int(bw_grid_comm(ib->grid), 1, &news);
   if (news > 0) BW_TRY(plan_images(ib, n));
+  /* Places travel once per set of markers; forces in every iteration. */
   bw_exchange_forward(ib->image_plan, sizeof *ib->cast_item, ib->cast_item, ib->image);
   return BW_OK;
 }
 
 void bw_ibm_mdf__give_images(bw_ibm_mdf *ib)
 {
+  /* Behind the held markers U has room for the images of others. */
   for (size_t q = 0; q < ib->cast; q++)
     for (int c = 0; c < 3; c++)
       ib->cast_F[3 * q + c] = ib->U[3 * (size_t)ib->cast_from[q] + c];

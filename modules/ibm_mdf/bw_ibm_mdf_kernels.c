@@ -28,6 +28,7 @@ __attribute__((always_inline)) static inline bw_real gather(const bw_real *restr
                                                             const bw_real *wy, const bw_real *wz)
 {
   row sum = {0};
+  /* Rows along x are summed as vectors; the weights along x are multiplied in once, at the end. */
   for (int k = 0; k < nz; k++) {
     row plane = {0};
     for (int j = 0; j < ny; j++)
@@ -44,6 +45,7 @@ __attribute__((always_inline)) static inline void scatter(bw_real *restrict u,
                                                           const bw_real *wy, const bw_real *wz)
 {
   const row x = F * load(wx);
+  /* The adjoint of gather: the same weights, written instead of read. */
   for (int k = 0; k < nz; k++) {
     const row plane = nz > 1 ? wz[k] * x : x;
     for (int j = 0; j < ny; j++) {
@@ -60,11 +62,13 @@ __attribute__((always_inline)) static inline void interpolate_all(int support, i
                                                                   bw_real *restrict U)
 {
   for (size_t m = s->begin; m < s->end; m++) {
+    /* A marker further on is asked for early, as its rows may not be in the cache. */
     for (int d = 0; d < (nz > 1 ? 3 : 2); d++)
       fetch_top(u[d] + s->nodes[m + IBM_AHEAD].at[d], s, support, nz);
     const bw_real(*c)[IBM_WIDTH] = s->weights[m].w[IBM_CENTRE];
     const bw_real(*f)[IBM_WIDTH] = s->weights[m].w[IBM_FACE];
     const int32_t *at = s->nodes[m].at;
+    /* Component c has face weights along c and centre weights across (staggered grid). */
     U[3 * m] = gather(u[0] + at[0], s, support, nz, f[0], c[1], c[2]);
     U[3 * m + 1] = gather(u[1] + at[1], s, support, nz, c[0], f[1], c[2]);
     U[3 * m + 2] = nz > 1 ? gather(u[2] + at[2], s, support, nz, c[0], c[1], f[2]) : (bw_real)0;
@@ -90,12 +94,14 @@ __attribute__((always_inline)) static inline void spread_all(int support, int nz
   for (size_t m = s->begin; m < s->end; m++) {
     bw_ibm_mdf__weights rest;
     const bw_ibm_mdf__weights *w = &s->weights[m];
+    /* Near a wall: what would fall beyond it is lost. */
     if (s->nodes[m].keep != IBM_KEEP_ALL) {
       rest = cut(w, s->nodes[m].keep);
       w = &rest;
     }
     const bw_real(*c)[IBM_WIDTH] = w->w[IBM_CENTRE], (*f)[IBM_WIDTH] = w->w[IBM_FACE];
     const int32_t *at = s->nodes[m].at;
+    /* Markers one after the other, so that those that share nodes add up in a fixed order. */
     scatter(u[0] + at[0], s, support, nz, F[3 * m], f[0], c[1], c[2]);
     scatter(u[1] + at[1], s, support, nz, F[3 * m + 1], c[0], f[1], c[2]);
     if (nz > 1) scatter(u[2] + at[2], s, support, nz, F[3 * m + 2], c[0], c[1], f[2]);

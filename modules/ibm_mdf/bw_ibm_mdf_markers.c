@@ -51,6 +51,7 @@ static void wrap(const bw_grid_view *g, double x[3])
 static bw_status check(size_t n, const double X[], const double V[], const double dV[])
 {
   for (size_t i = 0; i < n; i++) {
+    /* A marker without a place has no owner, and NaN would spread through the whole fluid. */
     for (int d = 0; d < 3; d++)
       BW_REQUIRE(isfinite(X[3 * i + d]) && isfinite(V[3 * i + d]), BW_EINPUT,
                  "marker %zu: position and velocity must be finite, component %d is %g and %g", i,
@@ -70,6 +71,7 @@ static bool address(bw_ibm_mdf *ib, const double X[], const double V[], const do
   for (size_t i = 0; i < ib->n; i++) {
     bw_ibm_mdf__item *item = &ib->item[sent];
     double x[3] = {X[3 * i], X[3 * i + 1], X[3 * i + 2]};
+    /* Periodic images of a marker are the marker; what is outside otherwise has no owner. */
     wrap(ib->g, x);
     const int owner = bw_grid_owner(ib->grid, x);
     if (owner < 0) continue;
@@ -78,6 +80,7 @@ static bool address(bw_ibm_mdf *ib, const double X[], const double V[], const do
     memcpy(item->v, V + 3 * i, sizeof item->v);
     if (ib->g->n[2] == 1) item->v[2] = 0.0; /* as is what is interpolated there */
     item->volume = dV[i];
+    /* The plan only knows how many go where: it holds while each goes to the rank it went to. */
     changed |= sent >= before || ib->destination[sent] != owner;
     ib->destination[sent] = owner;
     ib->sent_from[sent] = i;
@@ -104,10 +107,13 @@ static void sort_pass(size_t n, int shift, const unsigned *restrict from,
 {
   enum { BITS = 11, MASK = (1 << BITS) - 1 };
   size_t start[(1 << BITS) + 1] = {0};
+  /* Count, ... */
   for (size_t m = 0; m < n; m++)
     start[1 + (key[m] >> shift & MASK)]++;
+  /* ... add up, ... */
   for (int b = 0; b <= MASK; b++)
     start[b + 1] += start[b];
+  /* ... and place, in the order they came: the sort is stable. */
   for (size_t m = 0; m < n; m++) {
     const size_t place = start[key[m] >> shift & MASK]++;
     to[place] = from[m];
@@ -123,6 +129,7 @@ static void sort_by_cell(bw_ibm_mdf *ib)
     ib->order[m] = (unsigned)m;
     ib->key[m] = cell_of(ib->g, ib->received[m].s);
   }
+  /* Radix sort: two passes do for 4 million cells a rank, a third for the rest. */
   sort_pass(ib->held, 0, ib->order, ib->key, ib->swap, ib->key_swap);
   sort_pass(ib->held, 11, ib->swap, ib->key_swap, ib->order, ib->key);
   if ((size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2] > (size_t)1 << 22) {
@@ -130,6 +137,7 @@ static void sort_by_cell(bw_ibm_mdf *ib)
     memcpy(ib->order, ib->swap, ib->held * sizeof *ib->order);
     memcpy(ib->key, ib->key_swap, ib->held * sizeof *ib->key);
   }
+  /* Where each layer of cells in z begins, for force_held. */
   const unsigned per_layer = (unsigned)cells[0] * (unsigned)cells[1];
   size_t m = 0;
   for (int k = 0; k <= cells[2]; k++) {
@@ -142,6 +150,7 @@ static void sort_by_cell(bw_ibm_mdf *ib)
 /* The received markers in their order, their images, and the weights of all. Collective. */
 static bw_status settle(bw_ibm_mdf *ib)
 {
+  /* Neighbours in space become neighbours in memory. */
   sort_by_cell(ib);
   for (size_t m = 0; m < ib->held; m++) {
     const bw_ibm_mdf__item *item = &ib->received[ib->order[m]];
@@ -150,6 +159,7 @@ static bw_status settle(bw_ibm_mdf *ib)
     memcpy(ib->V + 3 * m, item->v, sizeof item->v);
     ib->dV[m] = item->volume;
   }
+  /* Places are known: images follow, then the weights of both. */
   BW_TRY(bw_ibm_mdf__cast_images(ib));
   bw_ibm_mdf__weigh(ib);
   bw_ibm_mdf_begin_step(ib);
@@ -160,6 +170,7 @@ static bw_status settle(bw_ibm_mdf *ib)
 static bw_status plan_markers(bw_ibm_mdf *ib)
 {
   const bw_comm *comm = bw_grid_comm(ib->grid);
+  /* Stays so if anything fails: no kernel runs over arrays that are too short. */
   ib->held = 0;
   bw_exchange_destroy(&ib->plan);
   BW_TRY(bw_exchange_create(comm, ib->n_sent, ib->destination, &ib->plan));
@@ -176,16 +187,20 @@ bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], con
   const double start = bw_wall_time();
   bw_status st = check(n, X, V, dV);
   BW_THEN(st, reserve_sent(ib, n));
+  /* Bad values on one rank end the call on all. */
   BW_TRY(bw_comm_agree(comm, st));
   ib->n = n;
+  /* Routes first: only when some marker changes its rank is a new plan made. */
   const int64_t changed = address(ib, X, V, dV);
   int64_t count[3] = {changed, (int64_t)n, (int64_t)(n - ib->n_sent)};
   bw_comm_sum_int(comm, 3, count);
   ib->markers = count[1], ib->outside = count[2];
   if (count[0] > 0) BW_TRY(plan_markers(ib));
+  /* Each marker is now with the rank that owns its cell. */
   bw_exchange_forward(ib->plan, sizeof *ib->item, ib->item, ib->received);
   st = settle(ib);
   ib->cost.set += bw_wall_time() - start;
+  /* Does the iteration of these markers converge? Asked once, of the first set that has any. */
   if (st != BW_OK || ib->measured || ib->markers == ib->outside) return st;
   st = bw_ibm_mdf__check_growth(ib);
   ib->measured = st == BW_OK;

@@ -15,16 +15,19 @@ static bw_status metrics_create(bw_ns_channel *ns)
   m->heights = heights;
   BW_TRY(BW_ALLOCATE(&reals, 4 * (size_t)rows));
   m->reals = reals;
+  /* The pointers are shifted so that index j is the local row of cells, from 1 - h to m + h. */
   m->dyf = heights + (h - 1), m->dyc = m->dyf + rows;
   m->rdyf = reals + (h - 1), m->rdyc = m->rdyf + rows;
   m->below = m->rdyc + rows, m->above = m->below + rows;
   m->rdx = (bw_real)(1.0 / g->spacing[0]);
   m->rdz = (bw_real)(1.0 / g->spacing[2]);
+  /* Heights of all local cells. Ghost cells get those of their mirror images, also beyond walls. */
   for (int j = 1 - h; j <= g->m[1] + h; j++) {
     const int n = g->n[1], at = j + g->lo[1];
     const int cell = at < 1 ? 1 - at : at > n ? 2 * n + 1 - at : at; /* ghosts mirror */
     m->dyf[j] = g->y_face[cell] - g->y_face[cell - 1];
   }
+  /* Distances of centres and the two cells' shares in the volume about the face between them. */
   for (int j = 1 - h; j < g->m[1] + h; j++) {
     m->dyc[j] = 0.5 * (m->dyf[j] + m->dyf[j + 1]);
     m->below[j] = (bw_real)(0.5 * m->dyf[j] / m->dyc[j]);
@@ -42,12 +45,15 @@ static double viscous_rate(const bw_ns_channel *ns)
 {
   const bw_grid_view *g = ns->g;
   double y = 0.0, rate = 4.0 / (g->spacing[0] * g->spacing[0]);
+  /* Row sums of |D_yy|, first of u and w (in cells), then of v (on faces). */
   for (int j = 1; j <= g->m[1]; j++) {
     const double *f = ns->metrics.dyf, *c = ns->metrics.dyc;
     y = fmax(y, 2.0 * (1.0 / c[j] + 1.0 / c[j - 1]) / f[j]);
     y = fmax(y, 2.0 * (1.0 / f[j] + 1.0 / f[j + 1]) / c[j]);
   }
+  /* All ranks have to choose the same step: the thinnest cells of all of them count. */
   bw_comm_max(ns->comm, 1, &y);
+  /* What is treated implicitly sets no limit, so only explicit directions are added up. */
   if (ns->config.viscous == BW_VISCOUS_IMPLICIT) return 0.0;
   if (ns->config.viscous == BW_VISCOUS_EXPLICIT) rate += y;
   if (ns->components == 3) rate += 4.0 / (g->spacing[2] * g->spacing[2]);
@@ -65,6 +71,7 @@ static bw_status poisson_create(bw_ns_channel *ns)
 
 static bw_status increment_create(bw_ns_channel *ns)
 {
+  /* phi holds nothing between two projections, so the first increment may live there. */
   ns->increment[0] = ns->phi;
   for (int c = 1; c < ns->components; c++)
     BW_TRY(bw_field_create(ns->grid, &ns->increment[c]));
@@ -79,8 +86,10 @@ static bw_status fields_create(bw_ns_channel *ns)
   }
   BW_TRY(bw_field_create(ns->grid, &ns->p));
   BW_TRY(bw_field_create(ns->grid, &ns->phi));
+  /* Only the factored scheme keeps u beside its change; all others overwrite u in place. */
   const bool all = ns->config.viscous == BW_VISCOUS_IMPLICIT;
   if (all) BW_TRY(increment_create(ns));
+  /* The sweep sees arrays and numbers only; what a sub-step changes is filled in by predict. */
   ns->sweep = (bw_ns_sweep){.g = ns->g,
                             .metrics = &ns->metrics,
                             .u = ns->u,
@@ -90,6 +99,7 @@ static bw_status fields_create(bw_ns_channel *ns)
                             .nu = (bw_real)(all ? 0.0 : ns->config.nu),
                             .viscous = ns->config.viscous,
                             .change = all ? ns->increment : ns->u};
+  /* The tile decides how many rows of fluxes are kept, so the scratch comes after it. */
   ns->scratch_size = bw_ns__momentum_scratch(&ns->sweep);
   BW_TRY(BW_ALLOCATE(&ns->scratch, ns->scratch_size));
   bw_ns__momentum_place(&ns->sweep, ns->scratch);
@@ -128,14 +138,17 @@ bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config
     ns->components = ns->g->n[2] == 1 ? 2 : 3;
     st = local_create(ns);
   }
+  /* Up to here a rank may have failed alone; what follows is collective. */
   st = bw_comm_agree(comm, st);
   BW_THEN(st, bw_ns__inflow_create(ns)); /* before the pressure's solver: its own is gone by then */
+  /* The step's limit needs the heights, which are known now on every rank. */
   if (st == BW_OK) {
     ns->viscous_rate = viscous_rate(ns);
     st = poisson_create(ns);
   }
   BW_THEN(st, lines_create(ns));
   st = bw_comm_agree(comm, st);
+  /* Fluid at rest, with valid halos: the state that the header promises after create. */
   BW_THEN(st, bw_ns_channel_set_velocity(ns, NULL, NULL, 0.0));
   if (st != BW_OK) bw_ns_channel_destroy(&ns);
   *out = ns;
@@ -146,6 +159,7 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
 {
   bw_ns_channel *ns = *pointer;
   if (ns == NULL) return;
+  /* Every member may still be NULL: create calls this for an object that is half built. */
   bw_poisson_destroy(&ns->poisson);
   bw_ns__planes_destroy(ns);
   for (int c = 0; c < 3; c++) {

@@ -40,12 +40,15 @@ bw_status bw_ns__planes_create(bw_ns_channel *ns)
     for (int s = 0; s < 2; s++) {
       bw_ns_plane *p = &ns->plane[d][s];
       const bw_ns_side_kind kind = ns->config.side[d][s].kind;
+      /* Only the ranks at the end of a direction touch its sides; a periodic side has no plane. */
       p->here = kind != BW_SIDE_PERIODIC && (s == 0 ? g->first[d] : g->last[d]);
+      /* A plane covers the halos of the two tangential directions too, so that edges get ghosts. */
       for (int q = 0; q < 2; q++) {
         const int t = bw_ns__tangent(d, q);
         p->low[q] = 1 - g->halo[t];
         p->extent[q] = g->m[t] + 2 * g->halo[t];
       }
+      /* Values are stored only where they vary: inflows, what an outflow carries, moving walls. */
       for (int c = 0; c < ns->components && p->here; c++)
         if (kind == BW_SIDE_INFLOW || (kind == BW_SIDE_OUTFLOW && c == d) ||
             (moves(&ns->config.side[d][s]) && c != d))
@@ -68,6 +71,7 @@ bw_ns_walk bw_ns__walk(const bw_ns_channel *ns, int d, int s, int index)
   const bw_ns_plane *p = &ns->plane[d][s];
   bw_ns_walk w = {
       .p = p, .step0 = g->stride[bw_ns__tangent(d, 0)], .step1 = g->stride[bw_ns__tangent(d, 1)]};
+  /* value[0][0] belongs to the lowest tangential halo indices, so the walk starts there. */
   w.base = g->origin + index * g->stride[d] + p->low[0] * w.step0 + p->low[1] * w.step1;
   return w;
 }
@@ -81,6 +85,7 @@ void bw_ns__faces(bw_ns_channel *ns)
 {
   for (int d = 0; d < ns->components; d++)
     for (int s = 0; s < 2; s++) {
+      /* No plane of values means a wall or free slip: nothing goes through the face. */
       const bw_real *value = ns->plane[d][s].value[d];
       if (!ns->plane[d][s].here) continue;
       const bw_ns_walk w = bw_ns__walk(ns, d, s, bw_ns__face_index(ns, d, s));
@@ -112,8 +117,11 @@ static void ghost_layers(const bw_ns_channel *ns, int d, int s, const ghost_rule
                          const bw_real *value, bw_real constant, bw_real *field)
 {
   const int m = ns->g->m[d], h = ns->g->halo[d];
+  /* A component on faces has its lower boundary value at index 0, a halo place: one layer less is
+   * beyond it. */
   for (int q = 1; q <= (face && s == 0 ? h - 1 : h); q++) {
     const int to = s == 1 ? m + q : face ? -q : 1 - q;
+    /* Mirror image about the face for what sits on faces, about the side for what sits in cells. */
     const int mirror = s == 1 ? (face ? m - q : m + 1 - q) : q;
     const int nearest = s == 1 ? m : face ? 0 : 1;
     ghost_layer(ns, d, s, rule, to, rule->copy ? nearest : mirror, value, constant, field);
@@ -126,6 +134,7 @@ void bw_ns__ghosts_velocity(bw_ns_channel *ns)
     for (int s = 0; s < 2; s++) {
       const bw_ns_side *side = &ns->config.side[d][s];
       if (!ns->plane[d][s].here) continue;
+      /* The normal component is odd about its own face, whose value stands there already. */
       for (int c = 0; c < ns->components; c++)
         ghost_layers(ns, d, s, c == d ? &normal[side->kind] : &tangential[side->kind], c == d,
                      ns->plane[d][s].value[c], c == d ? 0 : (bw_real)side->velocity[c], ns->u[c]);

@@ -16,10 +16,12 @@ static box_range range_of(const bw_ns_channel *ns, int c)
   const bw_grid_view *g = ns->g;
   box_range b;
   for (int d = 0; d < 3; d++) {
+    /* The whole box in this rank's numbering; it may lie outside the rank's block. */
     b.begin[d] = ns->box.lo[d] - g->lo[d];
     b.end[d] = ns->box.hi[d] - g->lo[d];
     /* the face on a boundary is prescribed, not balanced */
     if (d == c && !g->periodic[d] && ns->box.hi[d] == g->n[d]) b.end[d]--;
+    /* What of the box this rank owns; hi <= lo where it owns nothing. */
     b.lo[d] = b.begin[d] > 0 ? b.begin[d] : 0;
     b.hi[d] = b.end[d] < g->m[d] ? b.end[d] : g->m[d];
   }
@@ -45,13 +47,16 @@ static double flux(const bw_ns_channel *ns, int c, int d, ptrdiff_t at, int j, i
   const bw_grid_view *g = ns->g;
   const bw_ns_metrics *m = &ns->metrics;
   const bw_real *q = ns->u[c], *carrier = ns->u[d];
+  /* The volume flux is the mean of two: halves, for v across x and z the two cells' shares. */
   const double below = c == 1 && d != 1 ? (double)m->below[j] : 0.5;
   const double spacing = d != 1 ? g->spacing[d] : c == 1 ? m->dyf[j + 1] : m->dyc[j];
   const double here = (double)q[at], up = (double)q[at + g->stride[d]];
   double f = 0.0;
+  /* u_d u_c with plain means of the transported velocity: the scheme's own divergence form. */
   if (parts & CONVECTION)
     f += (below * (double)carrier[at] + (1.0 - below) * (double)carrier[at + g->stride[c]]) * 0.5 *
          (here + up);
+  /* Minus nu du_c/dx_d, the second part of POROUS 3.74. */
   if (parts & DIFFUSION) f -= ns->config.nu * (up - here) / spacing;
   return f;
 }
@@ -79,10 +84,14 @@ static double through(const bw_ns_channel *ns, int c, int d, face_value value, c
   const bw_grid_view *g = ns->g;
   const box_range b = range_of(ns, c);
   double sum = 0.0;
+  /* A box one cell thick at a wall has no balanced face of the normal component. */
   if (b.begin[d] >= b.end[d]) return 0.0;
   for (int side = 0; side < 2; side++) {
+    /* The flux at a face belongs to the rank that owns the cell inside the box beside it: no face
+     * counts twice. */
     const int face = side == 0 ? b.begin[d] : b.end[d], cell = side == 0 ? face + 1 : face;
     if (cell < 1 || cell > g->m[d]) continue;
+    /* Tangentially only the points that this rank owns, along d the one layer. */
     int from[3], to[3];
     for (int e = 0; e < 3; e++) {
       from[e] = e == d ? face : b.lo[e] + 1;
@@ -128,19 +137,25 @@ void bw_ns__box_fluxes(bw_ns_channel *ns, int r, double dt, double gradient)
   if (!box->on) return;
   const double gamma_dt = bw_ns__gamma[r] * dt;
   for (int c = 0; c < ns->components; c++) {
+    /* The momentum at the beginning is known from the last step unless the field was changed from
+     * outside. */
     if (r == 0 && !box->known) box->momentum[c] = momentum(ns, c);
     if (r == 0) box->impulse[c] = box->flux[c] = 0.0;
     double now = 0.0;
+    /* Where y is implicit its diffusion is booked apart, half before and half after the solve. */
     for (int d = 0; d < ns->components; d++) {
       const int parts = d == 1 && ns->config.viscous == BW_VISCOUS_IMPLICIT_Y
                             ? CONVECTION
                             : CONVECTION | DIFFUSION;
       now += through(ns, c, d, flux_value, &parts);
     }
+    /* Weighted as RK3 weights right-hand sides: alpha_r N_r + beta_r N_{r-1} (ERRATA 5). */
     box->impulse[c] += dt * (bw_ns__alpha[r] * now + bw_ns__beta[r] * box->flux[c]);
+    /* The old pressure acts in predict with gamma_r dt; the correction follows in projection. */
     box->impulse[c] += gamma_dt * through(ns, c, c, pressure_value, ns->p);
     box->flux[c] = now;
   }
+  /* The gradient that drives the flow pushes every cell alike. */
   box->impulse[0] += gamma_dt * gradient * volume_of_u(ns);
   box->known = true;
 }
@@ -165,6 +180,7 @@ void bw_ns__box_finish(bw_ns_channel *ns, double dt)
   bw_ns_box *box = &ns->box;
   for (int c = 0; c < ns->components && box->on; c++) {
     const double now = momentum(ns, c);
+    /* What fluxes, pressure and forcing do not explain is what bodies did to the fluid inside. */
     box->force[c] = (now - box->momentum[c] - box->impulse[c]) / dt;
     box->momentum[c] = now;
   }
@@ -179,6 +195,7 @@ bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3], const int 
     BW_REQUIRE(0 <= lo[d] && lo[d] < hi[d] && hi[d] <= ns->g->n[d], BW_EINPUT,
                "ns_channel: watched cells %d < i <= %d in direction %d are not a part of 1..%d",
                lo[d], hi[d], d, ns->g->n[d]);
+  /* known is false: the momentum is summed anew before the next step. */
   ns->box = (bw_ns_box){.on = true};
   for (int d = 0; d < 3; d++)
     ns->box.lo[d] = lo[d], ns->box.hi[d] = hi[d];

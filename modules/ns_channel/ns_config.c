@@ -22,6 +22,7 @@ bw_ns_channel_config bw_ns_channel_config_default(void)
 static bw_status section_check(const bw_grid_view *g, const bw_ns_channel_config *c, int d, int s)
 {
   bool wall = false;
+  /* All sides around the inflow must have a steady laminar flow between them. */
   for (int e = 0; e < (g->n[2] == 1 ? 2 : 3); e++)
     for (int q = 0; q < 2 && e != d; q++) {
       const bw_ns_side *around = &c->side[e][q];
@@ -35,6 +36,8 @@ static bw_status section_check(const bw_grid_view *g, const bw_ns_channel_config
                  "slip or periodic sides; the %s %s one is none of them; use a callback",
                  direction_name[d], end_name[s], direction_name[e], end_name[q]);
     }
+  /* Without a wall Poisson's equation for the profile has no solution (nothing balances the
+   * gradient). */
   BW_REQUIRE(wall, BW_EINPUT,
              "ns_channel: %s %s side: a Poiseuille inflow needs walls at rest beside it; make the "
              "inflow uniform, or give it a wall",
@@ -66,10 +69,12 @@ static bw_status side_check(const bw_grid_view *g, const bw_ns_channel_config *c
              "the same",
              dn, sn, side->kind == BW_SIDE_PERIODIC ? "" : "not ", g->periodic[d] ? "" : "not ",
              dn);
+  /* A value that is not finite would only be noticed steps later, as a divergence. */
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(isfinite(side->velocity[q]), BW_EINPUT,
                "ns_channel: %s %s side: velocity[%d] is %g; give a finite velocity", dn, sn, q,
                side->velocity[q]);
+  /* No volume may pass a wall: the projection has zero normal gradient there. */
   if (side->kind == BW_SIDE_WALL)
     BW_REQUIRE(side->velocity[d] == 0.0, BW_EINPUT,
                "ns_channel: %s %s side: a wall moves tangentially only, but velocity[%d] is %g; "
@@ -94,12 +99,15 @@ static bw_status balance_check(const bw_grid_view *g, const bw_ns_channel_config
       if (side->kind != BW_SIDE_INFLOW) continue;
       inflow = true;
       callback |= side->profile == BW_PROFILE_CALLBACK;
+      /* Callbacks can only be integrated once they are called; uniform and laminar inflows are
+       * known now. */
       const double area = g->length[(d + 1) % 3] * g->length[(d + 2) % 3];
       const double normal =
           side->profile == BW_PROFILE_POISEUILLE ? side->bulk_velocity : side->velocity[d];
       net += (s == 0 ? area : -area) * normal;
       gross += area * fabs(normal);
     }
+  /* Volume is conserved to round-off, so a set-up that cannot conserve it is refused here. */
   BW_REQUIRE(inflow || !outflow, BW_EINPUT,
              "ns_channel: there is an outflow but no inflow; name the side that feeds it");
   BW_REQUIRE(!callback || outflow, BW_EINPUT,
@@ -118,12 +126,14 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
 {
   BW_REQUIRE(isfinite(c->nu) && c->nu > 0.0, BW_EINPUT,
              "ns_channel: nu is %g; give a kinematic viscosity > 0", c->nu);
+  /* In two dimensions nothing is asked of z. */
   for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++) {
     BW_REQUIRE(g->n[d] >= 2, BW_EINPUT, "ns_channel: %d cell in %s; at least 2 are needed", g->n[d],
                direction_name[d]);
     for (int s = 0; s < 2; s++)
       BW_TRY(side_check(g, c, d, s));
   }
+  /* Forcing drives a flow that closes in itself along x; elsewhere the sides drive it. */
   if (c->forcing != BW_FORCING_NONE) {
     BW_REQUIRE(g->periodic[0], BW_EINPUT,
                "ns_channel: forcing needs periodic x; between inflow and outflow the pressure "
@@ -137,6 +147,7 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
 
 bw_status bw_ns_channel_config_check(const bw_grid_config *grid, const bw_ns_channel_config *config)
 {
+  /* The check reads only sizes and periodicity, so it needs no grid to exist. */
   bw_grid_view g = {.n = {0}};
   for (int d = 0; d < 3; d++)
     g.n[d] = grid->n[d], g.length[d] = grid->length[d], g.periodic[d] = grid->periodic[d];

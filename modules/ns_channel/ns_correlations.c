@@ -31,6 +31,7 @@ bw_status bw_ns_correlations_create(bw_ns_channel *ns, int planes, const int row
                "ns_correlations: plane %d is row %d, possible are 1 to %d", p, rows[p], g->n[1]);
   bw_ns_correlations *c = NULL;
   bw_status st = bw_allocate(1, sizeof *c, &c);
+  /* By symmetry lags go to half the period only. */
   if (st == BW_OK) {
     c->ns = ns, c->g = g, c->planes = planes;
     c->lags[0] = g->n[0] / 2 + 1, c->lags[1] = g->n[2] / 2 + 1;
@@ -43,6 +44,7 @@ bw_status bw_ns_correlations_create(bw_ns_channel *ns, int planes, const int row
     BW_THEN(st, BW_ALLOCATE(&c->twice, 2 * (size_t)g->n[0]));
   }
   if (st == BW_OK) memcpy(c->row, rows, (size_t)planes * sizeof *rows);
+  /* An allocation may have failed on one rank alone. */
   st = bw_comm_agree(ns->comm, st);
   if (st != BW_OK) bw_ns_correlations_destroy(&c);
   *out = c;
@@ -66,6 +68,7 @@ static void gather(bw_ns_correlations *c, int row)
   const bw_grid_view *g = c->g;
   const int j = row - g->lo[1], n = g->n[0];
   const size_t section = (size_t)n * (size_t)g->n[2];
+  /* Each rank writes its own part into zeros, so that the sum over ranks is the plane. */
   memset(c->field, 0, 3 * section * sizeof *c->field);
   for (int a = 0; a < 3 && j >= 1 && j <= g->m[1]; a++)
     for (int k = 1; k <= g->m[2]; k++)
@@ -93,8 +96,11 @@ static void correlate(const bw_ns_correlations *c, const double *field, double *
   double *x = out + 1, *z = out + 1 + c->lags[0];
   for (int k = 0; k < nz; k++) {
     const double *row = field + (size_t)k * (size_t)nx;
+    /* The row and its continuation stand one behind the other: a lag is an offset, without
+     * modulo. */
     memcpy(c->twice, row, (size_t)nx * sizeof *row);
     memcpy(c->twice + nx, row, (size_t)nx * sizeof *row);
+    /* R(r) needs the mean, too: <a(x) a(x + r)> - <a>^2. */
     for (int i = 0; i < nx; i++)
       out[0] += share * row[i];
     for (int r = 0; r < c->lags[0]; r++)
@@ -111,11 +117,13 @@ void bw_ns_correlations_sample(bw_ns_correlations *c)
   const int rank = bw_comm_rank(c->ns->comm), ranks = bw_comm_size(c->ns->comm);
   memset(c->now, 0, size * sizeof *c->now);
   for (int p = 0; p < c->planes; p++) {
+    /* All ranks need the whole plane, but only one correlates it: planes are dealt out in turn. */
     gather(c, c->row[p]);
     if (p % ranks != rank) continue;
     for (size_t a = 0; a < 3; a++)
       correlate(c, c->field + a * section, c->now + (size_t)p * c->of_plane + a * one);
   }
+  /* The others hold zeros for a plane, so the sum makes all ranks alike. */
   bw_comm_sum(c->ns->comm, (int)size, c->now);
   for (size_t q = 0; q < size; q++)
     c->sum[q] += c->now[q];
@@ -135,6 +143,7 @@ void bw_ns_correlations_get(const bw_ns_correlations *c, int plane, int componen
   const double share = c->samples > 0 ? 1.0 / (double)c->samples : 0.0, mean = s[0] * share;
   const int along = direction == 0 ? 0 : 1;
   const double *of = s + 1 + (along == 1 ? c->lags[0] : 0);
+  /* The square of the mean is taken off last, from sums over all samples. */
   for (int r = 0; r < c->lags[along]; r++)
     out[r] = of[r] * share - mean * mean;
 }
@@ -149,9 +158,11 @@ void bw_ns_correlations_spectrum(const bw_ns_correlations *c, int plane, int com
   const double *s = c->sum + (size_t)plane * c->of_plane + (size_t)component * one;
   const double share = c->samples > 0 ? 1.0 / (double)c->samples : 0.0, mean = s[0] * share;
   const double *of = s + 1 + (direction == 0 ? 0 : c->lags[0]), two_pi = 2.0 * acos(-1.0);
+  /* E_m is the cosine transform of R, so that sum_m E_m = R(0) exactly. */
   for (int m = 0; m < lags; m++) {
     double sum = 0.0;
     for (int r = 0; r < lags; r++) {
+      /* Lags r and n - r are the same; r = 0 and r = n/2 have no twin. */
       const double twin = r == 0 || 2 * r == n ? 1.0 : 2.0;
       sum += twin * (of[r] * share - mean * mean) *
              cos(two_pi * (double)(((long)m * r) % n) / (double)n);
@@ -185,6 +196,7 @@ bw_status bw_ns_correlations_set_state(bw_ns_correlations *c, const double x[])
     BW_REQUIRE(x[HEAD + p] == c->row[p], BW_EINPUT,
                "ns_correlations: plane %d of the state is row %g, here %d", p, x[HEAD + p],
                c->row[p]);
+  /* The state fits: heights and lags are those of this object. */
   c->samples = (long)x[3];
   memcpy(c->sum, x + HEAD + c->planes, (size_t)c->planes * c->of_plane * sizeof *x);
   return BW_OK;

@@ -29,6 +29,8 @@ typedef void (*point_fn)(bw_real *u, bw_real *d);
 static void each_point(bw_ns_channel *ns, int c, int d, int s, point_fn f)
 {
   const bw_grid_view *g = ns->g;
+  /* Along d one layer: the face for the normal component, the ghost cells beyond it for the
+   * others. */
   int from[3] = {1, 1, 1}, to[3] = {g->m[0], g->m[1], g->m[2]};
   from[d] = to[d] = s == 0 ? 0 : c == d ? g->m[d] : g->m[d] + 1;
   for (int k = from[2]; k <= to[2]; k++)
@@ -94,12 +96,16 @@ static void right_side(const bw_ns_channel *ns, int c, int j, int k, double kapp
   const bw_grid_view *g = ns->g;
   const ptrdiff_t at = bw_at(g, 0, j, k), row = g->stride[1], plane = g->stride[2];
   bw_real *u = ns->u[c] + at, *d = ns->increment[c] + at;
+  /* A row on an upper face is prescribed, so its increment is nothing. */
   if (on_side(ns, c, 1, j) || on_side(ns, c, 2, k)) {
     memset(d + 1, 0, (size_t)g->m[0] * sizeof *d);
     return;
   }
+  /* d holds the sweep's change w; with 2 kappa L u it is the right side of the factored
+   * equation. */
   add_laplacian(g->m[0], factors_of_row(ns, c, j, kappa), u, u + row, u - row, u + plane, u - plane,
                 d);
+  /* Along x only the last point of the row can be a prescribed face. */
   if (on_side(ns, c, 0, g->m[0])) d[g->m[0]] = 0;
 }
 
@@ -111,9 +117,11 @@ static void solve_x(bw_ns_channel *ns, int c, int k)
   for (int j = 1; j <= g->m[1]; j += BW_NS_LANES) {
     const int rows = g->m[1] + 1 - j < BW_NS_LANES ? g->m[1] + 1 - j : BW_NS_LANES;
     bw_real *d = ns->increment[c] + bw_at(g, 1, j, k);
+    /* Transposed into lanes: the recursion runs along x, the vector across rows. */
     for (int q = 0; q < rows; q++)
       for (int i = 0; i < n; i++)
         ns->lanes[i * BW_NS_LANES + q] = d[q * g->stride[1] + i];
+    /* Lanes beyond `rows` hold what they did before; nobody reads their result. */
     bw_ns__lines_solve(ns->lines[0], BW_NS_LANES, BW_NS_LANES, ns->lanes);
     for (int q = 0; q < rows; q++)
       for (int i = 0; i < n; i++)
@@ -127,16 +135,19 @@ static void solve_planes(bw_ns_channel *ns, int c, double kappa)
   const bw_grid_view *g = ns->g;
   const bool divided = bw_ns__lines_are_divided(ns->lines[1]);
   bw_real *d = ns->increment[c];
+  /* Coefficients depend on the component, as faces and centres are spaced differently in y. */
   bw_ns__lines_set(ns, c, kappa, ns->lines[1]);
   bw_ns__lines_set(ns, c, kappa, ns->lines[0]);
   for (int k = 1; k <= g->m[2]; k++) {
     for (int j = 1; j <= g->m[1]; j++)
       right_side(ns, c, j, k, kappa);
+    /* Lines in y that cross ranks wait until all planes have their right side. */
     if (divided) continue;
     bw_ns__lines_solve(ns->lines[1], g->m[0], g->stride[1], d + bw_at(g, 1, 1, k));
     solve_x(ns, c, k);
   }
   if (!divided) return;
+  /* Here y travels between ranks; x is whole on every rank and follows. */
   bw_ns__lines_solve_divided(ns, ns->lines[1], d);
   for (int k = 1; k <= g->m[2]; k++)
     solve_x(ns, c, k);
@@ -169,8 +180,10 @@ static void solve_z(bw_ns_channel *ns, int c, double kappa)
   bw_ns_lines *z = ns->lines[2];
   const bool divided = z != NULL && bw_ns__lines_are_divided(z);
   const int most = slab(g);
+  /* The factors of y and x are done; z is the last, so d is u* - u afterwards. */
   if (z != NULL) bw_ns__lines_set(ns, c, kappa, z);
   if (divided) bw_ns__lines_solve_divided(ns, z, ns->increment[c]);
+  /* In slabs, so that d is still in the cache when u takes it. */
   for (int j = 1; j <= g->m[1]; j += most) {
     const int rows = g->m[1] + 1 - j < most ? g->m[1] + 1 - j : most;
     if (z != NULL && !divided)
@@ -183,9 +196,12 @@ static void solve_z(bw_ns_channel *ns, int c, double kappa)
 void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt)
 {
   const double kappa = 0.5 * gamma_dt * ns->config.nu;
+  /* The old boundary values are put away in the increment's places at the sides. */
   each_side(ns, keep);
+  /* Now the sides of u have the values of the end of the sub-step ... */
   bw_ns__faces(ns);
   bw_ns__ghosts_velocity(ns);
+  /* ... and here their mean with the old ones, so that d obeys homogeneous conditions. */
   each_side(ns, average);
   for (int c = 0; c < ns->components; c++) {
     solve_planes(ns, c, kappa);

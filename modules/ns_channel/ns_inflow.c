@@ -8,6 +8,7 @@ static double coordinate(const bw_grid_view *g, int t, int i, bool face)
 {
   const int n = g->n[t], first = face && !g->periodic[t] ? 0 : 1;
   int at = i + g->lo[t];
+  /* Halo places get the coordinate of their periodic image, or of the nearest point inside. */
   if (g->periodic[t])
     at = ((at - 1) % n + n) % n + 1;
   else
@@ -25,9 +26,11 @@ static void fill_from_function(bw_ns_channel *ns, int d, int s, double t)
     for (int b = 0; b < p->extent[1] && p->value[c] != NULL; b++)
       for (int a = 0; a < p->extent[0]; a++) {
         double x[3], u[3] = {0, 0, 0};
+        /* All components are asked for on the side itself: ghosts mirror about it. */
         x[d] = s == 0 ? 0.0 : ns->g->length[d];
         x[t0] = coordinate(ns->g, t0, p->low[0] + a, c == t0);
         x[t1] = coordinate(ns->g, t1, p->low[1] + b, c == t1);
+        /* Each component at its own staggered point, halos of the plane included. */
         side->function(x, t, side->context, u);
         p->value[c][(size_t)b * (size_t)p->extent[0] + (size_t)a] = (bw_real)u[c];
       }
@@ -62,9 +65,11 @@ static bw_status solve_section(bw_ns_channel *ns, int d)
 #undef BW_PAIR
   bw_poisson *section = NULL;
   BW_TRY(bw_poisson_create(ns->grid, side, &section));
+  /* Unit pressure gradient and viscosity; the flux is scaled to U_b afterwards. */
   for (size_t q = 0; q < ns->g->size; q++)
     ns->phi[q] = -1;
   bw_poisson_solve(section, ns->phi);
+  /* phi is free between projections, so the profile may live there until it is copied. */
   bw_poisson_destroy(&section);
   bw_halo_update(ns->grid, 1, &ns->phi);
   return BW_OK;
@@ -96,6 +101,7 @@ static bw_status fill_laminar(bw_ns_channel *ns, int d, int s)
   bw_ns_plane *p = &ns->plane[d][s];
   double sum[2] = {0.0, 0.0}; /* flux of the profile, area */
   BW_TRY(solve_section(ns, d));
+  /* Any layer serves; the one beside the side is on this rank. */
   if (p->here) {
     const bw_ns_walk w = bw_ns__walk(ns, d, s, s == 0 ? 1 : ns->g->m[d]);
     for (int b = 0; b < p->extent[1]; b++)
@@ -104,7 +110,9 @@ static bw_status fill_laminar(bw_ns_channel *ns, int d, int s)
     sum[0] = plane_flux(ns, d, s, p->value[d]);
     sum[1] = plane_flux(ns, d, s, NULL);
   }
+  /* The side may be divided over ranks, the bulk velocity is that of all of it. */
   bw_comm_sum(ns->comm, 2, sum);
+  /* Scaled by the discrete flux, so that exactly U_b times the area enters. */
   const double scale = ns->config.side[d][s].bulk_velocity * sum[1] / sum[0];
   for (size_t q = 0; p->here && q < bw_ns__plane_size(p); q++)
     p->value[d][q] *= (bw_real)scale;
@@ -124,8 +132,10 @@ bw_status bw_ns__inflow_create(bw_ns_channel *ns)
     for (int s = 0; s < 2; s++) {
       const bw_ns_side *side = &ns->config.side[d][s];
       const bool here = ns->plane[d][s].here;
+      /* The area of all outflows together decides U_c. */
       if (side->kind == BW_SIDE_OUTFLOW && here) ns->outflow_area += plane_flux(ns, d, s, NULL);
       if (side->kind != BW_SIDE_INFLOW) continue;
+      /* Collective also on ranks that do not touch the side. */
       if (side->profile == BW_PROFILE_POISEUILLE) BW_TRY(fill_laminar(ns, d, s));
       if (side->profile == BW_PROFILE_UNIFORM && here) fill_uniform(ns, d, s);
     }
@@ -141,9 +151,11 @@ double bw_ns__inflow(bw_ns_channel *ns, double t)
       const bw_ns_side *side = &ns->config.side[d][s];
       const bool prescribed = side->kind == BW_SIDE_INFLOW || side->kind == BW_SIDE_WALL;
       if (!prescribed || !ns->plane[d][s].here) continue;
+      /* Only what depends on time is filled again. */
       if (side->profile == BW_PROFILE_CALLBACK) fill_from_function(ns, d, s, t);
       if (side->kind == BW_SIDE_INFLOW) net -= bw_ns__side_flux(ns, d, s);
     }
+  /* Only an outflow asks how much enters; without one no message is sent. */
   if (ns->outflow_area > 0.0) bw_comm_sum(ns->comm, 1, &net);
   return net;
 }

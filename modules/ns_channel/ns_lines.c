@@ -40,6 +40,7 @@ bw_status bw_ns__lines_create(const bw_ns_channel *ns, int d, bw_ns_lines **out)
     st = allocate(q->n, q);
   }
   BW_TRY(bw_comm_agree(ns->comm, st));
+  /* The whole line is on this rank, Thomas' algorithm solves it without a message. */
   if (g->ranks[d] == 1) return BW_OK;
   return bw_tridiagonal_create(ns->grid, d, (size_t)g->m[0] * (size_t)g->m[3 - d], &q->divided);
 }
@@ -83,6 +84,7 @@ static void coefficients(const bw_ns_channel *ns, int c, double kappa, bw_ns_lin
 {
   const bw_grid_view *g = ns->g;
   const int n = q->n, d = q->d;
+  /* Second differences: of the component along d between faces, of the others between centres. */
   for (int j = 1; j <= n; j++) {
     const double h = extent(g, d, j), next = extent(g, d, j + 1), previous = extent(g, d, j - 1);
     const double mid = 0.5 * (h + next), mid_below = 0.5 * (previous + h);
@@ -90,11 +92,14 @@ static void coefficients(const bw_ns_channel *ns, int c, double kappa, bw_ns_lin
     q->upper[j - 1] = -kappa / (c == d ? mid * next : h * mid);
     q->diagonal[j - 1] = 1.0 - q->lower[j - 1] - q->upper[j - 1];
   }
+  /* What couples the ends to their neighbours beyond: kept, as the right side may need it. */
   q->edge[0] = q->lower[0], q->edge[1] = q->upper[n - 1];
   if (q->cyclic) return;
+  /* The last row of the normal component is the side's own face: its value is given. */
   if (c == d) {
     q->lower[n - 1] = 0.0, q->diagonal[n - 1] = 1.0;
   } else {
+    /* A ghost is sign times the cell beside it: that part belongs to the matrix. */
     q->diagonal[0] += q->edge[0] * bw_ns__ghost_sign(ns, d, 0);
     q->diagonal[n - 1] += q->edge[1] * bw_ns__ghost_sign(ns, d, 1);
   }
@@ -120,13 +125,16 @@ static void border(bw_ns_lines *q)
   const int rows = q->n - 1;
   const double a = q->edge[0];
   double *z = q->lower; /* not needed any more */
+  /* Right side (a, 0, .., 0, a): the last unknown couples to the first and the last row. */
   for (int j = 0; j < rows; j++)
     z[j] = (j == 0 ? a : 0.0) + (j == rows - 1 ? a : 0.0);
+  /* Forward and backward sweep of Thomas' algorithm. */
   z[0] *= (double)q->inverse[0];
   for (int j = 1; j < rows; j++)
     z[j] = z[j] * (double)q->inverse[j] - (double)q->below[j] * z[j - 1];
   for (int j = rows - 2; j >= 0; j--)
     z[j] -= (double)q->above[j] * z[j + 1];
+  /* Schur complement of the last unknown; the matrix is symmetric, so a row is a column. */
   const double scale = 1.0 / (q->diagonal[rows] - a * (z[0] + z[rows - 1]));
   for (int j = 0; j < rows; j++)
     q->last[j] = (bw_real)(-z[j] * scale);
@@ -136,6 +144,7 @@ static void border(bw_ns_lines *q)
 void bw_ns__lines_set(const bw_ns_channel *ns, int c, double kappa, bw_ns_lines *q)
 {
   coefficients(ns, c, kappa, q);
+  /* A cyclic line is eliminated without its last unknown, which border() finds apart. */
   if (q->divided != NULL)
     bw_tridiagonal_set(q->divided, q->lower, q->diagonal, q->upper, q->cyclic);
   else
@@ -156,20 +165,25 @@ BW_NS_INLINE void solve_rows(const bw_ns_lines *q, int width, ptrdiff_t pitch, b
 {
   const int rows = q->cyclic ? q->n - 1 : q->n;
   bw_real *last = f + (q->n - 1) * pitch;
+  /* The last unknown first: the scalar product of the inverse's last row with the right side. */
   if (q->cyclic) {
     combine(width, q->last[rows], -q->last[0], f, last);
     for (int j = 1; j < rows; j++)
       combine(width, 1, -q->last[j], f + j * pitch, last);
   }
+  /* It is known now and goes to the right side of the first row. */
   combine(width, q->inverse[0], q->cyclic ? (bw_real)q->edge[0] * q->inverse[0] : 0, last, f);
+  /* Forward elimination. */
   for (int j = 1; j < rows; j++)
     combine(width, q->inverse[j], q->below[j], f + (j - 1) * pitch, f + j * pitch);
+  /* Back substitution, from the last row (or the last unknown of the cycle) down. */
   for (int j = q->n - 2; j >= 0; j--)
     combine(width, 1, q->above[j], f + (j + 1) * pitch, f + j * pitch);
 }
 
 void bw_ns__lines_solve(const bw_ns_lines *q, int width, ptrdiff_t pitch, bw_real *f)
 {
+  /* A width known at compile time lets the compiler unroll the lanes. */
   if (width == BW_NS_LANES)
     solve_rows(q, BW_NS_LANES, pitch, f);
   else
@@ -183,6 +197,8 @@ static void each_batch(const bw_grid_view *g, const bw_ns_lines *q, bool finish,
   for (int k = 1; k <= g->m[across]; k++)
     for (int i = 1; i <= g->m[0]; i += BW_TRIDIAGONAL_LINES) {
       const int left = g->m[0] + 1 - i;
+      /* Batches are numbered by their first line, so that the separators of all lines find their
+       * place. */
       const bw_tridiagonal_batch batch = {
           .first = (size_t)(k - 1) * (size_t)g->m[0] + (size_t)(i - 1),
           .n = left < BW_TRIDIAGONAL_LINES ? left : BW_TRIDIAGONAL_LINES,
@@ -199,7 +215,10 @@ static void each_batch(const bw_grid_view *g, const bw_ns_lines *q, bool finish,
 
 void bw_ns__lines_solve_divided(const bw_ns_channel *ns, const bw_ns_lines *q, bw_real *u)
 {
+  /* Each rank reduces its part to the rows at its ends ... */
   each_batch(ns->g, q, false, u);
+  /* ... which are solved for all ranks together ... */
   bw_tridiagonal_join(q->divided);
+  /* ... and substituted into the rows between them. */
   each_batch(ns->g, q, true, u);
 }

@@ -41,9 +41,11 @@ BW_NS_INLINE void x_fluxes(int n, bool planar, const row_scalars *restrict c,
 {
   const bw_real cx = c->cx, ex = c->ex, below2 = c->below2, above2 = c->above2;
   const bw_real quarter = (bw_real)0.25, ey = c->ey_u;
+  /* Fluxes through the right faces, from the velocity before any update of this row. */
   for (int i = 0; i <= n; i++) {
     fxu[i] = flux(u[i] + u[i + 1], u[i], u[i + 1], cx, ex);
     fxv[i] = flux(below2 * u[i] + above2 * un[i], v[i], v[i + 1], cx, ex);
+    /* The y flux of w is taken here, too, as update_v overwrites the v that carries it. */
     if (!planar) {
       fxw[i] = flux(u[i] + ut[i], w[i], w[i + 1], cx, ex);
       gyw[i] = flux(v[i] + vt[i], w[i], wn[i], quarter, ey);
@@ -74,21 +76,26 @@ BW_NS_INLINE void update_u(int n, bool planar, int stage, bw_ns_viscous viscous,
 {
   const bw_real quarter = (bw_real)0.25, ey = c->ey_u, cz = c->cz, ez = c->ez, rdy = c->rdyf;
   const bw_real alpha = c->alpha, beta = c->beta, gx = c->gx, source = c->source;
+  /* R(u) = -div(u u) + nu lap u (POROUS 3.74) as differences of fluxes. */
   for (int i = 1; i <= n; i++) {
     const bw_real y = flux(v[i] + v[i + 1], u[i], un[i], quarter, ey);
     bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y) * rdy;
+    /* The upper flux is the next row's lower one: it is kept, as u below is overwritten. */
     fy[i] = y;
     bw_real diffused = 0;
+    /* kappa D_yy u, the explicit half of Crank-Nicolson. */
     if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (un[i] - u[i]) * c->dy_u;
       diffused = d - dy[i];
       dy[i] = d;
     }
+    /* The same in z; kept for the next plane of the tile. */
     if (!planar) {
       const bw_real z = flux(w[i] + w[i + 1], u[i], ut[i], cz, ez);
       rhs += fz[i] - z;
       fz[i] = z;
     }
+    /* POROUS 3.70: u[i] becomes u*; where all is implicit, its change goes to `out`. */
     BW_UPDATE(u, out, R, gx * (p[i] - p[i + 1]) + source);
   }
 }
@@ -104,16 +111,19 @@ BW_NS_INLINE void update_v(int n, bool planar, int stage, bw_ns_viscous viscous,
   const bw_real quarter = (bw_real)0.25, ey = c->ey_v, cz = c->cz, ez = c->ez, rdy = c->rdyc;
   const bw_real below2 = c->below2, above2 = c->above2;
   const bw_real alpha = c->alpha, beta = c->beta, gy = c->gy;
+  /* As for u; volume fluxes across x and z have the shares of the two cells they belong to. */
   for (int i = 1; i <= n; i++) {
     const bw_real y = flux(v[i] + vn[i], v[i], vn[i], quarter, ey);
     bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y) * rdy;
     fy[i] = y;
     bw_real diffused = 0;
+    /* The explicit half of the diffusion in y. */
     if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (vn[i] - v[i]) * c->dy_v;
       diffused = d - dy[i];
       dy[i] = d;
     }
+    /* In z the carrier w is the mean of two rows, which are not updated yet. */
     if (!planar) {
       const bw_real z = flux(below2 * w[i] + above2 * wn[i], v[i], vt[i], cz, ez);
       rhs += fz[i] - z;
@@ -132,6 +142,7 @@ BW_NS_INLINE void update_w(int n, int stage, bw_ns_viscous viscous, const row_sc
 {
   const bw_real cz = c->cz, ez = c->ez, rdy = c->rdyf;
   const bw_real alpha = c->alpha, beta = c->beta, gz = c->gz;
+  /* Last of the three, as u and v of this cell need the old w. */
   for (int i = 1; i <= n; i++) {
     const bw_real z = flux(w[i] + wt[i], w[i], wt[i], cz, ez);
     const bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y[i]) * rdy + (fz[i] - z);
@@ -152,10 +163,12 @@ static void first_y_fluxes(int n, bool planar, const row_scalars *c, const row_p
                            bw_real *const fy[3], bw_real *const dy[3])
 {
   const bw_real quarter = (bw_real)0.25;
+  /* Row 0 is a halo or a side: its upper fluxes are the first row's lower ones. */
   for (int i = 1; i <= n; i++) {
     fy[0][i] = flux(q->v[i] + q->v[i + 1], q->u[i], q->un[i], quarter, c->ey_u);
     fy[1][i] = flux(q->v[i] + q->vn[i], q->v[i], q->vn[i], quarter, c->ey_v);
     if (!planar) fy[2][i] = flux(q->v[i] + q->vt[i], q->w[i], q->wn[i], quarter, c->ey_u);
+    /* Diffusion in y of the explicit half is kept apart from the flux. */
     if (dy == NULL) continue;
     dy[0][i] = (q->un[i] - q->u[i]) * c->dy_u;
     dy[1][i] = (q->vn[i] - q->v[i]) * c->dy_v;
@@ -245,6 +258,7 @@ BW_NS_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bw_ns_v
 {
   const bw_grid_view *g = s->g;
   const int n = g->m[0];
+  /* y fluxes below the first row, of all planes, while every velocity is still old. */
   for (int k = 1; k <= g->m[2]; k++) {
     const row_scalars c = scalars_of_row(s, 0);
     const row_pointers q = pointers_of_row(s, planar, 0, k);
@@ -254,6 +268,7 @@ BW_NS_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bw_ns_v
                        ? (bw_real *[]){s->dy[0] + y, s->dy[1] + y, s->dy[2] + y}
                        : NULL);
   }
+  /* Tile by tile; z fluxes below the first plane come from the halo plane 0. */
   for (int j0 = 1; j0 <= g->m[1]; j0 += s->tile) {
     const int end = j0 + s->tile <= g->m[1] ? j0 + s->tile : g->m[1] + 1;
     for (int j = j0; j < end && !planar; j++) {
@@ -262,6 +277,7 @@ BW_NS_INLINE void all_rows(const bw_ns_sweep *s, bool planar, int stage, bw_ns_v
       const ptrdiff_t z = (ptrdiff_t)(j - j0) * (n + 1);
       first_z_fluxes(n, &c, &q, (bw_real *[]){s->fz[0] + z, s->fz[1] + z, s->fz[2] + z});
     }
+    /* Plane by plane upwards: a row needs only old values above and kept fluxes below. */
     for (int k = 1; k <= g->m[2]; k++)
       for (int j = j0; j < end; j++)
         one_row(s, planar, stage, viscous, j, k, j0);
@@ -290,6 +306,7 @@ BW_SWEEP(plane_all, true, BW_VISCOUS_IMPLICIT)
 
 void bw_ns__momentum_sweep(const bw_ns_sweep *s, int stage)
 {
+  /* One instance per dimension, viscous term and stage: no branch is left in the inner loops. */
   static void (*const sweep[2][3][BW_NS_STAGES])(const bw_ns_sweep *) = {
       {[BW_VISCOUS_EXPLICIT] = {space_0, space_1, space_2},
        [BW_VISCOUS_IMPLICIT_Y] = {space_y_0, space_y_1, space_y_2},
@@ -319,6 +336,7 @@ size_t bw_ns__momentum_scratch(const bw_ns_sweep *s)
 void bw_ns__momentum_place(bw_ns_sweep *s, bw_real *scratch)
 {
   const size_t row = (size_t)(s->g->m[0] + 1), planes = row * (size_t)s->g->m[2];
+  /* One buffer, cut in the order of momentum_scratch. */
   for (int q = 0; q < 4; q++, scratch += row)
     s->fx[q] = scratch;
   for (int q = 0; q < 3; q++, scratch += planes)

@@ -98,6 +98,7 @@ static double production(const profile_source *m, bw_ns_moment first, int row)
 {
   double sum = 0.0;
   (void)first;
+  /* Mean of the two faces of the cell, where the stresses are. */
   for (int j = row - 1; j <= row; j++)
     sum += uv(m, BW_NS_MOMENT_UV, j) * moment(m, BW_NS_MOMENT_OZ, j) -
            vw(m, BW_NS_MOMENT_VW, j) * moment(m, BW_NS_MOMENT_OX, j);
@@ -106,6 +107,7 @@ static double production(const profile_source *m, bw_ns_moment first, int row)
 
 static double dissipation(const profile_source *m, bw_ns_moment first, int row)
 {
+  /* Gradients at the centre have no mean; those at faces have dU/dy and dW/dy. */
   double sum = moment(m, first, row);
   for (int j = row - 1; j <= row; j++) {
     const double oz = moment(m, BW_NS_MOMENT_OZ, j), ox = moment(m, BW_NS_MOMENT_OX, j);
@@ -127,6 +129,7 @@ static double turbulent_transport(const profile_source *m, bw_ns_moment first, i
   for (int s = 0; s < 2; s++) {
     const int j = row - 1 + s;
     const double U = at_face(m, BW_NS_MOMENT_U, j), W = at_face(m, BW_NS_MOMENT_W, j);
+    /* Means are taken off the triple products: <v a a> - 2 A <v'a'>. */
     flux[s] = 0.5 * (moment(m, first, j) + moment(m, BW_NS_MOMENT_VUU, j) +
                      moment(m, BW_NS_MOMENT_VWW, j)) -
               U * uv(m, BW_NS_MOMENT_UV, j) - W * vw(m, BW_NS_MOMENT_VW, j);
@@ -146,6 +149,7 @@ static double viscous_diffusion(const profile_source *m, bw_ns_moment first, int
   double flux[2] = {0.0, 0.0};
   for (int s = 0; s < 2; s++) {
     const int j = row - 1 + s;
+    /* The flux through a wall stays zero. */
     if (j == 0 || j == m->rows - 1) continue;
     flux[s] = -m->nu * (k_at_centre(m, first, j + 1) - k_at_centre(m, first, j)) /
               (m->y_centre[j + 1] - m->y_centre[j]);
@@ -203,6 +207,7 @@ bool bw_ns_profile_on_faces(bw_ns_profile_kind kind)
 static void mean_moments(const bw_ns_statistics *s, int first, int last, double samples, bool fold)
 {
   double *mean = s->work, *flat = s->work + s->size;
+  /* Sums of the chosen batches over their samples. */
   for (size_t q = 0; q < s->size; q++) {
     double sum = 0.0;
     for (int b = first; b < last; b++)
@@ -210,14 +215,17 @@ static void mean_moments(const bw_ns_statistics *s, int first, int last, double 
     mean[q] = samples > 0 ? sum / samples : 0.0;
   }
   if (!fold) return;
+  /* Folding: a moment and its mirror image, which for odd ones has the other sign. */
   for (int m = 0; m < BW_NS_MOMENTS; m++) {
     const double sign = odd[m] ? -1.0 : 1.0;
     const bool face = m >= BW_NS_MOMENT_V;
     const size_t at = (size_t)m * (size_t)s->rows;
     for (int j = face ? 0 : 1; j < s->rows; j++) {
+      /* Faces run from 0 to n1, centres from 1 to n1. */
       const int mirror = s->rows - (face ? 1 : 0) - j;
       flat[at + (size_t)j] = 0.5 * (mean[at + (size_t)j] + sign * mean[at + (size_t)mirror]);
     }
+    /* Centres have no row 0. */
     flat[at] = face ? flat[at] : 0.0;
   }
   for (size_t q = 0; q < s->size; q++)
@@ -257,6 +265,7 @@ void bw_ns_statistics_profile(const bw_ns_statistics *s, bw_ns_profile_kind kind
     for (int b = 0; b < n; b++) {
       mean_moments(s, b, b + 1, (double)s->per_batch, fold);
       for (int j = first; j < s->rows; j++) {
+        /* Profiles are not linear in the moments: each batch makes its own. */
         const double x = make(&m, profiles[kind].first, j);
         if (pass == 0)
           mean[j] += x / n;
@@ -264,9 +273,11 @@ void bw_ns_statistics_profile(const bw_ns_statistics *s, bw_ns_profile_kind kind
           out[j].interval += (x - mean[j]) * (x - mean[j]);
       }
     }
+  /* The value itself is that of all samples together, those of the unfinished batch included. */
   mean_moments(s, 0, BW_NS_BATCHES, (double)bw_ns_statistics_samples(s), fold);
   for (int j = first; j < s->rows; j++) {
     out[j].mean = make(&m, profiles[kind].first, j);
+    /* Student's t times the standard error of the batch means. */
     out[j].interval =
         n < 2 ? (double)NAN : student(n - 1) * sqrt(out[j].interval / ((double)n * (n - 1)));
   }

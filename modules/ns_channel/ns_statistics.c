@@ -14,6 +14,7 @@ bw_status bw_ns_statistics_create(bw_ns_channel *ns, bw_ns_statistics **out)
                "ns_statistics: the mean is taken over x and z, but %c is not periodic", "xyz"[d]);
   bw_ns_statistics *s = NULL;
   bw_status st = bw_allocate(1, sizeof *s, &s);
+  /* Every rank holds all rows: they are few, and all ranks give the same answers. */
   if (st == BW_OK) {
     s->ns = ns, s->g = g, s->nu = ns->config.nu;
     s->rows = g->n[1] + 1;
@@ -25,6 +26,7 @@ bw_status bw_ns_statistics_create(bw_ns_channel *ns, bw_ns_statistics **out)
     BW_THEN(st, BW_ALLOCATE(&s->value, (size_t)s->rows));
     if (ns->u[2] == NULL) BW_THEN(st, bw_field_create(ns->grid, &s->no_w));
   }
+  /* An allocation may have failed on one rank alone. */
   st = bw_comm_agree(ns->comm, st);
   if (st != BW_OK) bw_ns_statistics_destroy(&s);
   *out = s;
@@ -56,12 +58,15 @@ static void centre_pressure(bw_ns_statistics *s)
   const bw_grid_view *g = s->g;
   double *p1 = s->now + (size_t)BW_NS_MOMENT_P * (size_t)s->rows;
   double *p2 = s->now + (size_t)BW_NS_MOMENT_PP * (size_t)s->rows, m = 0.0;
+  /* Mean over the box at this instant: the level of p means nothing. */
   for (int j = 1; j < s->rows; j++)
     m += p1[j] * (g->y_face[j] - g->y_face[j - 1]) / g->length[1];
   const double *v = s->now + (size_t)BW_NS_MOMENT_V * (size_t)s->rows;
   double *pv = s->now + (size_t)BW_NS_MOMENT_PV * (size_t)s->rows;
+  /* <(p - m) v> first: it needs the plain <v>, which stays. */
   for (int j = 0; j < s->rows; j++)
     pv[j] -= m * v[j];
+  /* <(p - m)^2> = <p^2> + m (m - 2 <p>), with the plain <p>, which changes last. */
   for (int j = 1; j < s->rows; j++) {
     p2[j] += m * (m - 2.0 * p1[j]);
     p1[j] -= m;
@@ -71,12 +76,14 @@ static void centre_pressure(bw_ns_statistics *s)
 /* All batches are full: neighbours become one. */
 static void join_batches(bw_ns_statistics *s)
 {
+  /* Batch b goes into b/2, which has been read already. */
   for (int b = 0; b < BW_NS_BATCHES; b++) {
     double *to = s->batch + (size_t)(b / 2) * s->size, *from = s->batch + (size_t)b * s->size;
     for (size_t q = 0; q < s->size && b > 0; q++) {
       to[q] = b % 2 == 0 ? from[q] : to[q] + from[q];
     }
   }
+  /* Half as many batches, each twice as long: the upper half is free again. */
   s->full = BW_NS_BATCHES / 2;
   s->per_batch *= 2;
   memset(s->batch + (size_t)s->full * s->size, 0,
@@ -88,12 +95,15 @@ void bw_ns_statistics_sample(bw_ns_statistics *s)
   bw_ns_channel *ns = s->ns;
   bw_real *const u[3] = {ns->u[0], ns->u[1], s->no_w != NULL ? s->no_w : ns->u[2]};
   memset(s->now, 0, s->size * sizeof *s->now);
+  /* Sums over this rank's part of each plane ... */
   bw_ns__moments(s->g, u, ns->p, s->rows, s->now);
+  /* ... and over all ranks, so that the state does not depend on their number. */
   bw_comm_sum(ns->comm, (int)s->size, s->now);
   const double share = 1.0 / ((double)s->g->n[0] * s->g->n[2]);
   for (size_t q = 0; q < s->size; q++)
     s->now[q] *= share;
   centre_pressure(s);
+  /* The sample joins the batch that is being filled. */
   double *to = s->batch + (size_t)s->full * s->size;
   for (size_t q = 0; q < s->size; q++)
     to[q] += s->now[q];
@@ -137,6 +147,7 @@ bw_status bw_ns_statistics_set_state(bw_ns_statistics *s, const double x[])
   BW_REQUIRE(x[2] >= 1 && x[3] >= 0 && x[3] < BW_NS_BATCHES && x[4] >= 0 && x[4] < x[2], BW_EINPUT,
              "ns_statistics: the state has %g samples in batch %g of %d, full with %g", x[4], x[3],
              BW_NS_BATCHES, x[2]);
+  /* The numbers are possible and belong to this grid. */
   s->per_batch = (long)x[2];
   s->full = (int)x[3];
   s->in_last = (long)x[4];

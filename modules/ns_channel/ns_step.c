@@ -42,6 +42,7 @@ static void pressure_halos(bw_ns_channel *ns)
   const int *h = g->halo, *m = g->m;
   for (int k = 1 - h[2]; k <= m[2] + h[2]; k++)
     for (int j = 1 - h[1]; j <= m[1] + h[1]; j++) {
+      /* Of a row inside only its two ends are halo; rows outside are halo altogether. */
       const bool inside = 1 <= j && j <= m[1] && 1 <= k && k <= m[2];
       const ptrdiff_t at = bw_at(g, 0, j, k);
       for (int i = 1 - h[0]; i <= m[0] + h[0]; i = inside && i == 0 ? m[0] + 1 : i + 1)
@@ -61,38 +62,48 @@ static void all_halos(bw_ns_channel *ns)
 static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
 {
   const double gamma_dt = bw_ns__gamma[r] * dt;
+  /* A constant flow rate starts from the gradient of the sub-step before; project corrects it. */
   const bw_ns_forcing forcing = ns->config.forcing;
   const double gradient = forcing == BW_FORCING_GRADIENT    ? ns->config.forcing_value
                           : forcing == BW_FORCING_FLOW_RATE ? ns->gradient
                                                             : 0.0;
   double mark = bw_wall_time();
+  /* Sub-step r: u* = u + dt (alpha_r R + beta_r R_prev - gamma_r grad p) + source (POROUS 3.70). */
   bw_ns_sweep *s = &ns->sweep;
   s->alpha_dt = (bw_real)(bw_ns__alpha[r] * dt);
   s->beta_dt = (bw_real)(bw_ns__beta[r] * dt);
   s->gamma_dt = (bw_real)gamma_dt;
   s->kappa = (bw_real)(0.5 * gamma_dt * ns->config.nu);
   s->source = (bw_real)(gamma_dt * gradient);
+  /* Books the mean gradient of the step, weighted as pressure is. */
   if (r == 0) ns->applying = 0.0;
   ns->applying += bw_ns__gamma[r] * gradient;
 
+  /* Side values at the end of the sub-step; what leaves is carried out by the old velocity. */
   const bw_ns_viscous viscous = ns->config.viscous;
   const double influx = bw_ns__inflow(ns, ns->time + bw_ns__end[r] * dt);
   bw_ns__outflow_advance(ns, gamma_dt, influx);
+  /* The watched box sums the fluxes that the sweep is about to use. */
   bw_ns__box_fluxes(ns, r, dt, gradient);
   if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
   lap(&mark, &ns->cost.boundary);
+  /* u is u* afterwards, but for what is implicit and for faces on sides. */
   bw_ns__momentum_sweep(s, r);
+  /* The solve in y takes the new v on the sides as its boundary values. */
   if (viscous == BW_VISCOUS_IMPLICIT_Y) {
     bw_ns__faces(ns);
     bw_ns__implicit_solve(ns, gamma_dt);
   }
   if (viscous == BW_VISCOUS_IMPLICIT) bw_ns__factored_solve(ns, gamma_dt);
+  /* From here on u* meets the sides; it is not free of divergence. */
   bw_ns__faces(ns);
   lap(&mark, &ns->cost.momentum);
+  /* Who only projects reads one layer of normal velocities; a body reads all of the halos. */
   if (faces)
     bw_halo_update_faces(ns->grid, ns->u);
   else
     velocity_halos(ns);
+  /* The other half of Crank-Nicolson's diffusion, with the new velocity. */
   if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
   lap(&mark, &ns->cost.halo);
 }
@@ -117,34 +128,45 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   const double gamma_dt = bw_ns__gamma[r] * dt;
   const bool flow_rate = ns->config.forcing == BW_FORCING_FLOW_RATE;
   double mark = bw_wall_time(), shift = 0.0;
+  /* A body has changed u* since predict. */
   if (!fresh) {
     bw_ns__faces(ns); /* a body may have spread onto them */
     velocity_halos(ns);
     lap(&mark, &ns->cost.halo);
   }
+  /* phi <- div u* over gamma_r dt, the right side of lap p^ (POROUS 3.71). The sum gives the bulk
+   * velocity. */
   const double sum =
       bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0 / gamma_dt, flow_rate, ns->phi);
+  /* The change of u that the flow rate still needs is uniform, hence without divergence. */
   if (flow_rate) {
     shift = flow_rate_shift(ns, sum);
     ns->applying += shift / dt;
+    /* A velocity that was just set may have another bulk: that jump is no gradient. */
     if (!ns->impulsive) ns->gradient += shift / gamma_dt;
     ns->impulsive = false;
   }
   lap(&mark, &ns->cost.correct);
+  /* phi: p^. */
   bw_poisson_solve(ns->poisson, ns->phi);
   lap(&mark, &ns->cost.poisson);
+  /* grad p^ on the upper faces of the block needs the neighbour's p^; at sides it is zero. */
   bw_halo_update(ns->grid, 1, &ns->phi);
   bw_ns__ghosts_scalar(ns, ns->phi);
   lap(&mark, &ns->cost.halo);
+  /* The watched box books p^ and the shift before they are spent. */
   bw_ns__box_projection(ns, gamma_dt, shift);
+  /* u <- u* - gamma_r dt grad p^, p <- p + p^ (POROUS 3.72, 3.73): from here on div u = 0. */
   ns->courant = bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, gamma_dt, shift,
                                r == BW_NS_STAGES - 1);
   ns->courant_known = false;
   lap(&mark, &ns->cost.correct);
+  /* Everything is valid again: interior, halos, ghosts. */
   velocity_halos(ns);
   pressure_halos(ns);
   lap(&mark, &ns->cost.halo);
   ns->cost.substeps++;
+  /* The step ends with the third sub-step: its balance, mean gradient and time. */
   if (r < BW_NS_STAGES - 1) return;
   bw_ns__box_finish(ns, dt);
   ns->applied = ns->applying;
@@ -159,11 +181,13 @@ void bw_ns_channel_project(bw_ns_channel *ns, int r, double dt)
 bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt)
 {
   BW_REQUIRE(dt > 0.0, BW_EINPUT, "ns_channel: dt = %g; give a step > 0", dt);
+  /* An impossible step is refused before it spoils the field. */
   BW_TRY(bw_ns_channel_check(ns, dt));
   for (int r = 0; r < BW_NS_STAGES; r++) {
     predict(ns, r, dt, !ns->box.on); /* no body: nobody looks at u* */
     project(ns, r, dt, true);
   }
+  /* Is the result finite? A step of 0 is within every limit. */
   return bw_ns_channel_check(ns, 0.0);
 }
 
@@ -171,6 +195,7 @@ bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt)
 static double courant_everywhere(bw_ns_channel *ns)
 {
   if (ns->courant_known) return ns->courant_all;
+  /* A maximum drops NaN, so whether all is finite travels as a number of its own. */
   const bool finite = isfinite(ns->courant);
   double worst[2] = {finite ? ns->courant : 0.0, finite ? 0.0 : 1.0};
   bw_comm_max(ns->comm, 2, worst);
@@ -190,6 +215,7 @@ static bw_status not_finite(bw_ns_channel *ns)
 {
   const bw_grid_view *g = ns->g;
   const double n0 = g->n[0] + 1, n1 = g->n[1] + 1, n2 = g->n[2] + 1;
+  /* Component and cell as one number, so that a minimum over ranks names the first place. */
   double first = INFINITY;
   for (int c = 0; c < ns->components; c++)
     for (int k = 1; k <= g->m[2]; k++)
@@ -198,11 +224,13 @@ static bw_status not_finite(bw_ns_channel *ns)
           if (!isfinite(ns->u[c][bw_at(g, i, j, k)]))
             first = fmin(first, ((c * n2 + k + g->lo[2]) * n1 + j + g->lo[1]) * n0 + i);
   bw_comm_min(ns->comm, 1, &first);
+  /* All velocities are finite, only their sum over the directions was not. */
   if (!isfinite(first))
     return BW_FAIL(BW_EDIVERGED,
                    "ns_channel: sum |u_i|/dx_i overflows at "
                    "t = %g; the step was too long",
                    ns->time);
+  /* Taken apart again for the message. */
   const int i = (int)fmod(first, n0), j = (int)fmod(floor(first / n0), n1);
   const int k = (int)fmod(floor(first / (n0 * n1)), n2), c = (int)floor(first / (n0 * n1 * n2));
   return BW_FAIL(BW_EDIVERGED,
@@ -215,6 +243,7 @@ bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt)
 {
   const double c = courant_everywhere(ns);
   if (!isfinite(c)) return not_finite(ns);
+  /* The field is finite. Does the step fit it? */
   const double limit = bw_ns_channel_dt_max(ns);
   BW_REQUIRE(isfinite(dt) && dt >= 0.0, BW_EINPUT, "ns_channel: dt = %g; give a step > 0", dt);
   BW_REQUIRE(dt <= limit * (1.0 + 1e-12), BW_ECFL,
@@ -230,10 +259,12 @@ bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt)
 
 void bw_ns_channel_refresh(bw_ns_channel *ns)
 {
+  /* Planes first: those of time, then what leaves from the fields themselves. */
   bw_ns__inflow(ns, ns->time);
   bw_ns__outflow_capture(ns);
   bw_ns__faces(ns);
   all_halos(ns);
+  /* What a step would have left behind is found anew, to the same bits. */
   ns->courant = bw_ns__courant(ns->g, &ns->metrics, ns->u);
   ns->courant_known = false;
   ns->box.known = false;
@@ -248,6 +279,7 @@ static void sample(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
         for (int i = c == 0 ? 0 : 1; i <= g->m[0]; i++) {
           const int y = j + g->lo[1];
           double u[3] = {0, 0, 0};
+          /* Each component at its own staggered point. */
           const double x[3] = {(c == 0 ? i : i - 0.5) * g->spacing[0],
                                c == 1 ? g->y_face[y] : g->y_centre[y],
                                (k + g->lo[2] - (c == 2 ? 0.0 : 0.5)) * g->spacing[2]};
@@ -268,20 +300,25 @@ bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn functi
   ns->time = t;
   ns->gradient = ns->applied = 0.0;
   ns->impulsive = true;
+  /* As given: neither free of divergence nor in balance at the sides. */
   sample(ns, function, context, t);
+  /* The outflow takes what the function has there, shifted to balance the inflow. */
   const double influx = bw_ns__inflow(ns, t);
   bw_ns__outflow_capture(ns);
   bw_ns__outflow_balance(ns, influx);
   bw_ns__faces(ns);
   for (int pass = 0; pass < 2; pass++) { /* the second takes away the round-off of the first */
     velocity_halos(ns);
+    /* A projection with gamma dt = 1: only the velocity is wanted of it. */
     bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0, false, ns->phi);
     bw_poisson_solve(ns->poisson, ns->phi);
     bw_halo_update(ns->grid, 1, &ns->phi);
     bw_ns__ghosts_scalar(ns, ns->phi);
     bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, 1.0, 0.0, false);
   }
+  /* p has gathered the two corrections, which are no pressure. */
   zero(ns->g, ns->p);
+  /* Halos, ghosts and the Courant number of the projected field. */
   bw_ns_channel_refresh(ns);
   for (int d = 0; d < 3; d++)
     ns->box.force[d] = 0.0;

@@ -12,6 +12,7 @@ static void extremes(const bw_ns_channel *ns, double most[2])
     for (int j = 1; j <= g->m[1]; j++)
       for (int i = 1; i <= g->m[0]; i++) {
         double div = 0.0;
+        /* Both faces of a cell are looked at, so that the lowest ones count as well. */
         for (int c = 0; c < ns->components; c++) {
           const ptrdiff_t at = bw_at(g, i, j, k);
           const double here = (double)ns->u[c][at], below = (double)ns->u[c][at - g->stride[c]];
@@ -41,6 +42,7 @@ bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns)
       for (int i = 1; i <= g->m[0]; i++) {
         const ptrdiff_t at = bw_at(g, i, j, k);
         double squares = 0.0;
+        /* Values sit on faces: a cell has half of each of its two. */
         for (int c = 0; c < ns->components; c++) {
           const double here = (double)ns->u[c][at], below = (double)ns->u[c][at - g->stride[c]];
           squares += here * here + below * below;
@@ -48,9 +50,11 @@ bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns)
         }
         sum[ENERGY] += 0.25 * squares * volume; /* each face's half belongs to this cell */
       }
+      /* Fluxes through the x sides of this rank, which has all of x. */
       sum[INFLOW] += (double)ns->u[0][bw_at(g, 0, j, k)] * side;
       sum[OUTFLOW] += (double)ns->u[0][bw_at(g, g->m[0], j, k)] * side;
     }
+  /* One message for all sums. */
   bw_comm_sum(ns->comm, COUNT, sum);
   return (bw_ns_summary){.bulk_velocity = sum[BULK] / (g->length[0] * g->length[1] * g->length[2]),
                          .kinetic_energy = sum[ENERGY],
@@ -66,6 +70,7 @@ static double slope(const bw_ns_channel *ns, int d, int s, int c)
   const bw_grid_view *g = ns->g;
   const int face = bw_ns__face_index(ns, d, s), which = c == bw_ns__tangent(d, 0) ? 0 : 1;
   const bw_ns_walk w = bw_ns__walk(ns, d, s, s == 0 ? 1 : face);
+  /* The ghost beyond the side mirrors the wall's velocity, so the difference is over one cell. */
   const ptrdiff_t outwards = s == 0 ? -g->stride[d] : g->stride[d];
   const ptrdiff_t previous = which == 0 ? w.step0 : w.step1;
   const double distance = d == 1 ? ns->metrics.dyc[face] : g->spacing[d];
@@ -74,6 +79,7 @@ static double slope(const bw_ns_channel *ns, int d, int s, int c)
     for (int a = 1; a <= g->m[bw_ns__tangent(d, 0)]; a++) {
       const bw_real *u =
           ns->u[c] + w.base + (a - w.p->low[0]) * w.step0 + (b - w.p->low[1]) * w.step1;
+      /* The component sits on cell faces along itself: a cell has the mean of two slopes. */
       const double here = (double)u[0] - (double)u[outwards];
       const double before = (double)u[-previous] - (double)u[outwards - previous];
       sum += 0.5 * (here + before) / distance * bw_ns__side_area(ns, d, a, b);
@@ -89,7 +95,9 @@ bw_ns_side_report bw_ns_channel_side(bw_ns_channel *ns, int d, int s)
   for (int c = 0; c < ns->components && here; c++)
     if (c != d) sum[c] = slope(ns, d, s, c);
   if (here) sum[3] = bw_ns__side_flux(ns, d, s);
+  /* Ranks that do not touch the side add nothing. */
   bw_comm_sum(ns->comm, 4, sum);
+  /* Area of the side: the box's volume over its length along d. */
   const double per_area =
       ns->config.nu * g->length[d] / (g->length[0] * g->length[1] * g->length[2]);
   return (bw_ns_side_report){.flux = sum[3],

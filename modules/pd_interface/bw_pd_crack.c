@@ -31,6 +31,7 @@ static bw_status own_points(const bw_pd_crack_config *config, size_t count, cons
                             const double damage[], size_t *n, point **out)
 {
   *n = 0;
+  /* Counted first, so that one array of the right size is enough. */
   for (size_t h = 0; h < count; h++)
     *n += damage[h] > config->level;
   BW_TRY(BW_ALLOCATE(out, *n));
@@ -50,6 +51,7 @@ bw_status bw_pd_crack_collect(const bw_comm *comm, const bw_pd_crack_config *con
   point *own = NULL;
   void *gathered = NULL;
   bw_status st = bw_comm_agree(comm, own_points(config, n, X0, damage, &mine, &own));
+  /* Every rank gets the whole crack, which is thin: a list of all is affordable. */
   BW_THEN(st, bw_comm_allgather(comm, mine * sizeof *own, own, &bytes, &gathered));
   point *all = gathered;
   const size_t found = bytes / sizeof *all;
@@ -57,6 +59,7 @@ bw_status bw_pd_crack_collect(const bw_comm *comm, const bw_pd_crack_config *con
   BW_THEN(st, BW_ALLOCATE(&out->t, found));
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
+    /* Sorted by place, so that the list does not depend on ranks, and sections are ranges of it. */
     qsort(all, found, sizeof *all, by_place);
     out->n = found;
     for (size_t q = 0; q < found; q++)
@@ -103,11 +106,13 @@ int bw_pd_crack_branches(const bw_pd_crack *crack, double station, double half, 
                          int most, double middle[])
 {
   const double tie = 1e-6 * half; /* particles on the section's edge count once, on both sides */
+  /* The section is a range of the list, which rises in s. */
   const size_t a = first_from(crack, station - half - tie);
   const size_t b = first_from(crack, station + half + tie);
   int branches = 0;
   double sum = 0.0, members = 0.0;
   double before = -INFINITY, t = next_across(crack, a, b, before);
+  /* Through the section by rising t; a gap begins a new branch. */
   while (!isnan(t)) {
     if (branches == 0 || t - before > gap) {
       branches++;
@@ -126,6 +131,7 @@ double bw_pd_crack_fork(const bw_pd_crack *crack, double from, double step, int 
 {
   if (crack->n == 0) return NAN;
   int forked = 0;
+  /* A fork counts when several sections in a row have it: a single cracked neighbour does not. */
   for (int k = 0; from + k * step <= crack->s[crack->n - 1] + 0.5 * step; k++) {
     const double s = from + k * step;
     forked = bw_pd_crack_branches(crack, s, 0.5 * step, gap, 0, NULL) >= 2 ? forked + 1 : 0;
@@ -148,9 +154,11 @@ double bw_pd_crack_angle(const bw_pd_crack *crack, double a, double b, double st
     const double s = a + k * step;
     double middle[MOST_BRANCHES];
     const int m = bw_pd_crack_branches(crack, s, 0.5 * step, gap, MOST_BRANCHES, middle);
+    /* Only forked sections tell an angle. */
     if (m < 2 || m > MOST_BRANCHES) continue;
     n++;
     s1 += s, s2 += s * s;
+    /* Sums of two straight lines, the lowest and the highest branch. */
     low_t += middle[0], low_st += s * middle[0];
     high_t += middle[m - 1], high_st += s * middle[m - 1];
   }

@@ -8,6 +8,7 @@
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
+  /* POROUS 3.42: mean present distance to broken partners, sector by sector. */
   bw_pd_interface__locate(pi, h, now);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi);
   return !pi->outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
@@ -18,12 +19,15 @@ static void classify(bw_pd_interface *pi, size_t h)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   uint32_t not_held, never;
+  /* Without any place: which sectors hold nothing now, and which never held anything. */
   bw_pd_interface__resolve(pi, h, false);
   bw_pd_interface__bare_sectors(pi, &not_held, &never);
+  /* A sector that never held a partner stays empty; one that lost all may close again. */
   const bool always = bw_pd_interface__is_open(s, never, pi->config.n_empty);
   const bool possible = bw_pd_interface__is_open(s, not_held, pi->config.n_empty);
   pi->surface[h] = always && !pi->outside[h];
   pi->undecided[h] = possible && !always && !pi->outside[h];
+  /* Its partners have changed: row, normal and line elements are made anew. */
   pi->stale[h] = true;
 }
 
@@ -33,6 +37,7 @@ static void classify(bw_pd_interface *pi, size_t h)
 static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
 {
   bool changed = false;
+  /* Those that lean on a wall: only their own displacement is read. */
   for (size_t q = 0; q < pi->n_leaning; q++) {
     const size_t h = (size_t)pi->leaning[q];
     const bool off = bw_pd_interface__moved_off(pi, h, now);
@@ -41,6 +46,7 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
     classify(pi, h);
     changed = true;
   }
+  /* A bond broke somewhere on this rank: who has more broken ones than before? */
   if (bw_pd_bond_events(pi->pd) != pi->events) {
     pi->events = bw_pd_bond_events(pi->pd);
     bw_pd_bond_get_broken(pi->pd, pi->fresh);
@@ -52,6 +58,7 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
     }
   }
   if (!changed) return false;
+  /* The list of those whose state depends on gaps, for follow_gaps. */
   pi->n_gap = 0;
   for (size_t h = 0; h < pi->n; h++)
     if (pi->undecided[h]) pi->gap[pi->n_gap++] = (int32_t)h;
@@ -65,6 +72,7 @@ static bool follow_gaps(bw_pd_interface *pi, const bw_pd_bond_motion *now)
   for (size_t q = 0; q < pi->n_gap; q++) {
     const size_t h = (size_t)pi->gap[q];
     const bool before = pi->surface[h];
+    /* The distance to broken partners is that of now. */
     bw_pd_interface__resolve(pi, h, false);
     pi->surface[h] = bw_pd_interface__judge(pi, h, now);
     changed = changed || pi->surface[h] != before;
@@ -77,6 +85,7 @@ static bool follow_gaps(bw_pd_interface *pi, const bw_pd_bond_motion *now)
 static bool make_room(bw_pd_interface *pi, size_t more)
 {
   if (pi->pool_n + more <= pi->pool_room) return true;
+  /* Half as much again, so that a growing crack asks rarely. */
   const size_t room = pi->pool_n + more + pi->pool_room / 2 + 1024;
   bw_pd_interface__near *pool = NULL;
   if (BW_ALLOCATE(&pool, room) != BW_OK) return false;
@@ -91,6 +100,7 @@ static bool make_room(bw_pd_interface *pi, size_t more)
 static void write_row(bw_pd_interface *pi, size_t h)
 {
   size_t count = 0;
+  /* How many partners hold; a row that has become too short is written at the end of the pool. */
   for (int q = 0; q < pi->stencil.slots; q++)
     count += pi->state[q] == BW_PD_INTERFACE__INTACT;
   if (count > pi->row_room[h]) {
@@ -105,6 +115,7 @@ static void write_row(bw_pd_interface *pi, size_t h)
   for (int q = 0; q < pi->stencil.slots; q++) {
     if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
     const bw_pd_interface__near near = pi->near[q];
+    /* Images and copies do not know h as a partner: change has to reach h from them. */
     pi->border[h] = pi->border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n;
     pi->pool[at++] = near;
   }
@@ -116,8 +127,10 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 {
   pi->n_list = 0;
   for (size_t h = 0; h < pi->n; h++) {
+    /* What settle_normals has to look at again. */
     pi->changed[h] = pi->surface[h] && pi->stale[h];
     if (!pi->surface[h]) continue;
+    /* Only the stale ones are resolved; in most updates nobody is. */
     if (pi->stale[h]) {
       uint32_t not_held, never;
       bw_pd_interface__resolve(pi, h, reference);
@@ -126,6 +139,7 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
       bw_pd_interface__anchor(pi, h);
       write_row(pi, h);
     }
+    /* The reference shape's own area, or a new crack face's (ERRATA 10). */
     pi->area[pi->n_list] = pi->first[h] ? pi->area_first[h] : pi->area_new;
     pi->list[pi->n_list++] = (int32_t)h;
   }
@@ -134,20 +148,24 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
   const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
+  /* What broke, then what opened: both may make or end a surface. */
   const bool broken = follow_changes(pi, &now), shown = follow_gaps(pi, &now);
   int64_t changed = pi->fresh_start || broken || shown;
   pi->fresh_start = false;
+  /* Normals are fitted across ranks, so all renew or none. */
   bw_comm_max_int(bw_pd_bond_comm(pi->pd), 1, &changed);
   if (changed) {
     bw_pd_interface__renew(pi, false);
     bw_pd_interface__settle_normals(pi);
     bw_pd_interface__lay_lines(pi, &now);
   }
+  /* From here on every update: present places ... */
   for (size_t row = 0; row < pi->n_list; row++) {
     const size_t h = (size_t)pi->list[row], place = (size_t)now.place[h];
     for (size_t d = 0; d < 3; d++)
       pi->position[3 * row + d] = pi->X0[3 * h + d] + (double)now.u[d][place];
   }
+  /* ... and normals turned with the body. */
   bw_pd_interface__carry_normals(pi, &now);
   return BW_OK;
 }

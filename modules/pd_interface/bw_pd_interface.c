@@ -21,6 +21,7 @@ static bw_status check_config(const bw_pd_interface_config *c, int sectors, doub
   BW_REQUIRE(c->n_empty >= 0 && c->n_empty <= sectors, BW_EINPUT,
              "interface: n_empty = %d has to be 1 to %d, or 0 for the default", c->n_empty,
              sectors);
+  /* Mirroring needs partners where the lattice has them. */
   for (int d = 0; d < 3; d++)
     BW_REQUIRE(disorder == 0 || (!c->walled[d][0] && !c->walled[d][1]), BW_EINPUT,
                "interface: walled[%d] needs a solid on a lattice, which a wall can mirror; it has "
@@ -41,6 +42,7 @@ static bw_status check_config(const bw_pd_interface_config *c, int sectors, doub
 static bw_status allocate_arrays(bw_pd_interface *pi)
 {
   enum { ROWS = BW_PD_INTERFACE__ROWS };
+  /* Everything an update may need, so that none allocates (but for rows of new crack faces). */
   const size_t n = pi->n, slots = (size_t)pi->stencil.slots;
   bw_status st = BW_ALLOCATE(&pi->surface, n);
   BW_THEN(st, BW_ALLOCATE(&pi->first, n));
@@ -56,6 +58,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->row_room, n));
   BW_THEN(st, BW_ALLOCATE(&pi->stale, n));
   BW_THEN(st, BW_ALLOCATE(&pi->leaning, n));
+  /* Surface lists with room for all particles. */
   BW_THEN(st, BW_ALLOCATE(&pi->list, n));
   BW_THEN(st, BW_ALLOCATE(&pi->X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->normal, 3 * n));
@@ -65,6 +68,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->area, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->own_normal, 3 * n));
+  /* Normals of copies too: fits reach across ranks. */
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
     BW_THEN(st, BW_ALLOCATE(&pi->told[pass], 3 * pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->changed, pi->n_extended));
@@ -76,6 +80,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
   if (bw_pd_bond_settings(pi->pd)->disorder > 0)
     BW_THEN(st, BW_ALLOCATE(&pi->off_lattice, 9 * (n + ROWS)));
+  /* Scratch of the particle that is resolved. */
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
   BW_THEN(st, BW_ALLOCATE(&pi->near, slots));
@@ -94,6 +99,7 @@ static void place_walls(bw_pd_interface *pi)
         if (!c->walled[d][side]) continue;
         const double x = pi->X0[3 * h + (size_t)d];
         const double height = side ? c->upper[d] - x : x - c->lower[d];
+        /* Ghost layers beyond the wall are never surface; who reaches over it leans on it. */
         pi->outside[h] = pi->outside[h] || height < -tie;
         pi->leans[h] = pi->leans[h] || height < reach + tie;
       }
@@ -111,14 +117,17 @@ static void measure_reference(bw_pd_interface *pi)
   pi->area_new = pi->stencil.dims == 2 ? ds * c->thickness : ds * ds;
   const double least = 0.25 * pi->area_new; /* ridges of one particle still are markers */
   double total[2] = {0.0, 0.0};
+  /* Every particle with all its bonds, whatever has broken since. */
   for (size_t h = 0; h < pi->n; h++) {
     bw_pd_interface__resolve(pi, h, true);
     pi->first[h] = pi->surface[h] = bw_pd_interface__judge(pi, h, NULL);
     if (!pi->outside[h]) total[0] += bw_pd_interface__open_area(pi);
   }
+  /* Normals 3.45 of that surface, then their fits where it is smooth. */
   bw_pd_interface__renew(pi, true);
   memcpy(pi->first_normal, pi->normal, 3 * pi->n * sizeof *pi->normal);
   bw_pd_interface__settle_normals(pi);
+  /* Areas need the final normals: open sides projected on them. */
   for (size_t row = 0; row < pi->n_list; row++) {
     const size_t h = (size_t)pi->list[row];
     double n[3];
@@ -128,8 +137,10 @@ static void measure_reference(bw_pd_interface *pi)
     pi->area_first[h] = known ? fmax(facing, least) : pi->area_new;
     total[1] += 1.0;
   }
+  /* Area of the shape and number of its surface particles, on all ranks. */
   bw_comm_sum(bw_pd_bond_comm(pi->pd), 2, total);
   pi->area_total = total[0];
+  /* POROUS's choice: all alike. */
   for (size_t h = 0; pi->config.area == BW_PD_AREA_EQUAL && h < pi->n; h++)
     pi->area_first[h] = total[0] / total[1];
 }
@@ -156,6 +167,7 @@ bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *c
     pi->n_extended = bw_pd_bond_get_extended(pd).n;
     st = build(pi);
   }
+  /* Collective from here on. */
   st = bw_comm_agree(bw_pd_bond_comm(pd), st);
   if (st != BW_OK) {
     bw_pd_interface_destroy(&pi);
@@ -163,8 +175,10 @@ bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *c
   }
   bw_pd_bond_get_reference(pd, pi->X0);
   place_walls(pi);
+  /* The reference shape first, as if nothing had broken ... */
   memset(pi->stale, true, pi->n * sizeof *pi->stale);
   measure_reference(pi);
+  /* ... then the present one, which may be that of a restart. */
   memset(pi->stale, true, pi->n * sizeof *pi->stale);
   pi->fresh_start = true;
   *out = pi;

@@ -40,8 +40,10 @@ void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
   for (int r = 0; r < 3; r++) {
     int32_t *end = &pi->anchor[6 * h + 2 * (size_t)r];
     uint8_t *steps = &pi->steps[3 * h + (size_t)r];
+    /* Without partners on this line the element is missing: `complete` makes one. */
     end[0] = end[1] = (int32_t)h;
     *steps = r >= pi->stencil.dims; /* across a plane: ds, for good */
+    /* The first span of the list of which both ends hold. */
     for (size_t q = 0; r < pi->stencil.dims && q < sizeof spans / sizeof *spans; q++) {
       const int32_t to = partner_at(pi, h, r, spans[q][0]);
       const int32_t from = partner_at(pi, h, r, -spans[q][1]);
@@ -58,6 +60,7 @@ static void at_rest(const bw_pd_interface *pi, size_t block, lanes a[3][3])
 {
   const bw_pd_interface__lines *l = &pi->lines[block];
   const bw_pd_interface__stencil *s = &pi->stencil;
+  /* Whole steps of the lattice ... */
   for (int r = 0; r < 3; r++)
     for (int d = 0; d < 3; d++) {
       const double step = s->ds * s->axes[r][d];
@@ -65,6 +68,7 @@ static void at_rest(const bw_pd_interface *pi, size_t block, lanes a[3][3])
       for (int k = 0; k < ROWS; k++)
         a[r][d][k] = step * l->steps[r][k];
     }
+  /* ... and in a cloud what its particles differ from it. */
   if (pi->off_lattice == NULL) return;
   const double *more = &pi->off_lattice[9 * ROWS * block];
   for (int r = 0; r < 3; r++)
@@ -99,6 +103,7 @@ static inline void add_cross(lanes a[3], lanes b[3], lanes c[3])
  * when theirs are b. */
 static void complete(const bw_pd_interface__lines *l, lanes a[3][3], lanes (*b)[3])
 {
+  /* Product of the two others, in all lanes; taken only where an element is missing. */
   for (int r = 0; r < 3 && !l->whole; r++) {
     const int e = (r + 1) % 3, f = (r + 2) % 3;
     lanes product[3] = {{0}}, rate[3] = {{0}};
@@ -126,10 +131,12 @@ static void present(const bw_pd_interface *pi, size_t block, const bw_pd_bond_mo
                     lanes a[3][3], lanes (*b)[3], lanes c[3][3], lanes det)
 {
   const bw_pd_interface__lines *l = &pi->lines[block];
+  /* a_r = reference element + difference of displacements; b_r that of velocities. */
   at_rest(pi, block, a);
   add_between(l, now->u, a);
   if (b != NULL) add_between(l, now->v, b);
   complete(l, a, b);
+  /* c_r = a_{r+1} x a_{r+2}, the reciprocal lines times det. */
   for (int r = 0; r < 3; r++)
     add_cross(a[(r + 1) % 3], a[(r + 2) % 3], c[r]);
   dot(a[0], c[0], det);
@@ -155,6 +162,7 @@ void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *no
   const size_t blocks = (pi->n_list + ROWS - 1) / ROWS;
   if (blocks > 0) memset(pi->lines, 0, blocks * sizeof *pi->lines);
   if (pi->off_lattice != NULL) memset(pi->off_lattice, 0, 9 * ROWS * blocks * sizeof(double));
+  /* Ends of the elements in storage order, eight rows of the list side by side. */
   for (size_t row = 0; row < pi->n_list; row++) {
     const size_t h = (size_t)pi->list[row], k = row % ROWS;
     bw_pd_interface__lines *l = &pi->lines[row / ROWS];
@@ -167,11 +175,13 @@ void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *no
     }
     if (pi->off_lattice != NULL) note_cloud(pi, row, h);
   }
+  /* n0.a0 of each element: what stays while the body moves (Nanson). */
   for (size_t block = 0; block < blocks; block++) {
     lanes a[3][3], n[3] = {{0}};
     for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         n[d][row % ROWS] = pi->own_normal[3 * (size_t)pi->list[row] + d];
+    /* Missing elements are completed in the reference shape as they will be in the present one. */
     at_rest(pi, block, a);
     complete(&pi->lines[block], a, NULL);
     for (int r = 0; r < 3; r++)
@@ -187,6 +197,7 @@ static void tell_block(const bw_pd_interface *pi, size_t block, lanes n[3])
 #pragma omp simd
   for (int k = 0; k < ROWS; k++)
     scale[k] = 1.0 / sqrt(squared[k]);
+  /* The last block may be partly empty: its lanes are computed, not told. */
   for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++) {
     const size_t k = row % ROWS;
     for (size_t d = 0; d < 3; d++)
@@ -201,6 +212,7 @@ void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion
     const bw_pd_interface__lines *l = &pi->lines[block];
     lanes a[3][3], c[3][3] = {{{0}}}, n[3] = {{0}}, det;
     present(pi, block, now, a, NULL, c, det);
+    /* n ~ sum_r (n0.a0_r) c_r/det; only the sign of det matters, as n is made a unit vector. */
     for (int r = 0; r < 3; r++)
       for (int d = 0; d < 3; d++)
 #pragma omp simd
@@ -218,6 +230,7 @@ static void half_inverse(lanes a[3][3], lanes det)
     dot(a[r], a[r], length[r]);
 #pragma omp simd
   for (int k = 0; k < ROWS; k++) {
+    /* Relative to the elements' own lengths: a volume is never compared with an absolute number. */
     const double least = 1e-12 * length[0][k] * length[1][k] * length[2][k];
     det[k] = det[k] * det[k] > least ? 0.5 / det[k] : 0.0;
   }
@@ -229,9 +242,11 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
     lanes a[3][3], b[3][3] = {{{0}}}, c[3][3] = {{{0}}}, w[3] = {{0}}, half;
     present(pi, block, &now, a, b, c, half);
+    /* spin = 1/2 sum_r c_r x a'_r/det. */
     for (int r = 0; r < 3; r++)
       add_cross(c[r], b[r], w);
     half_inverse(a, half);
+    /* half is 1/(2 det), or 0 where no rotation can be told. */
     for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         spin[3 * row + d] = half[row % ROWS] * w[d][row % ROWS];
@@ -244,11 +259,13 @@ static void hand_over(const bw_pd_interface__lines *l, lanes a[3][3], lanes g[3]
   for (int r = 0; r < 3 && !l->whole; r++) {
     const int e = (r + 1) % 3, f = (r + 2) % 3;
     lanes lost[3];
+    /* What a missing element would have borne is taken off it ... */
     for (int d = 0; d < 3; d++)
       for (int k = 0; k < ROWS; k++) {
         lost[d][k] = l->steps[r][k] == 0 ? g[r][d][k] : 0.0;
         g[r][d][k] -= lost[d][k];
       }
+    /* ... and goes to those of which it is the product: the adjoint of `complete`. */
     add_cross(a[f], lost, g[e]);
     add_cross(lost, a[e], g[f]);
   }
@@ -274,10 +291,12 @@ void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double fo
   memset(all, 0, 3 * pi->n_extended * sizeof *all);
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
     lanes a[3][3], c[3][3] = {{{0}}}, g[3][3] = {{{0}}}, M[3] = {{0}}, half;
+    /* Moments of eight rows, side by side. */
     for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         M[d][row % ROWS] = moment[3 * row + d];
     present(pi, block, &now, a, NULL, c, half);
+    /* g_r = M x c_r/(2 det). */
     for (int r = 0; r < 3; r++)
       add_cross(M, c[r], g[r]);
     half_inverse(a, half);
@@ -285,9 +304,11 @@ void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double fo
       for (int d = 0; d < 3; d++)
         for (int k = 0; k < ROWS; k++)
           g[r][d][k] *= half[k];
+    /* Missing elements have no ends to push. */
     hand_over(&pi->lines[block], a, g);
     add_forces(pi, block, g, all);
   }
+  /* Ends on copies push their owners. */
   bw_pd_bond_sum_extended(pi->pd, all);
   for (size_t i = 0; i < 3 * pi->n; i++)
     force[i] += all[i];

@@ -23,9 +23,11 @@ static void guess_normal(const bw_pd_interface__stencil *s, uint32_t empty, doub
   const uint32_t group = bw_pd_interface__group(s, empty);
   double sum[3] = {0.0, 0.0, 0.0}, squared = 0.0;
   int lowest = -1;
+  /* Sum over the group of neighbouring empty sectors, the lowest of all. */
   for (int k = 0; k < s->sectors; k++) {
     if (!(group >> (unsigned)k & 1u)) continue;
     if (lowest < 0) lowest = k;
+    /* Sectors all around add up to nothing: then the lowest alone. */
     for (int d = 0; d < 3; d++)
       sum[d] += s->direction[k][d];
   }
@@ -39,7 +41,9 @@ void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty)
 {
   double *n = &pi->normal[3 * h];
   const double *first = &pi->first_normal[3 * h];
+  /* POROUS 3.45 over what holds now. */
   if (bw_pd_interface__normal_of(pi, n)) return;
+  /* The partners balance (a sheet): what it looked like before anything broke, or a guess. */
   if (first[0] != 0.0 || first[1] != 0.0 || first[2] != 0.0)
     memcpy(n, first, 3 * sizeof *n);
   else
@@ -61,6 +65,7 @@ static double dot(const double a[3], const double b[3])
 static void tangents(const double n[3], double t[2][3])
 {
   int least = 0;
+  /* The axis least along n is never parallel to it. */
   for (int d = 1; d < 3; d++)
     if (fabs(n[d]) < fabs(n[least])) least = d;
   double e[3] = {0.0, 0.0, 0.0};
@@ -95,9 +100,11 @@ static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit
   tangents(n, t);
   *sums = (fit_sums){{{1.0}}, {{n[0], n[1], n[2]}}}; /* h itself */
   for (size_t q = 0; q < count; q++) {
+    /* A wall without a mirror image has no normal. */
     if (near[q].partner < 0) continue;
     partner_normal(&near[q], all, other);
     if (!(dot(n, other) > 0.5)) continue; /* 60 degrees; 0 where there is no surface */
+    /* Reference places: the fit is a function of the bonds that hold, not of how the body moved. */
     const double *xi = &pi->stencil.xi[3 * near[q].slot];
     const double f[3] = {1.0, dot(t[0], xi), dot(t[1], xi)};
     for (int a = 0; a < 3; a++)
@@ -114,16 +121,20 @@ static double solve_fit(fit_sums *sums, int dims, double value[3])
   double(*m)[3] = sums->ff, inverse[3][3], c[3][3] = {{0.0}}, explained = 0.0;
   const double members = m[0][0], more = 1e-6 * (m[1][1] + m[2][2]);
   m[1][1] += more, m[2][2] += more; /* a line of members has no slope across */
+  /* Inverse of the symmetric 3 x 3 matrix by cofactors. */
   for (int a = 0; a < 3; a++)
     cross(m[(a + 1) % 3], m[(a + 2) % 3], inverse[a]);
   const double det = dot(m[0], inverse[0]);
+  /* Too few neighbours look the same way. */
   if (members < 5.0 || !(det > 0.0)) return INFINITY;
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++)
       for (int d = 0; d < 3; d++)
         c[a][d] += inverse[a][b] / det * sums->fn[b][d];
+    /* Residual of a least-squares fit: sum of squares less what the fit explains. */
     explained += dot(c[a], sums->fn[a]);
   }
+  /* c[0] is the value at h itself; its slopes are not needed any more. */
   const double length = sqrt(dot(c[0], c[0]));
   if (!(length > 0.5)) return INFINITY;
   for (int d = 0; d < 3; d++)
@@ -143,6 +154,7 @@ static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
  * for copies and images. Collective. */
 static void spread_change(bw_pd_interface *pi)
 {
+  /* Changes on other ranks reach h through its copies. */
   bw_pd_bond_fill_extended(pi->pd, sizeof *pi->changed, pi->changed, pi->changed);
   memcpy(pi->touched, pi->changed, pi->n * sizeof *pi->touched);
   for (size_t h = 0; h < pi->n; h++) {
@@ -152,6 +164,7 @@ static void spread_change(bw_pd_interface *pi)
       const int32_t l = near[q].partner;
       if (l < 0) continue;
       if (pi->changed[l]) pi->touched[h] = true;
+      /* Own partners know h as theirs, so one direction is enough; copies and images do not. */
       if (pi->changed[h] && (size_t)l < pi->n) pi->touched[l] = true;
     }
   }
@@ -162,16 +175,20 @@ static void spread_change(bw_pd_interface *pi)
 static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
 {
   const double none[3] = {0.0, 0.0, 0.0};
+  /* Normals of copies, and who has to be told anew. */
   bw_pd_bond_fill_extended(pi->pd, 3 * sizeof *from, from, from);
   spread_change(pi);
   for (size_t h = 0; h < pi->n; h++) {
     const bool there = dot(&from[3 * h], &from[3 * h]) > 0.0;
     double n[3];
     fit_sums sums;
+    /* Nothing near it has changed: its fit is what it was. */
     if (!pi->touched[h]) continue;
     memcpy(n, there ? &pi->normal[3 * h] : none, sizeof n);
     if (there) sum_fit(pi, h, from, &sums);
     const double rms = there ? solve_fit(&sums, pi->stencil.dims, n) : INFINITY;
+    /* First judgement: where the fit of a fit is rough, the
+     * particle keeps 3.45 and is not seen any more. */
     put(pi, to, h, !judge ? n : rms <= SMOOTH ? &pi->normal[3 * h] : none);
   }
 }
@@ -179,10 +196,13 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
 void bw_pd_interface__settle_normals(bw_pd_interface *pi)
 {
   const double none[3] = {0.0, 0.0, 0.0};
+  /* Pass 0: 3.45 of all surface particles, nothing elsewhere. */
   for (size_t h = 0; h < pi->n; h++)
     put(pi, pi->told[0], h, pi->surface[h] ? &pi->normal[3 * h] : none);
+  /* Fit, fit of the fit with judgement, and again two fits of those that are smooth. */
   for (int pass = 0; pass < BW_PD_INTERFACE__PASSES; pass++)
     fit_all(pi, pi->told[pass], pi->told[pass + 1], pass == 1);
+  /* The last fit where there is one, else 3.45. */
   for (size_t h = 0; h < pi->n; h++) {
     const double *n = &pi->told[BW_PD_INTERFACE__PASSES][3 * h];
     memcpy(&pi->own_normal[3 * h], dot(n, n) > 0.0 ? n : &pi->told[0][3 * h], 3 * sizeof *n);

@@ -8,6 +8,7 @@ void bw_pd_crack_crop(bw_pd_crack *crack, const double lower[2], const double up
   size_t kept = 0;
   for (size_t q = 0; q < crack->n; q++) {
     const double s = crack->s[q], t = crack->t[q];
+    /* Half-open, so that windows side by side share no particle. */
     if (s < lower[0] || s >= upper[0] || t < lower[1] || t >= upper[1]) continue;
     crack->s[kept] = s;
     crack->t[kept++] = t;
@@ -26,6 +27,7 @@ typedef struct {
 static void spread(const bw_pd_crack *c, size_t at, double s, double t, double gap, front *f)
 {
   size_t low = at, high = at;
+  /* In a list that rises in s only a strip of 2 gap has to be looked at. */
   while (low > 0 && c->s[low - 1] >= s - gap)
     low--;
   while (high < c->n && c->s[high] <= s + gap)
@@ -46,11 +48,14 @@ bw_status bw_pd_crack_join(bw_pd_crack *crack, double s, double t, double gap)
     size_t at = 0, kept = 0;
     while (at < crack->n && crack->s[at] < s)
       at++;
+    /* The front begins at the given point, which need not be a particle. */
     spread(crack, at, s, t, gap, &f);
+    /* Breadth first: the queue grows while it is read. */
     for (size_t k = 0; k < f.found; k++) {
       const size_t q = f.queue[k];
       spread(crack, q, crack->s[q], crack->t[q], gap, &f);
     }
+    /* What was not reached is dropped, the order stays. */
     for (size_t q = 0; q < crack->n; q++) {
       if (!f.reached[q]) continue;
       crack->s[kept] = crack->s[q];
@@ -68,6 +73,7 @@ double bw_pd_crack_reach(const bw_pd_crack *crack, double s, double t, double ti
   double farthest = NAN;
   for (size_t q = 0; q < crack->n; q++) {
     const double distance = hypot(crack->s[q] - s, crack->t[q] - t);
+    /* False against NaN, so the first particle is always taken. */
     if (distance <= farthest) continue;
     farthest = distance;
     if (tip != NULL) tip[0] = crack->s[q], tip[1] = crack->t[q];
@@ -86,13 +92,16 @@ bw_pd_crack_line bw_pd_crack_fit(const bw_pd_crack *crack, double s, double t, d
     x += ds, y += dt;
     xx += ds * ds, xy += ds * dt, yy += dt * dt;
   }
+  /* Fewer than four tell no direction. */
   if (line.n < 4) return line;
   const double n = (double)line.n;
   x /= n, y /= n;
   xx = xx / n - x * x, xy = xy / n - x * y, yy = yy / n - y * y;
+  /* Principal axis of the second moments; the smaller eigenvalue is the width squared. */
   line.angle = 0.5 * atan2(2.0 * xy, xx - yy);
   const double smaller = 0.5 * (xx + yy) - hypot(0.5 * (xx - yy), xy);
   line.width = sqrt(fmax(smaller, 0.0));
+  /* An axis has no sense of direction: away from the start. */
   if (x * cos(line.angle) + y * sin(line.angle) < 0.0)
     line.angle += line.angle > 0.0 ? -acos(-1.0) : acos(-1.0);
   return line;

@@ -16,6 +16,7 @@ static bool reflect(const bw_pd_interface *pi, const double X0[3], const double 
     const bool low = c->walled[d][0] && x < c->lower[d] - tie;
     const bool high = c->walled[d][1] && x > c->upper[d] + tie;
     image[d] = xi[d];
+    /* Mirrored in the plane: what stands as far on this side. */
     if (low) image[d] = 2.0 * (c->lower[d] - X0[d]) - xi[d];
     if (high) image[d] = 2.0 * (c->upper[d] - X0[d]) - xi[d];
     *cross = (uint8_t)(*cross | (low ? 1u : high ? 2u : 0u) << (2 * d));
@@ -32,8 +33,10 @@ static void fill_images(bw_pd_interface *pi, size_t h)
   for (int q = 0; q < s->slots; q++) {
     double image[3], nothing[3];
     uint8_t cross, again;
+    /* A bond across the wall that broke stays broken. */
     if (pi->state[q] == BW_PD_INTERFACE__BROKEN) continue;
     if (!reflect(pi, X0, &s->xi[3 * q], image, &cross)) continue;
+    /* A particle on the wall may be its own image. */
     const double still = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
     const bool itself = still < 0.25 * s->ds;
     const int m = itself ? -2 : bw_pd_interface__slot_of(s, image);
@@ -41,6 +44,8 @@ static void fill_images(bw_pd_interface *pi, size_t h)
     bw_pd_interface__near *near = &pi->near[q];
     near->slot = (int16_t)q;
     near->cross = cross;
+    /* Four cases: itself, a partner's image, the image of a
+     * place where nobody is, no mirror at all. */
     if (itself) {
       pi->state[q] = BW_PD_INTERFACE__INTACT;
       near->partner = (int32_t)h;
@@ -61,6 +66,7 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd
   const bw_pd_interface_config *c = &pi->config;
   bool off = false;
   for (size_t d = 0; d < 3; d++) {
+    /* Away from the wall, along its normal. */
     const double moved = (double)now->u[d][now->place[h]];
     off = off || (c->walled[d][0] && moved > pi->opening);
     off = off || (c->walled[d][1] && moved < -pi->opening);
@@ -71,6 +77,7 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd
 void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
+  /* Nobody is there, but for those that the solid lists. */
   memset(pi->state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
   const int family = bw_pd_bond_links(pi->pd, h, pi->link);
   for (int q = 0; q < family; q++) {
@@ -79,6 +86,7 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
     pi->state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
     pi->near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
   }
+  /* A wall counts as solid until the particle has moved off it. */
   if (pi->leans[h] && (reference || !pi->off[h])) fill_images(pi, h);
 }
 
@@ -89,12 +97,14 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_bond_mot
   memcpy(x, &pi->stencil.xi[3 * near->slot], 3 * sizeof *x);
   if (now == NULL || near->partner < 0) return;
   const size_t l = (size_t)near->partner;
+  /* In a cloud partners are not where the stencil has them. */
   if (pi->off_lattice != NULL) {
     bw_pd_bond_get_place(pi->pd, l, x);
     for (size_t d = 0; d < 3; d++)
       x[d] -= pi->X0[3 * h + d];
   }
   for (size_t d = 0; d < 3; d++) {
+    /* An image moves the other way along the wall's normal. */
     const bool image = (near->cross >> (2 * d) & 3) != 0;
     const double moved = (double)now->u[d][now->place[l]];
     x[d] += (image ? -moved : moved) - (double)now->u[d][now->place[h]];
@@ -112,6 +122,7 @@ void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   uint32_t held = 0, known = 0;
+  /* A direction on a border belongs to several sectors. */
   for (int q = 0; q < s->slots; q++) {
     if (pi->state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
     if (pi->state[q] != BW_PD_INTERFACE__ABSENT) known |= s->sector_of[q];
@@ -127,6 +138,7 @@ uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
   double sum[BW_PD_INTERFACE__SECTORS] = {0.0}, broken[BW_PD_INTERFACE__SECTORS] = {0.0};
   uint32_t empty, never;
   bw_pd_interface__bare_sectors(pi, &empty, &never);
+  /* Only sectors without an intact bond can be empty; their broken partners tell how far. */
   for (int q = 0; q < s->slots; q++) {
     if (pi->state[q] != BW_PD_INTERFACE__BROKEN || (s->sector_of[q] & empty) == 0) continue;
     const double *x = &pi->place[3 * q];
@@ -143,8 +155,10 @@ bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
+  /* POROUS 3.45: minus the centroid of what is there, in the reference shape. */
   for (int q = 0; q < s->slots; q++) {
     if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+    /* POROUS 3.46. */
     for (int d = 0; d < 3; d++)
       mean[d] += s->fraction[q] * s->xi[3 * q + d];
     weight += s->fraction[q];
@@ -167,6 +181,7 @@ static double face_projection(const bw_pd_interface *pi, const double e[3])
   const double half = 0.5 * s->ds, c[3] = {half * e[0], half * e[1], half * e[2]};
   const double radius = s->family - 0.5 * s->ds;
   double v[3] = {-c[0] * s->ds, -c[1] * s->ds, -c[2] * s->ds}; /* the particle itself, weight ds */
+  /* Centroid, about the face, of the partners in the ball. */
   for (int q = 0; q < s->slots; q++) {
     if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
     const double *xi = &s->xi[3 * q];
@@ -184,6 +199,7 @@ static int open_sides(const bw_pd_interface *pi, double e[][3])
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   int open = 0;
+  /* A side is open when its neighbour on the lattice is missing altogether. */
   for (int r = 0; r < s->dims; r++)
     for (int side = -1; side <= 1; side += 2) {
       double xi[3];

@@ -24,6 +24,7 @@ static uint32_t sectors_in_space(const int o[3])
   for (int d = 0; d < 3; d++)
     if (abs(o[d]) > largest) largest = abs(o[d]);
   uint32_t bits = 0;
+  /* Zero components fit both signs, equal ones several axes: the sectors are closed. */
   for (int octant = 0; octant < 8; octant++)
     for (int axis = 0; axis < 3; axis++) {
       bool in = abs(o[axis]) == largest;
@@ -54,10 +55,12 @@ static void lay_out_sectors(bw_pd_interface__stencil *s)
   s->sectors = s->dims == 2 ? 8 : 24;
   for (int k = 0; k < s->sectors; k++) {
     double middle[3] = {0.0, 0.0, 0.0};
+    /* In the plane the neighbours are those before and after, around the circle. */
     if (s->dims == 2) {
       s->adjacent[k] = 1u << (unsigned)((k + 1) % 8) | 1u << (unsigned)((k + 7) % 8);
       middle[0] = cos(k * acos(-1.0) / 4.0), middle[1] = sin(k * acos(-1.0) / 4.0);
     } else {
+      /* In space: the octant's other two sectors, and the same axis in the two octants beside it. */
       const int octant = k / 3, axis = k % 3;
       s->adjacent[k] = 0;
       for (int d = 0; d < 3; d++) {
@@ -93,6 +96,7 @@ static size_t slot_index(const bw_pd_interface__stencil *s, const int o[3])
 int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3])
 {
   int o[3];
+  /* Within a quarter of a spacing of a site, else it is none. */
   if (!lattice_offset(s, xi, o)) return -2;
   for (int d = 0; d < 3; d++)
     if (abs(o[d]) > s->reach) return -1;
@@ -108,15 +112,18 @@ bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface_
   s->family = c->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
   s->slots = bw_pd_bond_max_family(pd);
+  /* A cloud's partners may stand in sites beyond the horizon, by twice the disorder. */
   s->reach = (int)floor(c->horizon_ratio + 0.5 + 2.0 * c->disorder);
   const size_t n = (size_t)s->slots, w = (size_t)(2 * s->reach + 1);
   BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
   BW_TRY(BW_ALLOCATE(&s->fraction, n));
   BW_TRY(BW_ALLOCATE(&s->sector_of, n));
   BW_TRY(BW_ALLOCATE(&s->slot_at, w * w * w));
+  /* No slot but for the stencil's own offsets. */
   for (size_t q = 0; q < w * w * w; q++)
     s->slot_at[q] = -1;
   lay_out_sectors(s);
+  /* Every direction of the solid's stencil finds its sectors, once. */
   for (int q = 0; q < s->slots; q++) {
     int o[3];
     memcpy(&s->xi[3 * q], bw_pd_bond_stencil_offset(pd, q), 3 * sizeof(double));
@@ -148,6 +155,7 @@ static int bits_set(uint32_t x)
 
 uint32_t bw_pd_interface__group(const bw_pd_interface__stencil *s, uint32_t empty)
 {
+  /* The lowest bit, then what touches it, until nothing is added. */
   uint32_t group = empty & (~empty + 1), before = 0;
   while (group != before) {
     before = group;
@@ -160,6 +168,7 @@ uint32_t bw_pd_interface__group(const bw_pd_interface__stencil *s, uint32_t empt
 bool bw_pd_interface__is_open(const bw_pd_interface__stencil *s, uint32_t empty, int n_empty)
 {
   bool open = false;
+  /* Group by group: one that is large enough opens the particle. */
   while (empty != 0) {
     const uint32_t group = bw_pd_interface__group(s, empty);
     open = open || bits_set(group) >= n_empty;

@@ -25,6 +25,7 @@ static bw_status grow(double **values, size_t n, size_t room)
 
 bw_status bw_pd_crack_track_note(bw_pd_crack_track *track, double time, double place)
 {
+  /* No farther than before by a step: no arrival. */
   if (track->n > 0 && !(place > track->place[track->n - 1] + track->step)) return BW_OK;
   if (track->n == track->room) {
     const size_t room = 2 * track->room + 64;
@@ -43,6 +44,7 @@ double bw_pd_crack_speed(const bw_pd_crack_track *track, double window, double u
   double most = 0.0;
   size_t from = 0;
   for (size_t k = 1; k < track->n && !(time[k] > until); k++) {
+    /* The latest arrival that is at least a window ago; `from` never goes back. */
     while (from + 1 < k && time[k] - time[from + 1] >= least)
       from++;
     const double taken = time[k] - time[from];
@@ -62,6 +64,7 @@ static double place_at(const bw_pd_crack_track *track, double time)
 
 double bw_pd_crack_speed_at(const bw_pd_crack_track *track, double window, double time)
 {
+  /* A mean over a fixed window, so that a crack that stops is seen to slow down. */
   if (track->n == 0) return 0.0;
   return (place_at(track, time) - place_at(track, time - window)) / window;
 }

@@ -12,8 +12,10 @@ bw_probe_config bw_probe_config_default(void)
 
 static bw_status check(const bw_grid_view *g, const bw_probe_config *c)
 {
+  /* Every refusal names the value and the range; all ranks have the same configuration. */
   BW_REQUIRE((int)c->kernel >= 0 && c->kernel < BW_KERNEL_COUNT, BW_EINPUT,
              "kernel: no row %d in the table of %d", (int)c->kernel, (int)BW_KERNEL_COUNT);
+  /* Differences widen the support by a node, and a halo of two holds four. */
   BW_REQUIRE(bw_kernel_delta_get(c->kernel)->support < PROBE_WIDTH, BW_EINPUT,
              "kernel %s: its differences need %d nodes per direction, the halo gives 4; use roma3",
              bw_kernel_delta_get(c->kernel)->name, bw_kernel_delta_get(c->kernel)->support + 1);
@@ -40,6 +42,7 @@ bw_status bw_probe_create(bw_grid *grid, const bw_probe_config *config, bw_probe
   b->grid = grid;
   b->g = g;
   b->kernel = bw_kernel_delta_get(config->kernel);
+  /* The stencil's differences and the probe's length go by the largest spacing. */
   b->h = fmax(g->spacing[0], g->spacing[1]);
   if (g->n[2] > 1) b->h = fmax(b->h, g->spacing[2]);
   b->full = config->length * b->h;
@@ -76,6 +79,7 @@ bw_status bw_probe_set_obstacles(bw_probe *probe, const bw_real *solid)
   probe->in_the_way = solid != NULL;
   if (solid == NULL) return BW_OK;
   if (probe->obstacles == NULL) BW_TRY(BW_ALLOCATE(&probe->obstacles, size));
+  /* A byte per cell: what is looked at along a probe then stays in the cache. */
   for (size_t i = 0; i < size; i++)
     probe->obstacles[i] = solid[i] > (bw_real)0.5;
   return BW_OK;
@@ -137,16 +141,20 @@ static void quadratic_profile(const bw_probe *b, const bw_probe__reply *r, const
                               double dl, const surface_motion *s, double t[3])
 {
   const double *w = s->spin;
+  /* n x spin: how a surface that turns drags u along with it. */
   const double turn[3] = {n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2],
                           n[0] * w[1] - n[1] * w[0]};
   double slope[3], an = 0.0, bend = 0.0;
+  /* Slope and curvature at the wall from V there and value and slope at the tip. */
   for (int c = 0; c < 3; c++) {
     const wall_end e = parabola_through(&r->u[c], s->V[c], dl);
     slope[c] = e.slope;
     an += e.slope * n[c];
     bend += e.curvature * n[c];
   }
+  /* POROUS 3.85 with the sign of ERRATA 19; momentum along n gives dp/dn, viscous part included. */
   const double p = wall_pressure(&r->p, b->nu * bend - dot(s->A, n), dl);
+  /* POROUS 3.94 in any directions, by ERRATA 10: t = -p n + mu (grad u + grad u^T).n. */
   for (int c = 0; c < 3; c++)
     t[c] = b->rho * (-p * n[c] + b->nu * (slope[c] + an * n[c] + turn[c]));
 }
@@ -160,10 +168,13 @@ static const profile_fn profile_of[BW_PROBE_PROFILES] = {
 static void probe_set(bw_probe *b, bw_probe__tips *t, bw_real *const u[3], const bw_real *p,
                       const double A[], double traction[])
 {
+  /* Read where the tips' cells are ... */
   bw_probe__at_tips(b, u, p, t->held, t->received, t->reply);
+  /* ... and sent back to the ranks of the points. */
   if (t->plan != NULL) bw_exchange_backward(t->plan, sizeof *t->reply, t->reply, t->answer);
   for (size_t s = 0; s < t->n; s++) {
     const size_t i = t->from[s];
+    /* This tip saw an obstacle; a shorter one of the same point is read instead. */
     if (!t->read[s]) continue;
     const surface_motion m = {row_of(b->V, i), row_of(b->spin, i), row_of(A, i)};
     profile_of[b->profile](b, &t->answer[s], b->normal + 3 * i, b->length[i], &m, traction + 3 * i);
@@ -173,7 +184,9 @@ static void probe_set(bw_probe *b, bw_probe__tips *t, bw_real *const u[3], const
 void bw_probe_traction(bw_probe *b, bw_real *const u[3], const bw_real *p, const double A[],
                        double traction[], unsigned char flag[])
 {
+  /* Blocked points keep zero. */
   if (b->n > 0) memset(traction, 0, 3 * b->n * sizeof *traction);
+  /* Tips that only look for obstacles have no reading. */
   for (int t = 0; t < PROBE_SETS; t++)
     if (t != PROBE_NEAR) probe_set(b, &b->tips[t], u, p, A, traction);
   if (flag != NULL && b->n > 0) memcpy(flag, b->flag, b->n);

@@ -45,6 +45,7 @@ typedef struct {
 /* The parabola through the three nodes nearest to s: moments 1, 0, 0. */
 static inline point_weights parabola(double s)
 {
+  /* The middle node is the nearest one: r is at most half a cell. */
   const double nearest = floor(s + 0.5), r = s - nearest;
   return (point_weights){.s = s,
                          .w = {0.5 * r * (r - 1.0), 1.0 - r * r, 0.5 * r * (r + 1.0)},
@@ -60,9 +61,11 @@ static inline void combine(const bw_probe *probe, int d, const point_weights *ti
 {
   const bw_grid_view *g = probe->g;
   const int highest = g->m[d] + g->halo[d] - PROBE_WIDTH + 1;
+  /* The window of four nodes must end within the halo. */
   w->first = lower->first < highest ? lower->first : highest;
   const int by = lower->first - w->first;
   const row down = window(lower->w, by), up = window(lower->w, by + 1);
+  /* Mean and difference quotient over one cell, as weights. */
   store(0.5 * (up + down), w->mean);
   store((up - down) * (1.0 / g->spacing[d]), w->slope);
   const point_weights at = probe->profile == BW_PROBE_QUADRATIC ? parabola(tip->s) : *tip;
@@ -80,19 +83,23 @@ void bw_probe__weigh(const bw_probe *probe, size_t n, const bw_probe__item item[
   const int dims = g->n[2] == 1 ? 2 : 3;
   double s[LINES][PROBE_BATCH] = {{0.0}}, w[BW_KERNEL_MAX_SUPPORT][LINES][PROBE_BATCH] = {{{0.0}}};
   int first[LINES][PROBE_BATCH];
+  /* Places of the whole batch, in cells of this rank. */
   for (size_t i = 0; i < n; i++)
     for (int d = 0; d < dims; d++) {
       const double local = item[i].tip[d] / g->spacing[d] - g->lo[d];
       s[d][i] = fmin(fmax(local, 0.0), (double)g->m[d]);
       s[3 + d][i] = s[d][i] + 0.5;
     }
+  /* One call for all, as the kernel's roots are vectorised. */
   bw_kernel_delta_weights(probe->kernel, LINES * PROBE_BATCH, s[0], first[0], w[0][0]);
   for (size_t i = 0; i < n; i++) {
     for (int d = 0; d < dims; d++) {
+      /* The lower end of a face's stencil is a centre's place, and the other way round. */
       const int e = 3 + d;
       const point_weights face = {s[d][i], {w[0][d][i], w[1][d][i], w[2][d][i]}, first[d][i]};
       point_weights centre = {s[e][i], {w[0][e][i], w[1][e][i], w[2][e][i]}, first[e][i]};
       combine(probe, d, &centre, &face, &tip[i].w[PROBE_CENTRE][d]);
+      /* Half a cell below the face is the centre of one node less. */
       centre.first--;
       combine(probe, d, &face, &centre, &tip[i].w[PROBE_FACE][d]);
     }
@@ -121,14 +128,17 @@ bw_probe__sample bw_probe__evaluate(const bw_probe *probe, const bw_real *f, int
   const bw_probe__weights *z = weights_of(tip, component, 2);
   const bw_real *corner = f + corner_of(g, component, tip);
   row at = {0}, dx = {0}, dy = {0}, dz = {0};
+  /* POROUS 3.83, 3.84 and their differences: value and three derivatives share every read. */
   for (int k = 0; k < depth; k++) {
     row at_y = {0}, mean_y = {0}, slope_y = {0};
+    /* Along y; x stays a vector until the end. */
     for (int j = 0; j < PROBE_WIDTH; j++) {
       const row v = load_field(corner + k * g->stride[2] + j * g->stride[1]);
       at_y += y->at[j] * v;
       mean_y += y->mean[j] * v;
       slope_y += y->slope[j] * v;
     }
+    /* Along z: means in the directions across a difference, its slope along it. */
     at += z->at[k] * at_y;
     dx += z->mean[k] * mean_y;
     dy += z->mean[k] * slope_y;
@@ -162,6 +172,7 @@ static bw_probe__reply at_tip(const bw_probe *probe, bw_real *const u[3], const 
 {
   const bw_probe__sample s = bw_probe__evaluate(probe, p, 3, tip);
   bw_probe__reply r = {.p = along_normal(&s, n)};
+  /* (grad u)^T.n for the linear profile, slopes along n for both. */
   for (int c = 0; c < 3 && u[c] != NULL; c++) {
     const bw_probe__sample v = bw_probe__evaluate(probe, u[c], c, tip);
     r.u[c] = along_normal(&v, n);
@@ -177,12 +188,15 @@ void bw_probe__at_tips(const bw_probe *probe, bw_real *const u[3], const bw_real
   bw_probe__tip tip[PROBE_BATCH];
   for (size_t q = 0; q < n; q += PROBE_BATCH) {
     const size_t some = n - q < PROBE_BATCH ? n - q : PROBE_BATCH;
+    /* Weights of the batch, ... */
     bw_probe__weigh(probe, some, item + q, tip);
+    /* ... its rows asked for, as tips lie scattered in memory, ... */
     for (size_t i = 0; i < some; i++) {
       fetch(probe, p, 3, &tip[i]);
       for (int c = 0; c < 3 && u[c] != NULL; c++)
         fetch(probe, u[c], c, &tip[i]);
     }
+    /* ... and read when they have come. */
     for (size_t i = 0; i < some; i++)
       reply[q + i] = at_tip(probe, u, p, item[q + i].normal, &tip[i]);
   }

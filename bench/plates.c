@@ -11,7 +11,7 @@
  *
  * halo_48x32x32: copies of other ranks' particles; floor: the three layers at the cut.
  *
- * BUILD modules=pd_bond,pd_interface,shape
+ * BUILD modules=solid,solid_tools,pd_interface,shape
  * TEST ranks=2 */
 #include "../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
 #include "../cases/notched_plate/specimen_crack.c"

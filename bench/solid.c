@@ -4,7 +4,7 @@
  * (bench/lammps_block.in), run just before by `./run bench solid` when the executable lmp is there
  * (Debian package lammps). Floor: positions read once and forces
  * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
- * BUILD modules=pd_bond,shape
+ * BUILD modules=solid,solid_tools,shape
  * TEST ranks=2 */
 #include "bw_bench_solid.h"
 #include "bw_memory.h"

@@ -11,7 +11,7 @@
  *              motion, by integrator and step over its limit; force evaluations per period
  * Core-seconds are processor time on one rank. Each case gives two rows, `error` and
  * `cost`; tools/plot_trade.py draws them.
- * BUILD modules=ns_channel,ibm_mdf,probe,pd_bond
+ * BUILD modules=ns_channel,ibm_mdf,probe,solid,solid_tools
  * TEST ranks=1 */
 #include "../cases/cylinder_drag/cylinder_flow.h"
 #include "bw_bench.h"

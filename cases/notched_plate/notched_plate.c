@@ -2,7 +2,7 @@
  * turned lattice, one in three dimensions (ADAPT chapters 5 and 6).
  *
  * Run:   build/bin/notched_plate cases/notched_plate/notched_plate.yaml --out out/kalthoff
- * BUILD modules=pd_bond,pd_interface,vtk */
+ * BUILD modules=solid,solid_tools,pd_interface,vtk */
 #include "specimen_main.h"
 
 int main(int argc, char **argv)

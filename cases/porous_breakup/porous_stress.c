@@ -20,10 +20,10 @@ bw_status porous_tensors_make(porous_run *p, porous_tensors *t)
   /* One tensor after the other in the same array: stress, then strain from F. */
   if (st == BW_OK) {
     bw_pd_stress_compute(p->solid, F, tensor);
-    bw_pd_stress_von_mises(n, tensor, t->von_mises);
-    st = bw_pd_stress_principal(n, tensor, t->stress, NULL);
-    bw_pd_stress_strain(n, F, tensor);
-    BW_THEN(st, bw_pd_stress_principal(n, tensor, t->strain, NULL));
+    bw_pd_tensor_von_mises(n, tensor, t->von_mises);
+    st = bw_pd_tensor_principal(n, tensor, t->stress, NULL);
+    bw_pd_tensor_strain(n, F, tensor);
+    BW_THEN(st, bw_pd_tensor_principal(n, tensor, t->strain, NULL));
     st = bw_comm_agree(p->comm, st);
   }
   bw_release(&F);

@@ -1,5 +1,5 @@
 /* A notched bar is pulled apart: one end held, the other drawn away, until it snaps.
- * BUILD modules=pd_bond,shape
+ * BUILD modules=solid,solid_tools,shape
  * TEST  ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"

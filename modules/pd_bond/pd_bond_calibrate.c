@@ -7,7 +7,7 @@
  * alpha = 1 but with the correction by tensor, whose factors refer to that c0 always.
  * V0 of the volume method is the full family's own volume: alpha = 1 in the bulk.
  * In a cloud every family differs: the sums are means over many, and of all directions n. */
-#include "pd_bond_internal.h"
+#include "pd_bond.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,56 +15,65 @@
 static const double PI = 3.14159265358979323846;
 
 /* With the fixed Poisson ratios 3 E, E/(1 - nu) = 3E/2 and 2 (lambda + mu) = 8E/5. */
-double bw_pd_bond__classical_dilation(const bw_pd_bond_config *c)
+double bw_pd_bond__classical_dilation(const bw_pd_body_config *c, double E)
 {
   const double factor[] = {3, 1.5, 1.6};
-  return factor[c->geometry] * c->E;
+  return factor[c->geometry] * E;
 }
 
-static void lattice_sums(bw_pd_bond *pd)
+static void lattice_sums(bw_pd_body *pd)
 {
-  const bw_pd_stencil *s = &pd->stencil;
-  memset(&pd->full, 0, sizeof pd->full);
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  const bw_pd_stencil *s = &pd->level->stencil;
+  memset(&state->full, 0, sizeof state->full);
   for (int q = 0; q < s->n; q++) {
-    const double w = s->fraction[q] * pd->dv, along = pd->config.ds * s->offset[3 * q];
-    pd->full.volume += w;
-    pd->full.moment += w * s->r0[q];
-    pd->full.crossing += along > 0 ? s->bulk[q] * w * s->r0[q] * along : 0;
+    const double w = s->fraction[q] * pd->level->dv, along = pd->level->ds * s->offset[3 * q];
+    state->full.volume += w;
+    state->full.moment += w * s->r0[q];
+    state->full.crossing += along > 0 ? state->bulk[q] * w * s->r0[q] * along : 0;
   }
 }
 
 /* The mean of xi.n > 0 over all n is |xi|/pi in the plane and |xi|/4 in space. */
-static bw_status cloud_sums(bw_pd_bond *pd)
+static bw_status cloud_sums(bw_pd_body *pd)
 {
-  const double ds = pd->config.ds;
+  const double ds = pd->level->ds;
+  bw_pd_bond_full *full = &bw_pd_bond__own(pd)->full;
   double mean[3];
-  BW_TRY(bw_pd_bond__cloud_means(pd, mean));
-  pd->full.volume = pd->dv * mean[0];
-  pd->full.moment = pd->dv * ds * mean[1];
-  pd->full.crossing = pd->dv * ds * ds * mean[2] / (pd->dimension == 3 ? 4 : PI);
+  BW_TRY(bw_pd_body_cloud_means(pd, mean));
+  full->volume = pd->level->dv * mean[0];
+  full->moment = pd->level->dv * ds * mean[1];
+  full->crossing = pd->level->dv * ds * ds * mean[2] / (pd->dimension == 3 ? 4 : PI);
   return BW_OK;
 }
 
-bw_status bw_pd_bond__full_family(bw_pd_bond *pd)
+bw_status bw_pd_bond__full_family(bw_pd_body *pd)
 {
-  const bw_pd_bond_config *c = &pd->config;
-  if (c->calibration == BW_PD_CALIBRATION_NONE && c->surface_correction != BW_PD_SURFACE_TENSOR)
+  const bw_pd_bond_options *o = &bw_pd_bond__state(pd)->options;
+  if (o->calibration == BW_PD_CALIBRATION_NONE && o->surface_correction != BW_PD_SURFACE_TENSOR)
     return BW_OK;
-  if (c->disorder > 0) return cloud_sums(pd);
+  if (pd->config.disorder > 0) return cloud_sums(pd);
   lattice_sums(pd);
   return BW_OK;
 }
 
-/* After material and the sums, and after every change of G0. */
-void bw_pd_bond__calibrate(bw_pd_bond *pd)
+/* After material and the sums. Between two groups both c0 and G0 c0 scale with their E, whose harmonic
+ * mean the material has taken. */
+void bw_pd_bond__calibrate(bw_pd_body *pd)
 {
-  const bw_pd_bond_config *c = &pd->config;
-  const double d = pd->horizon;
-  const bool lattice = c->calibration == BW_PD_CALIBRATION_LATTICE;
-  pd->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
-  if (lattice || c->surface_correction == BW_PD_SURFACE_TENSOR)
-    pd->c0 = 4 * bw_pd_bond__classical_dilation(c) / pd->full.moment;
-  if (!lattice) return;
-  pd->full_volume = pd->full.volume;
-  pd->s0 = sqrt(2 * c->G0 / (pd->c0 * pd->full.crossing));
+  const bw_pd_body_config *c = &pd->config;
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  const bool lattice = state->options.calibration == BW_PD_CALIBRATION_LATTICE;
+  const double d = pd->level->horizon;
+  state->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
+  if (lattice) state->full_volume = state->full.volume;
+  for (int g = 0; g < c->n_group; g++)
+    for (int h = 0; h < c->n_group; h++) {
+      const double E = bw_pd_bond__joint_E(c, g, h);
+      if (lattice || state->options.surface_correction == BW_PD_SURFACE_TENSOR)
+        state->c0[g][h] = 4 * bw_pd_bond__classical_dilation(c, E) / state->full.moment;
+      if (lattice)
+        state->s0[g][h] =
+            sqrt(2 * bw_pd_bond__joint_G0(c, g, h) / (state->c0[g][h] * state->full.crossing));
+    }
 }

@@ -18,7 +18,8 @@
  * residual there, between the bounds. The number of sweeps is fixed and nothing is summed over
  * particles: the factors are the same to the last bit on any number of ranks. */
 #include "bw_memory.h"
-#include "pd_bond_sweep.h"
+#include "pd_bond.h"
+#include "pd_sweep.h"
 
 enum { EVEN = 15, MOST = 22, SWEEPS = 60 };
 static const double LOW = 0.25, HIGH = 65535 * BW_PD_ALPHA_UNIT;
@@ -75,10 +76,10 @@ static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
 }
 
 /* The conditions of direction q, not yet orthonormal; returns K. Distances in ds. */
-static int conditions(const bw_pd_bond *pd, int q, double f[MOST])
+static int conditions(const bw_pd_body *pd, int q, double f[MOST])
 {
-  const bw_pd_stencil *s = &pd->stencil;
-  const double r = s->r0[q] / pd->config.ds;
+  const bw_pd_stencil *s = &pd->level->stencil;
+  const double r = s->r0[q] / pd->level->ds;
   int power[EVEN][3];
   double e[3];
   for (int k = 0; k < 3; k++)
@@ -115,10 +116,11 @@ static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, con
   return true;
 }
 
-/* phi, T and the multipliers of a full family, whose factors 1 + full.phi go to stencil.bulk. */
-static bw_status basis(bw_pd_bond *pd, solver *v)
+/* phi, T and the multipliers of a full family, whose factors 1 + full.phi go to state.bulk. */
+static bw_status basis(bw_pd_body *pd, solver *v)
 {
-  bw_pd_stencil *s = &pd->stencil;
+  const bw_pd_stencil *s = &pd->level->stencil;
+  double *bulk = bw_pd_bond__own(pd)->bulk;
   const size_t n = (size_t)s->n;
   double *rows = NULL, total = 0;
   int power[EVEN][3], all = MOST;
@@ -129,7 +131,7 @@ static bw_status basis(bw_pd_bond *pd, solver *v)
     all = conditions(pd, q, f);
     for (int k = 0; k < all; k++)
       rows[(size_t)k * n + (size_t)q] = f[k];
-    total += s->fraction[q] * s->r0[q] / pd->config.ds;
+    total += s->fraction[q] * s->r0[q] / pd->level->ds;
   }
   for (int k = 0; k < all; k++) {
     double *f = rows + (size_t)v->n * n,
@@ -145,7 +147,7 @@ static bw_status basis(bw_pd_bond *pd, solver *v)
   for (int k = 0; k < v->n && st == BW_OK; k++)
     for (size_t q = 0; q < n; q++) {
       v->phi[q * (size_t)v->n + (size_t)k] = (bw_real)rows[(size_t)k * n + q];
-      s->bulk[q] += v->full[k] * rows[(size_t)k * n + q];
+      bulk[q] += v->full[k] * rows[(size_t)k * n + q];
     }
   bw_release(&rows);
   return st;
@@ -159,11 +161,11 @@ static vec clipped(vec x)
 }
 
 /* The factors of a slot. Both ends do the same operations on the same numbers. */
-INLINE vec factors(const bw_pd_bond *pd, const solver *v, const bw_pd_block *block,
+INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
                    const bw_pd_slot *slot, int n)
 {
   const bw_real *phi = v->phi + slot->direction * n;
-  const bw_real *back = v->phi + (pd->stencil.n - 1 - slot->direction) * n;
+  const bw_real *back = v->phi + (pd->level->stencil.n - 1 - slot->direction) * n;
   vec mine = vec_all(0), other = vec_all(0);
   for (int k = 0; k < n; k++) {
     mine = vec_fma(vec_all(phi[k]), vec_load(v->at[k] + block->first), mine);
@@ -173,17 +175,17 @@ INLINE vec factors(const bw_pd_bond *pd, const solver *v, const bw_pd_block *blo
 }
 
 /* Ascent of one block's multipliers, to `next` (own): copies and neighbours still read the old. */
-INLINE void ascend(const bw_pd_bond *pd, const solver *v, const bw_pd_block *block,
+INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
                    bw_real *const next[], int n)
 {
   vec rest[MOST];
   for (int k = 0; k < n; k++)
     rest[k] = vec_all((bw_real)v->target[k]);
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
-    const bw_pd_slot *slot = &pd->slot[q];
+    const bw_pd_slot *slot = &pd->bonds.slot[q];
     const bw_real *phi = v->phi + slot->direction * n;
     const vec alpha = vec_keep(lanes_of(slot->family), factors(pd, v, block, slot, n)) *
-                      (bw_real)pd->stencil.fraction[slot->direction];
+                      (bw_real)pd->level->stencil.fraction[slot->direction];
     for (int k = 0; k < n; k++)
       rest[k] = vec_fnma(vec_all(phi[k]), alpha, rest[k]);
   }
@@ -192,17 +194,17 @@ INLINE void ascend(const bw_pd_bond *pd, const solver *v, const bw_pd_block *blo
 }
 
 /* All blocks; K is known when this is compiled. */
-static void ascend_all(const bw_pd_bond *pd, const solver *v, bw_real *const next[])
+static void ascend_all(const bw_pd_body *pd, const solver *v, bw_real *const next[])
 {
-  for (size_t b = 0; b < pd->n_block; b++)
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
     if (v->n == MOST)
-      ascend(pd, v, &pd->block[b], next, MOST);
+      ascend(pd, v, &pd->bonds.block[b], next, MOST);
     else
-      ascend(pd, v, &pd->block[b], next, v->n);
+      ascend(pd, v, &pd->bonds.block[b], next, v->n);
 }
 
 /* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
-static void solve(bw_pd_bond *pd, solver *v, bw_real *const next[])
+static void solve(bw_pd_body *pd, solver *v, bw_real *const next[])
 {
   double t = 1;
   for (int pass = 0; pass < SWEEPS; pass++) {
@@ -212,34 +214,34 @@ static void solve(bw_pd_bond *pd, solver *v, bw_real *const next[])
     ascend_all(pd, v, next);
     for (int k = 0; k < v->n; k++) {
       for (size_t i = 0; i < pd->n; i++) {
-        if (pd->kind[i] & BW_PD_PRESCRIBED) continue;
-        v->at[k][pd->place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
+        if (pd->points.kind[i] & BW_PD_PRESCRIBED) continue;
+        v->at[k][pd->points.place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
         v->last[k][i] = next[k][i];
       }
-      bw_pd_bond__fill_places(pd, v->at[k]);
+      bw_pd_body_fill_places(pd, v->at[k]);
     }
   }
 }
 
 /* The factors of all slots, in units of BW_PD_ALPHA_UNIT. */
-static void store(bw_pd_bond *pd, const solver *v)
+static void store(bw_pd_body *pd, const solver *v)
 {
-  for (size_t b = 0; b < pd->n_block; b++)
-    for (uint32_t q = pd->block[b].slot; q < pd->block[b + 1].slot; q++) {
-      const vec alpha = factors(pd, v, &pd->block[b], &pd->slot[q], v->n);
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
+    for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
+      const vec alpha = factors(pd, v, &pd->bonds.block[b], &pd->bonds.slot[q], v->n);
       for (int lane = 0; lane < BW_PD_LANES; lane++)
-        pd->alpha[(size_t)q * BW_PD_LANES + (size_t)lane] =
+        pd->bonds.factor[(size_t)q * BW_PD_LANES + (size_t)lane] =
             (uint16_t)lround((double)alpha[lane] / BW_PD_ALPHA_UNIT);
     }
 }
 
-static bw_status solver_arrays(const bw_pd_bond *pd, solver *v, bw_real *next[])
+static bw_status solver_arrays(const bw_pd_body *pd, solver *v, bw_real *next[])
 {
   for (int k = 0; k < v->n; k++) {
-    BW_TRY(bw_pd_bond__storage_array(pd->n_storage, &v->at[k]));
+    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &v->at[k]));
     BW_TRY(BW_ALLOCATE(&v->last[k], pd->n));
     BW_TRY(BW_ALLOCATE(&next[k], pd->n));
-    for (size_t p = 0; p < pd->n_storage; p++)
+    for (size_t p = 0; p < pd->points.n_storage; p++)
       v->at[k][p] = (bw_real)v->full[k];
     for (size_t i = 0; i < pd->n; i++)
       v->last[k][i] = (bw_real)v->full[k];
@@ -247,13 +249,13 @@ static bw_status solver_arrays(const bw_pd_bond *pd, solver *v, bw_real *next[])
   return BW_OK;
 }
 
-bw_status bw_pd_bond__tensor(bw_pd_bond *pd)
+bw_status bw_pd_bond__tensor(bw_pd_body *pd)
 {
   solver v = {0};
   bw_real *next[MOST] = {NULL};
   bw_status st = basis(pd, &v);
   BW_THEN(st, solver_arrays(pd, &v, next));
-  BW_THEN(st, BW_ALLOCATE(&pd->alpha, pd->n_slot * BW_PD_LANES));
+  BW_THEN(st, BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES));
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
     solve(pd, &v, next);
@@ -262,7 +264,7 @@ bw_status bw_pd_bond__tensor(bw_pd_bond *pd)
     bw_pd_bond__calibrate(pd);
   }
   for (int k = 0; k < MOST; k++) {
-    bw_pd_bond__release_storage_array(&v.at[k]);
+    bw_pd_body_release_storage_array(&v.at[k]);
     bw_release(&v.last[k]);
     bw_release(&next[k]);
   }

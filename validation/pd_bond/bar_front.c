@@ -16,7 +16,7 @@
  *            below 6 horizons (a front of the third-order dispersion k^3 grows like the cube
  *            root of time: with b = 1/24 .. 1/25, (3 b c t/delta)^(1/3) = 1.9 delta after 60
  *            delta, times 2.8 from 90 % to 10 % of the integral of the Airy function).
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

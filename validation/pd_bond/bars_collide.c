@@ -13,7 +13,7 @@
  *            The loss falls like width over length, L^(-2/3) as the front grows with the cube
  *            root of time; a half of that either way (steady front: -1; one that grows with the
  *            root of time: -1/2).
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 

@@ -18,7 +18,7 @@
  * = 0.4 % of bending (pd_bond.skin), the clamp's place to delta/2, (delta/2)/L 2 = 0.8 %: together
  * 1 % or a little more. The slender limit: shear and rotation shift it by (h/L)^2, 1e-5 at L = 400
  * h; the integration by less; 1e-4.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

@@ -21,7 +21,7 @@
  *            times 1.3 for the spread of their energies; three times that over the root of
  *            the number of clouds. Lattice against its sum: 0.2 % for the steps of the
  *            opening and half a cell at either end of the difference, 1/160.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

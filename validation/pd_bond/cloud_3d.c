@@ -16,7 +16,7 @@
  *            known; nu, with K = 1, G = 0.6, rises by 9 K G/(2 (3K + G)^2) x = 0.21 x, which is
  *            0.83 x of 1/4, and the same 1e-3. Evenness, E of the diagonal over that of the edge
  *            less 1: below half the lattice's.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 

@@ -8,7 +8,7 @@
  *            double). Energy with Verlet at a tenth of the limit: its error (w dt)^2/8 = 0.5 % of
  *            the elastic energy that passes to and fro, taken of the whole; it has to fall by four
  *            (order 2) with half the step as long as nothing breaks.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1,2 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"

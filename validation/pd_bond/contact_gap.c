@@ -26,7 +26,7 @@
  *            Debris: a bond that breaks in a step is booked with what it stores at the end, F ds/2
  *            more than Verlet took for it (the half kick that is missing): at most the energy of
  *            fracture. Verlet at w dt = 1/5: 0.5 % of what contact stored at most.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 

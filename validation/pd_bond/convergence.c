@@ -16,7 +16,7 @@
  *            delta/h at most 0.19 between the two finest (b = 1: the skin's part of the
  *            height), and the clamp adds its own length of order delta. m-convergence: the
  *            steps between lattices shrink.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

@@ -9,7 +9,7 @@
  * Energy: external work = kinetic + elastic + fracture. Verlet's energy is off by (dt/dt_max)^2/8
  * = 3 % of the elastic part at most, which is 1 to 2 % of the work at the end; 1 % is asked.
  * --full: other integrators, steps, grids and corrections, reported beside.
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 */
 #include "crack_plate.h"
 

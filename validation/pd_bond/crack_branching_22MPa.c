@@ -27,7 +27,7 @@
  * (as long as strains are small), so that another G0 or s0 is another load; how many rows take the
  * load, the integrator and the step do not matter (crack_branching_12MPa).
  *
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 timeout=3600 */
 #include "crack_plate.h"
 

@@ -11,7 +11,7 @@
  * Tolerance  family sum: 1e-3 for its midpoint fractions. Continuum: the error of the family
  *            sum at k = 0 for k delta <= 3 (waves longer than two horizons), where (k ds)^2/24
  *            of the midpoint rule adds at most 4 % at m = 3. Shorter waves: reported, no claim.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

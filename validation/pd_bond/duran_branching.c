@@ -11,7 +11,7 @@
  * layers, 5 % for its tips, of which there are 2 on about 200 places. Energy: 1 % as in
  * crack_branching_12MPa.
  *
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 

@@ -11,7 +11,7 @@
  *            dt)^2/8 at half of the limit, w dt <= 1: 12.5 % of the elastic energy at most at
  *            any time, and no trend: the mean of the last tenth is within 1e-3 of the mean of
  *            the first.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 

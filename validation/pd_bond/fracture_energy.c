@@ -15,7 +15,7 @@
  *            calibrated against G0 the same. Against G0, m < 5 along the lattice: lattice_bound
  *            with p = 2 and the own cell; at 45 degrees reported. m >= 5: 2 %, as asked of the
  *            module.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"

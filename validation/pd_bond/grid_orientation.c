@@ -18,7 +18,7 @@
  * lattice's crack follows has a mean of 0 within three times its own scatter over the root of the
  * number of runs: a cloud does not know where its sites' axes are.
  *
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 timeout=7200 */
 #include "specimen_run.h"
 

@@ -13,7 +13,7 @@
  * 0.5 mm with m = 5, too); at 0.25 mm it is drawn up but passes 1.9 mm below: --full, reported
  * beside.
  *
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 

@@ -19,7 +19,7 @@
  * thrown instead of pushed (ADAPT's "initial speed"; nothing breaks); reported beside, rows without
  * a number left out.
  *
- * BUILD modules=pd_interface
+ * BUILD modules=solid_tools,pd_interface
  * TEST  ranks=2 timeout=3600 */
 #include "specimen_run.h"
 

@@ -15,7 +15,7 @@
  *            delta^2/4), evaluated one horizon off the rim, over the stress there, plus 2 % for
  *            the 10 a plate (K over 3 is 1.05 at the rim) and 3 % for the skin of hole and
  *            sides. Peak: reported; claimed is that it grows with a/delta.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 

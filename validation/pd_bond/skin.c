@@ -19,7 +19,7 @@
  *            (delta/h)^2/2 (the same program: 0.35 to 0.42); the clamp acts within a horizon, so
  *            that its place is known to delta/2 and the tip to 4 (delta/2)/L. What a correction
  *            by one number per particle does is reported beside, without a claim.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 timeout=3600 */
 #include "body.h"
 

@@ -18,7 +18,7 @@
  * 6e-5); bar 1 % as the conditions at flat faces are met to that; in 3D as much again for the
  * edges, where a quarter of a family would need factors beyond the bounds: a third is missed there,
  * on 4 edges one particle wide, 4/3/14^2 = 0.7 %.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

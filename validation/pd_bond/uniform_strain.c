@@ -13,7 +13,7 @@
  * space and /4 in the plane, where the own cell that alpha makes up for adds 1/(pi m^2). The order
  * is taken between m = 3 and 8; sums over a lattice scatter about the trend, by 0.5 in the order
  * between these two.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"

@@ -14,7 +14,7 @@
  *            xi_x^4/|xi|^3, written independently (lattice_sum.h), known before the run. The
  *            section's mean: the residual 1e-5 of the relaxation times 10, as errors of 24
  *            columns may add up.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "body.h"
 #include "lattice_sum.h"

@@ -11,7 +11,7 @@
  *            independently (lattice_sum.h) and known before the run, plus 5e-4 for its midpoint
  *            fractions, plus the next term of the expansion, below (k delta)^4/1000, plus Verlet's
  *            (w dt)^2/24, below 1e-4.
- * BUILD modules=pd_bond
+ * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
 #include "bw_pd_bond.h"

@@ -1,0 +1,101 @@
+/* bw_pd_body.h -- a peridynamic body: lattice, families, bonds that hold, motion.
+ *
+ * What every law of the solid stands on, and what the front (bw_solid.h) shows of it. Particles sit
+ * on a uniform lattice, X0 = origin + axes.(site + 1/2) ds, site[3] integers, or, with `disorder`, in
+ * a cloud around it (pd_cloud.c). The family of h holds the l with |xi| < horizon + ds/2 (POROUS
+ * 3.30, ERRATA 2); every bond is kept from both ends, in blocks of the processor's vectors.
+ * Shapes   vectors row-major (n,3); own particles are 0 .. n-1 in lattice order, then copies of what
+ *          other ranks own and periodic images up to n_extended.
+ * Units    any consistent set: [M], [L], [T]. */
+#pragma once
+#include "bw_comm.h"
+#include "bw_real.h"
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct bw_pd_body bw_pd_body; /* opaque; its sources and the laws see pd_body.h */
+typedef struct bw_pd_law bw_pd_law;   /* pd_law.h: how a body answers to its deformation */
+
+/* Dimension and out-of-plane condition. */
+typedef enum {
+  BW_PD_3D,           /* three dimensions */
+  BW_PD_PLANE_STRESS, /* one layer, free to contract across */
+  BW_PD_PLANE_STRAIN  /* one layer, held across */
+} bw_pd_geometry;
+
+/* How much of a neighbour's cell counts as within the horizon. */
+typedef enum {
+  BW_PD_FRACTION_LINEAR, /* POROUS 3.33 with ERRATA 2; refused in 3D */
+  BW_PD_FRACTION_EXACT,  /* the part of the cube (square) inside the ball (disc) */
+  BW_PD_FRACTION_NONE,   /* all of it */
+  BW_PD_FRACTION_DEFAULT /* exact in 3D, linear in 2D */
+} bw_pd_volume_fraction;
+
+/* Which neighbours are family. */
+typedef enum {
+  BW_PD_REACH_HALF_CELL, /* |xi| < horizon + ds/2 */
+  BW_PD_REACH_HORIZON    /* |xi| < horizon */
+} bw_pd_family_reach;
+
+/* What a particle is, bits. Prescribed ones move with a given velocity and are not accelerated: the
+ * ghost layers of POROUS 3.3.11. Unbreakable ones keep their bonds. Retired ones have left the
+ * mechanics; not for create. */
+enum { BW_PD_FREE = 0, BW_PD_PRESCRIBED = 1, BW_PD_UNBREAKABLE = 2, BW_PD_RETIRED = 4 };
+
+enum { BW_PD_GROUPS = 16 }; /* groups of particles in one body, at most */
+
+/* What the particles of one group are made of. */
+typedef struct {
+  double rho; /* density [M/L^3] */
+  double E;   /* Young's modulus [M/(L T^2)] */
+  double nu;  /* Poisson's ratio [-]; NaN: the law's own, where it has one */
+  double G0;  /* fracture energy [M/T^2]; INFINITY: it does not break */
+} bw_pd_material;
+
+/* What a body is, whatever its law. */
+typedef struct {
+  bw_pd_geometry geometry;               /* dimension and plane condition */
+  double ds;                             /* lattice spacing [L] */
+  double thickness;                      /* of the layer in 2D [L] */
+  double horizon_ratio;                  /* m = horizon/ds [-] */
+  bw_pd_volume_fraction volume_fraction; /* of cells that the horizon cuts */
+  bw_pd_family_reach family_reach;       /* who is family */
+  double disorder;       /* particles start up to this many ds off their sites, 0.4 at most */
+  int32_t disorder_seed; /* another number, another cloud */
+  double origin[3];      /* of the lattice [L] */
+  double axes[3][3];     /* rows: lattice directions, unit vectors at right angles */
+  double period[3];      /* per lattice direction [L], whole numbers of ds; 0: not periodic */
+  int n_group;           /* groups, 1 .. BW_PD_GROUPS */
+  bw_pd_material material[BW_PD_GROUPS];       /* of each group */
+  double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* of bonds between two groups, symmetric [M/T^2];
+                                                   NaN: the smaller of the two */
+} bw_pd_body_config;
+
+/* A bond of a particle as seen from it. */
+typedef struct {
+  int32_t neighbour; /* index into own particles and copies */
+  int16_t slot;      /* number of the bond's direction in the stencil */
+  bool intact;       /* it still holds */
+} bw_pd_link;
+
+/* Own particles and copies. */
+typedef struct {
+  size_t n;          /* own and copies */
+  const int64_t *id; /* (n) global ids */
+  const bw_real *X;  /* (n,3) present positions, copies shifted to where they act [L] */
+} bw_pd_extended;
+
+/* The motion of own particles and copies, where the body keeps it: of the extended particle e at
+ * place[e]. */
+typedef struct {
+  const int32_t *place; /* (n_extended) storage places */
+  const bw_real *u[3];  /* displacement [L] */
+  const bw_real *v[3];  /* velocity [L/T], NULL unless asked for */
+} bw_pd_motion;
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,293 @@
+/* pd_body.h -- the inside of a body: for its own sources, the laws, contact, levels and tools.
+ *
+ * Storage. Own particles and copies of others' (halo and periodic images) lie in one numbering,
+ * the storage, in lattice order: the bounding box of their sites with holes where it is well
+ * filled, without holes otherwise. Which axis is fastest, bw_pd_body_axes says. Displacements are
+ * stored there, so the neighbours of successive owners in one lattice direction are contiguous
+ * nearly always.
+ *
+ * Bonds. A block is BW_PD_LANES successive storage places, some of them own particles. A slot is
+ * one direction of a block: where the neighbours start and which of the bonds exist (family) and
+ * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
+ * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
+ * a family runs in the same order on any number of ranks. */
+#pragma once
+#include "bw_exchange.h"
+#include "bw_pd_body.h"
+#include "pd_level.h"
+#include "pd_map.h"
+
+/* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). */
+#ifdef BW_SINGLE
+#define BW_PD_WIDE   8
+#define BW_PD_NARROW 4
+#else
+#define BW_PD_WIDE   4
+#define BW_PD_NARROW 2
+#endif
+#if defined(__AVX512VL__)
+#define BW_PD_LANES 8
+#elif defined(__AVX__)
+#define BW_PD_LANES BW_PD_WIDE
+#else
+#define BW_PD_LANES BW_PD_NARROW
+#endif
+
+enum { BW_PD_PAD = 16 }; /* unused places before and after a storage array: loads may overrun */
+
+/* A bond before any load. */
+typedef struct {
+  double xi[3], r0, fraction; /* [L], |xi|, Gamma */
+} bw_pd_rest;
+
+enum { BW_PD_MIXED = 255 };
+
+/* BW_PD_LANES successive storage places, some of them own particles. */
+typedef struct {
+  int32_t first; /* storage place of lane 0 */
+  int32_t own;   /* own particle of the first lane set in mask; the others follow */
+  uint32_t slot; /* first slot; the block's last one is before the next block's first */
+  uint8_t mask;  /* lanes that are own particles */
+  uint8_t gone;  /* lanes that are retired; all of mask: the block costs nothing */
+  bool broken;   /* a bond of it broke */
+  uint8_t group; /* of all its particles and their neighbours; BW_PD_MIXED: they differ */
+} bw_pd_block;
+
+/* One direction of a block. */
+typedef struct {
+  int32_t base; /* storage place of lane 0's neighbour */
+  uint16_t direction;
+  uint8_t mask;   /* bonds that hold */
+  uint8_t family; /* bonds that existed at the start */
+} bw_pd_slot;
+
+typedef struct {
+  int32_t place, own, n; /* own particles own.. own+n-1 lie at storage place.. place+n-1 */
+} bw_pd_run;
+
+/* Who is where. Arrays of n_extended but for occupant. */
+typedef struct {
+  int64_t total;     /* particles of all ranks */
+  int axis[3];       /* of the lattice order, fastest first */
+  int32_t *site;     /* (.,3), images shifted */
+  int64_t *id;       /* global ids */
+  uint8_t *kind;     /* bits: BW_PD_PRESCRIBED, ... */
+  uint8_t *group;    /* row of config.material */
+  int32_t *place;    /* storage place */
+  size_t n_storage;  /* places */
+  int32_t *occupant; /* (n_storage) extended index, -1: hole */
+} bw_pd_points;
+
+/* How copies are kept current: they ask, owners answer (the plan is used backward). */
+typedef struct {
+  bw_exchange *plan;
+  size_t n_asked;
+  int32_t *asked;          /* (n_asked) own particle of each answer */
+  bw_real *reply, *answer; /* (n_asked,6), (copies,6) */
+  bw_real *extended_X;     /* (n_extended,3), made on demand */
+} bw_pd_halo;
+
+/* Who is bonded to whom. */
+typedef struct {
+  size_t n_block, n_slot, n_run;
+  bw_pd_block *block; /* (n_block + 1) */
+  bw_pd_slot *slot;   /* (n_slot) */
+  bw_pd_run *run;     /* (n_run) */
+  uint32_t *hit;      /* (n_block) blocks where a bond is beyond its limit */
+  size_t n_hit;
+  uint16_t *factor; /* (n_slot, BW_PD_LANES) of a law that keeps a factor per bond; NULL: none */
+  int64_t directed; /* bonds at the start, from both ends, of this rank */
+  int64_t events;   /* bonds broken (or mended by a restart) so far */
+  double released;  /* energy that bonds held when they broke, of this rank [M L^2/T^2] */
+} bw_pd_bonds;
+
+/* Who moves as told. */
+typedef struct {
+  bw_real *mobile;   /* (n) 1, or 0 when prescribed or retired */
+  size_t n;          /* prescribed particles */
+  int32_t *particle; /* (n) own particles */
+  double *velocity;  /* (n,3) [L/T] */
+} bw_pd_held;
+
+/* What acts besides the bonds, accelerations of the own particles [L/T^2]. */
+typedef struct {
+  bw_real *f[3];     /* external force / rho */
+  bw_real *extra[3]; /* (contact + damping)/rho */
+  bw_real *damp[3];  /* damping/rho */
+} bw_pd_forces;
+
+/* Coefficients of damping (ERRATA 4): of pairs [M/(L^6 T)], to the mean, absolute [M/(L^3 T)]. */
+typedef struct {
+  double pair, mean, absolute;
+  double most_weight; /* largest eigenvalue of sum_l e e Gamma dV over particles [L^3] */
+} bw_pd_dampings;
+
+enum { BW_PD_FIELDS = 8 };
+typedef struct bw_pd_field bw_pd_field;
+
+struct bw_pd_body {
+  const bw_comm *comm; /* borrowed */
+  bw_pd_body_config config;
+  int dimension;        /* 2 or 3 */
+  bw_pd_level *level;   /* one row */
+  size_t n, n_extended; /* own particles; own and copies */
+  bw_pd_points points;
+  bw_pd_halo halo;
+  bw_pd_bonds bonds;
+  bw_real *u[3], *vs[3]; /* storage: displacement; velocity of own and copies, on demand */
+  bw_real *shift[3];     /* storage: reference place from its site; NULL: a lattice */
+  bw_real *v[3], *a[3];  /* own: velocity, internal force / rho */
+  bw_real *weight;       /* (n) density over that of the first group; NULL: one group */
+  bw_pd_forces load;
+  bw_pd_held held;
+  bw_pd_dampings damping;
+  bool current;         /* copies and a are those of u, v */
+  bool breakage;        /* bonds may break */
+  int64_t revision;     /* raised when the set of particles or their kinds changed */
+  const bw_pd_law *law; /* borrowed */
+  void *state;          /* of the law */
+  double frequency2;    /* bound of the squared largest frequency without damping [1/T^2] */
+  int n_field;
+  bw_pd_field *field; /* (n_field) of the law */
+};
+
+/* pd_create.c. Zeros, with BW_PD_PAD more before and after. */
+bw_status bw_pd_body_storage_array(size_t n, bw_real **out) BW_MUST_CHECK;
+void bw_pd_body_release_storage_array(bw_real **array);
+/* Particles, families and bonds of `n` sites (n,3), kind (n) or NULL, with the constants of the law.
+ * `comm` and `law` are borrowed until destroy. Collective. */
+bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config,
+                            const bw_pd_law *law, const void *options, int64_t n,
+                            const int32_t site[], const uint8_t kind[],
+                            bw_pd_body **out) BW_MUST_CHECK;
+void bw_pd_body_destroy(bw_pd_body **pd); /* NULL is fine. Collective. */
+
+/* pd_config.c */
+bw_status bw_pd_body_check(const bw_pd_body_config *config) BW_MUST_CHECK;
+bw_status
+bw_pd_body_levels(bw_pd_body *pd) BW_MUST_CHECK; /* the table of levels, without stencils */
+double bw_pd_body_natural_poisson(bw_pd_geometry geometry); /* of bonds: 1/3 or 1/4 (ERRATA 14) */
+
+/* pd_fraction.c: part of the cell at `offset` (in ds) within the distance m of the origin */
+double bw_pd_body_fraction_area(double m, const int32_t offset[3]);
+bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3],
+                                     double *fraction) BW_MUST_CHECK;
+
+/* pd_cloud.c: reference places off their sites */
+bw_status bw_pd_body_scatter(bw_pd_body *pd) BW_MUST_CHECK; /* shift of all places, once numbered */
+/* The bond in a direction of the stencil whose ends are off their sites by h and l [L]. */
+bw_pd_rest bw_pd_body_apart(const bw_pd_body *pd, int direction, const double h[3],
+                            const double l[3]);
+bw_pd_rest bw_pd_body_rest_of_cloud(const bw_pd_body *pd, int direction, int32_t h, int32_t l);
+/* Means over the full families of a sample of sites: of the sums of Gamma, Gamma |xi| and
+ * Gamma |xi|^2, lengths in ds. */
+bw_status bw_pd_body_cloud_means(const bw_pd_body *pd, double mean[3]) BW_MUST_CHECK;
+
+/* pd_stencil.c */
+double bw_pd_body_family_reach(const bw_pd_body_config *config); /* in ds */
+bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
+int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
+void bw_pd_body_rows(bw_pd_body *pd); /* the columns of the kernel rows that are geometry */
+
+/* pd_partition.c: part[n] of `parts` compact blocks of equal counts; the axes of the lattice order of
+ * a body of so many sites each way, fastest first */
+bw_status bw_pd_body_partition(int parts, size_t n, const int32_t site[],
+                               int32_t part[]) BW_MUST_CHECK;
+void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
+bw_status bw_pd_body_lattice_order(const int axis[3], size_t n, const int32_t site[],
+                                   int32_t order[]) BW_MUST_CHECK;
+
+/* pd_halo.c */
+bw_status bw_pd_body_distribute(bw_pd_body *pd, size_t n, const int32_t site[],
+                                const uint8_t kind[], bw_pd_map *near) BW_MUST_CHECK;
+void bw_pd_body_refresh(bw_pd_body *pd, bool velocity); /* copies' u (and v). Collective. */
+void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places);
+
+/* pd_slots.c */
+bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_pd_map *near) BW_MUST_CHECK;
+
+/* pd_damping.c: load.damp of `n` blocks (list NULL: all); absolute: adds that kind alone */
+bool bw_pd_body_damped(const bw_pd_body *pd);
+void bw_pd_body_damp(bw_pd_body *pd, size_t n, const uint32_t list[]);
+void bw_pd_body_damp_absolute(bw_pd_body *pd);
+bw_status
+bw_pd_body_damping_bound(bw_pd_body *pd) BW_MUST_CHECK; /* damping.most_weight. Collective. */
+
+/* pd_links.c: a bond is gone, seen from its owner; its energy goes to bonds.released. */
+void bw_pd_body_cut(bw_pd_body *pd, bw_pd_block *block, bw_pd_slot *slot, int lane);
+double bw_pd_body_length(const bw_pd_body *pd, int32_t h, const bw_pd_slot *slot, int lane,
+                         const double xi[3]); /* present length of a bond [L] */
+void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[]); /* (n) POROUS 3.28 */
+void bw_pd_body_get_broken(const bw_pd_body *pd, uint16_t broken[]);
+int bw_pd_body_links(const bw_pd_body *pd, size_t h, bw_pd_link link[]);
+bw_pd_extended bw_pd_body_get_extended(bw_pd_body *pd);            /* Collective. */
+bw_pd_motion bw_pd_body_get_motion(bw_pd_body *pd, bool velocity); /* Collective. */
+void bw_pd_body_fill_extended(bw_pd_body *pd, size_t bytes, const void *own, void *all);
+void bw_pd_body_sum_extended(bw_pd_body *pd, double *all);
+
+/* pd_views.c */
+void bw_pd_body_get_reference(const bw_pd_body *pd, double X0[]);
+void bw_pd_body_get_position(const bw_pd_body *pd, double X[]);
+void bw_pd_body_get_velocity(const bw_pd_body *pd, double V[]);
+void bw_pd_body_get_acceleration(const bw_pd_body *pd, double A[]);
+void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[]); /* Collective. */
+void bw_pd_body_set_force(bw_pd_body *pd, const double F[]);
+void bw_pd_body_set_prescribed(bw_pd_body *pd, const double V[]);
+void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double absolute);
+void bw_pd_body_adopt_prescribed(bw_pd_body *pd);   /* held.velocity from v */
+size_t bw_pd_body_list_bytes(const bw_pd_body *pd); /* of slots and blocks */
+
+/* First slot after a block's; a block whose particles are all retired has none. */
+static inline uint32_t bw_pd_body_slot_end(const bw_pd_block *block)
+{
+  return block->gone == block->mask ? block->slot : block[1].slot;
+}
+
+/* Own particle of lane `lane` of a block. */
+static inline int32_t bw_pd_body_owner(const bw_pd_block *block, int lane)
+{
+  return block->own + __builtin_popcount(block->mask & ((1u << lane) - 1u));
+}
+
+/* Group of who stands at a storage place; holes are of the first one. */
+static inline int bw_pd_body_group_at(const bw_pd_body *pd, int32_t place)
+{
+  const int32_t e = pd->points.occupant[place];
+  return e < 0 ? 0 : pd->points.group[e];
+}
+
+/* Material of an own particle or a copy. */
+static inline const bw_pd_material *bw_pd_body_material(const bw_pd_body *pd, size_t e)
+{
+  return &pd->config.material[pd->points.group[e]];
+}
+
+/* The row of the table of levels of an own particle or a copy. */
+static inline const bw_pd_level *bw_pd_body_level(const bw_pd_body *pd, size_t e)
+{
+  (void)e;
+  return pd->level;
+}
+
+/* Reference place of an own particle or a copy. */
+static inline void bw_pd_body_reference(const bw_pd_body *pd, size_t e, double X0[3])
+{
+  const bw_pd_body_config *c = &pd->config;
+  const int32_t *site = pd->points.site + 3 * e;
+  for (int k = 0; k < 3; k++) {
+    X0[k] = c->origin[k];
+    for (int d = 0; d < pd->dimension; d++)
+      X0[k] += c->axes[d][k] * (site[d] + 0.5) * c->ds;
+    if (pd->shift[k] != NULL) X0[k] += (double)pd->shift[k][pd->points.place[e]];
+  }
+}
+
+/* The bond of the storage places h and l, l in a direction of the stencil from h. */
+static inline bw_pd_rest bw_pd_body_rest(const bw_pd_body *pd, int direction, int32_t h, int32_t l)
+{
+  if (pd->config.disorder > 0) return bw_pd_body_rest_of_cloud(pd, direction, h, l);
+  const double *xi = pd->level->stencil.xi + 3 * direction;
+  return (bw_pd_rest){{xi[0], xi[1], xi[2]},
+                      pd->level->stencil.r0[direction],
+                      pd->level->stencil.fraction[direction]};
+}

@@ -1,0 +1,179 @@
+/* Building and destroying a body. */
+#include "bw_memory.h"
+#include "pd_law.h"
+
+#include <math.h>
+
+/* A storage array with room for overrunning loads on both sides; zero there. */
+bw_status bw_pd_body_storage_array(size_t n, bw_real **out)
+{
+  bw_real *base = NULL;
+  BW_TRY(BW_ALLOCATE(&base, n + 2 * BW_PD_PAD));
+  *out = base + BW_PD_PAD;
+  return BW_OK;
+}
+
+void bw_pd_body_release_storage_array(bw_real **array)
+{
+  if (*array == NULL) return;
+  bw_real *base = *array - BW_PD_PAD;
+  bw_release(&base);
+  *array = NULL;
+}
+
+bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved, bw_real **value)
+{
+  BW_REQUIRE(pd->n_field < BW_PD_FIELDS, BW_EINPUT, "pd_body: the law %s wants more than %d fields",
+             pd->law->name, (int)BW_PD_FIELDS);
+  bw_pd_field *f = &pd->field[pd->n_field];
+  BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &f->value));
+  f->after = after;
+  f->saved = saved;
+  *value = f->value;
+  pd->n_field++;
+  return BW_OK;
+}
+
+static bw_status state_arrays(bw_pd_body *pd)
+{
+  const size_t n = pd->n;
+  BW_TRY(BW_ALLOCATE(&pd->held.mobile, n));
+  BW_TRY(BW_ALLOCATE(&pd->halo.extended_X, 3 * pd->n_extended));
+  BW_TRY(BW_ALLOCATE(&pd->field, BW_PD_FIELDS));
+  for (int k = 0; k < 3; k++) {
+    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->u[k]));
+    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->vs[k]));
+    BW_TRY(BW_ALLOCATE(&pd->v[k], n));
+    BW_TRY(BW_ALLOCATE(&pd->a[k], n));
+    BW_TRY(BW_ALLOCATE(&pd->load.f[k], n));
+    BW_TRY(BW_ALLOCATE(&pd->load.extra[k], n));
+    BW_TRY(BW_ALLOCATE(&pd->load.damp[k], n));
+  }
+  return BW_OK;
+}
+
+static bw_status weights(bw_pd_body *pd)
+{
+  if (pd->config.n_group == 1) return BW_OK;
+  BW_TRY(BW_ALLOCATE(&pd->weight, pd->n));
+  for (size_t i = 0; i < pd->n; i++)
+    pd->weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho);
+  return BW_OK;
+}
+
+static bw_status prescribed_list(bw_pd_body *pd)
+{
+  bw_pd_held *held = &pd->held;
+  for (size_t i = 0; i < pd->n; i++)
+    held->n += (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
+  BW_TRY(BW_ALLOCATE(&held->particle, held->n));
+  BW_TRY(BW_ALLOCATE(&held->velocity, 3 * held->n));
+  size_t q = 0;
+  for (size_t i = 0; i < pd->n; i++) {
+    const bool fixed = (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
+    held->mobile[i] = fixed ? 0 : 1;
+    if (fixed) held->particle[q++] = (int32_t)i;
+  }
+  return BW_OK;
+}
+
+static bw_status check_list(int64_t n, const int32_t site[], const uint8_t kind[])
+{
+  BW_REQUIRE(n > 0 && site != NULL, BW_EINPUT, "pd_bond: no particles given (n = %lld)",
+             (long long)n);
+  BW_REQUIRE(n < INT32_MAX, BW_EINPUT, "pd_bond: %lld particles; the limit is 2^31", (long long)n);
+  for (int64_t q = 0; kind != NULL && q < n; q++)
+    BW_REQUIRE(kind[q] <= (BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE), BW_EINPUT,
+               "pd_bond: particle %lld has the unknown kind %d", (long long)q, kind[q]);
+  return BW_OK;
+}
+
+/* Lattice and families first, as the law's constants are sums over them. */
+static bw_status build(bw_pd_body *pd, int64_t n, const int32_t site[], const uint8_t kind[],
+                       const void *options)
+{
+  bw_pd_map near = {0};
+  pd->points.total = n;
+  bw_status st = bw_pd_body_levels(pd);
+  BW_THEN(st, bw_pd_body_stencil(pd));
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) st = bw_pd_body_distribute(pd, (size_t)n, site, kind, &near);
+  if (st == BW_OK) {
+    BW_THEN(st, bw_pd_body_slots(pd, &near));
+    BW_THEN(st, state_arrays(pd));
+    BW_THEN(st, weights(pd));
+    BW_THEN(st, prescribed_list(pd));
+    st = bw_comm_agree(pd->comm, st);
+  }
+  bw_pd_map_destroy(&near);
+  BW_TRY(st);
+  bw_pd_body_rows(pd);
+  BW_TRY(bw_pd_body_damping_bound(pd));
+  /* From here on families, copies and numbering stand; what is left is the law's. */
+  BW_TRY(pd->law->prepare(pd, options));
+  pd->law->constants(pd);
+  return pd->law->bound(pd);
+}
+
+bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config,
+                            const bw_pd_law *law, const void *options, int64_t n,
+                            const int32_t site[], const uint8_t kind[], bw_pd_body **out)
+{
+  bw_pd_body *pd = NULL;
+  *out = NULL;
+  bw_status st = bw_pd_body_check(config);
+  BW_THEN(st, law->check(config, options));
+  BW_THEN(st, check_list(n, site, kind));
+  BW_THEN(st, BW_ALLOCATE(&pd, 1));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK) {
+    pd->comm = comm;
+    pd->config = *config;
+    pd->law = law;
+    pd->breakage = true;
+    st = build(pd, n, site, kind, options);
+  }
+  if (st != BW_OK) bw_pd_body_destroy(&pd);
+  *out = pd;
+  return st;
+}
+
+static void release_level(bw_pd_level *level)
+{
+  bw_pd_stencil *s = &level->stencil;
+  bw_release(&s->offset);
+  bw_release(&s->xi);
+  bw_release(&s->r0);
+  bw_release(&s->fraction);
+  bw_release(&s->sure);
+  bw_release(&s->number);
+  bw_release(&level->row);
+}
+
+void bw_pd_body_destroy(bw_pd_body **pd_)
+{
+  bw_pd_body *pd = *pd_;
+  if (pd == NULL) return;
+  pd->law->destroy(pd);
+  for (int q = 0; q < pd->n_field; q++)
+    bw_pd_body_release_storage_array(&pd->field[q].value);
+  if (pd->level != NULL) release_level(pd->level);
+  bw_exchange_destroy(&pd->halo.plan);
+  void *plain[] = {&pd->weight,       &pd->level,        &pd->points.site,   &pd->points.id,
+                   &pd->points.kind,  &pd->points.group, &pd->points.place,  &pd->points.occupant,
+                   &pd->halo.asked,   &pd->halo.reply,   &pd->halo.answer,   &pd->halo.extended_X,
+                   &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,     &pd->bonds.hit,
+                   &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle, &pd->held.velocity,
+                   &pd->field};
+  for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
+    bw_release(plain[q]);
+  for (int k = 0; k < 3; k++) {
+    bw_pd_body_release_storage_array(&pd->u[k]);
+    bw_pd_body_release_storage_array(&pd->vs[k]);
+    bw_pd_body_release_storage_array(&pd->shift[k]);
+    void *vector[] = {&pd->v[k], &pd->a[k], &pd->load.f[k], &pd->load.extra[k], &pd->load.damp[k]};
+    for (size_t q = 0; q < sizeof vector / sizeof *vector; q++)
+      bw_release(vector[q]);
+  }
+  bw_release(pd_);
+}

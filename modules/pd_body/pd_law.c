@@ -1,0 +1,33 @@
+/* What a body asks of its law. */
+#include "pd_law.h"
+
+void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping)
+{
+  const bw_pd_law *law = pd->law;
+  if (check) pd->bonds.n_hit = 0;
+  for (int pass = 0; pass < law->n_sweep; pass++) {
+    const bool last = pass == law->n_sweep - 1;
+    law->sweep[pass](pd, 0, pd->bonds.n_block, check && last, damping && last);
+    /* The next pass reads neighbours: those that others own have to be told. */
+    for (int q = 0; q < pd->n_field; q++)
+      if (pd->field[q].after == pass) bw_pd_body_fill_places(pd, pd->field[q].value);
+  }
+}
+
+bool bw_pd_body_break_hits(bw_pd_body *pd)
+{
+  size_t kept = 0;
+  for (size_t q = 0; q < pd->bonds.n_hit; q++)
+    if (pd->law->breaks(pd, &pd->bonds.block[pd->bonds.hit[q]]))
+      pd->bonds.hit[kept++] = pd->bonds.hit[q];
+  pd->bonds.n_hit = kept;
+  return kept > 0;
+}
+
+double bw_pd_body_elastic(const bw_pd_body *pd)
+{
+  double energy = 0;
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
+    energy += pd->law->energy(pd, &pd->bonds.block[b], (uint8_t)~pd->bonds.block[b].gone);
+  return energy;
+}

@@ -1,0 +1,41 @@
+/* pd_level.h -- what all particles of one spacing share: a row of the table of levels.
+ *
+ * Today a body has one row. Whatever reads a spacing, a volume, a horizon or a stencil takes it from
+ * the row of its particle (or block). */
+#pragma once
+#include "bw_pd_body.h"
+
+enum { BW_PD_ROW = 8 }; /* constants of one direction in the kernels */
+
+/* Column of a kernel row. The body fills geometry, the law its stiffness and limit. In a cloud, where
+ * |xi| and Gamma follow from the places of both ends, the columns hold 1 for them. */
+enum {
+  BW_PD_XI = 0,        /* 0..2: xi [L] */
+  BW_PD_R0 = 3,        /* |xi| [L] */
+  BW_PD_STIFFNESS = 4, /* of the law: acceleration of the owner per change of length */
+  BW_PD_LIMIT2 = 5,    /* of the law: the squared length beyond which a bond breaks [L^2] */
+  BW_PD_WEIGHT = 6,    /* Gamma dV [L^3] */
+  BW_PD_MINUS_R0 = 7   /* -|xi| [L] */
+};
+
+/* The directions in which there can be a bond, x fastest. */
+typedef struct {
+  int n;            /* directions */
+  int reach;        /* largest component of an offset */
+  int32_t *offset;  /* (n,3) lattice steps */
+  double *xi;       /* (n,3) from site to site [L] */
+  double *r0;       /* (n) |xi| [L] */
+  double *fraction; /* (n) Gamma [-] */
+  bool *sure;       /* (n) in a cloud: a bond wherever both sites are occupied */
+  int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
+} bw_pd_stencil;
+
+typedef struct {
+  double ds;      /* spacing [L] */
+  double horizon; /* [L] */
+  double reach;   /* of the family [L]: |xi| < reach */
+  double dv;      /* volume of one particle [L^3] */
+  double area;    /* of the face of a particle's cell [L^2] */
+  bw_pd_stencil stencil;
+  bw_real *row; /* (n_group, n_group, stencil.n, BW_PD_ROW) kernel rows: owner's group, other's */
+} bw_pd_level;

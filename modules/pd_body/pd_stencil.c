@@ -1,0 +1,149 @@
+/* The directions of a family: one fixed list of lattice offsets, x fastest. */
+#include "bw_memory.h"
+#include "pd_body.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+double bw_pd_body_family_reach(const bw_pd_body_config *c)
+{
+  return c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0 : 0.5);
+}
+
+/* Whether sites at an offset are nearer than the family's reach, both moved by up to `more`/2 ds.
+ * (|xi|/ds)^2 is a whole number: the margin only absorbs the rounding of m. */
+static bool in_reach(const bw_pd_body_config *c, const int32_t o[3], double more)
+{
+  const double m = bw_pd_body_family_reach(c) + more;
+  const int64_t r2 = (int64_t)o[0] * o[0] + (int64_t)o[1] * o[1] + (int64_t)o[2] * o[2];
+  return r2 > 0 && (double)r2 < m * m * (1 - 1e-12);
+}
+
+/* Calls of x fastest over the cube of the reach; counts when `s->offset` is NULL. */
+static int list_offsets(const bw_pd_body *pd, bw_pd_stencil *s)
+{
+  const int r = s->reach, rz = pd->dimension == 3 ? r : 0;
+  int n = 0;
+  for (int32_t z = -rz; z <= rz; z++)
+    for (int32_t y = -r; y <= r; y++)
+      for (int32_t x = -r; x <= r; x++) {
+        const int32_t o[3] = {x, y, z};
+        if (!in_reach(&pd->config, o, 2 * pd->config.disorder)) continue;
+        if (s->offset != NULL)
+          for (int k = 0; k < 3; k++)
+            s->offset[3 * n + k] = o[k];
+        n++;
+      }
+  return n;
+}
+
+/* 3.33 with ERRATA 2: linear from 1 at m - 1/2 to 0 at m + 1/2. */
+static double fraction_linear(double m, const int32_t o[3])
+{
+  const double r = sqrt((double)o[0] * o[0] + (double)o[1] * o[1] + (double)o[2] * o[2]);
+  return fmax(0, fmin(1, m - r + 0.5));
+}
+
+static bw_status fraction(const bw_pd_body *pd, const int32_t o[3], double *gamma)
+{
+  const double m = pd->config.horizon_ratio;
+  switch (pd->config.volume_fraction) {
+  case BW_PD_FRACTION_LINEAR:
+    *gamma = fraction_linear(m, o);
+    return BW_OK;
+  case BW_PD_FRACTION_EXACT:
+    if (pd->dimension == 3) return bw_pd_body_fraction_volume(m, o, gamma);
+    *gamma = bw_pd_body_fraction_area(m, o);
+    return BW_OK;
+  default:
+    *gamma = 1;
+    return BW_OK;
+  }
+}
+
+static int compare_int(const void *a, const void *b)
+{
+  return *(const int32_t *)a - *(const int32_t *)b;
+}
+
+/* Offsets equal up to signs and order have the same fraction: it is computed once. */
+static bw_status fractions(const bw_pd_body *pd, bw_pd_stencil *s)
+{
+  const int32_t side = s->reach + 1;
+  double *known = NULL;
+  BW_TRY(BW_ALLOCATE(&known, (size_t)(side * side * side)));
+  bw_status st = BW_OK;
+  for (int q = 0; q < s->n && st == BW_OK; q++) {
+    int32_t o[3];
+    for (int k = 0; k < 3; k++)
+      o[k] = abs(s->offset[3 * q + k]);
+    qsort(o, pd->dimension == 3 ? 3 : 2, sizeof *o, compare_int);
+    double *memo = &known[o[0] + side * (o[1] + side * o[2])];
+    if (*memo == 0) {
+      st = fraction(pd, o, memo);
+      *memo += 1;
+    }
+    s->fraction[q] = *memo - 1;
+  }
+  bw_release(&known);
+  return st;
+}
+
+int bw_pd_body_direction(const bw_pd_stencil *s, const int32_t o[3])
+{
+  const int r = s->reach, side = 2 * r + 1;
+  if (abs(o[0]) > r || abs(o[1]) > r || abs(o[2]) > r) return -1;
+  return s->number[(o[0] + r) + side * ((o[1] + r) + side * (o[2] + r))];
+}
+
+bw_status bw_pd_body_stencil(bw_pd_body *pd)
+{
+  bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_body_config *c = &pd->config;
+  s->reach = (int)ceil(c->horizon_ratio + 0.5 + 2 * c->disorder);
+  const int side = 2 * s->reach + 1, pairs = c->n_group * c->n_group;
+  s->n = list_offsets(pd, s);
+  const size_t n = (size_t)s->n, cells = (size_t)(side * side * side);
+  BW_TRY(BW_ALLOCATE(&pd->level->row, (size_t)pairs * n * BW_PD_ROW));
+  BW_TRY(BW_ALLOCATE(&s->offset, 3 * n));
+  BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
+  BW_TRY(BW_ALLOCATE(&s->r0, n));
+  BW_TRY(BW_ALLOCATE(&s->fraction, n));
+  BW_TRY(BW_ALLOCATE(&s->sure, n));
+  BW_TRY(BW_ALLOCATE(&s->number, cells));
+  list_offsets(pd, s);
+  for (size_t q = 0; q < cells; q++)
+    s->number[q] = -1;
+  for (int q = 0; q < s->n; q++) {
+    const int32_t *o = s->offset + 3 * q;
+    double r2 = 0;
+    for (int d = 0; d < 3; d++) {
+      r2 += (double)o[d] * o[d];
+      for (int k = 0; k < 3; k++)
+        s->xi[3 * q + k] += c->ds * o[d] * c->axes[d][k];
+    }
+    s->r0[q] = c->ds * sqrt(r2);
+    s->sure[q] = in_reach(c, o, -2 * c->disorder);
+    s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
+        (int16_t)q;
+  }
+  return fractions(pd, s);
+}
+
+void bw_pd_body_rows(bw_pd_body *pd)
+{
+  bw_pd_level *level = pd->level;
+  const bw_pd_stencil *s = &level->stencil;
+  const bool cloud = pd->config.disorder > 0;
+  const int pairs = pd->config.n_group * pd->config.n_group;
+  for (int q = 0; q < pairs * s->n; q++) {
+    bw_real *row = level->row + (size_t)q * BW_PD_ROW;
+    const int direction = q % s->n;
+    const double r0 = cloud ? 1 : s->r0[direction], gamma = cloud ? 1 : s->fraction[direction];
+    for (int k = 0; k < 3; k++)
+      row[BW_PD_XI + k] = (bw_real)s->xi[3 * direction + k];
+    row[BW_PD_R0] = (bw_real)r0;
+    row[BW_PD_MINUS_R0] = (bw_real)-r0;
+    row[BW_PD_WEIGHT] = (bw_real)(gamma * level->dv);
+  }
+}

@@ -1,0 +1,72 @@
+/* pd_bond.h -- state of the bond law, shared by its sources. */
+#pragma once
+#include "bw_pd_bond_law.h"
+#include "pd_law.h"
+
+/* Unit of the stored factors of bonds (surface correction `tensor`): 2^-14, 0 .. 4. */
+#define BW_PD_ALPHA_UNIT (1.0 / 16384)
+
+/* Sums over a full family. */
+typedef struct {
+  double volume;   /* of Gamma dV [L^3] */
+  double moment;   /* of |xi| Gamma dV [L^4] */
+  double crossing; /* of |xi| xi.n Gamma dV where xi.n > 0 [L^5] */
+} bw_pd_bond_full;
+
+typedef struct {
+  bw_pd_bond_options options;
+  double full_volume; /* V_0 of the volume method (POROUS 3.44) [L^3] */
+  bw_pd_bond_full full;
+  double c0[BW_PD_GROUPS]
+           [BW_PD_GROUPS]; /* micromodulus of bonds between two groups [M/(L^7 T^2)] */
+  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* their critical stretch [-] */
+  bool breakable;                        /* some s0 is finite */
+  double *bulk;                          /* (directions) alpha of a full family: 1 but by tensor */
+  bw_real *w;                            /* storage: surface factor of a particle */
+} bw_pd_bond_state;
+
+static inline const bw_pd_bond_state *bw_pd_bond__state(const bw_pd_body *pd)
+{
+  return (const bw_pd_bond_state *)pd->state;
+}
+
+static inline bw_pd_bond_state *bw_pd_bond__own(bw_pd_body *pd)
+{
+  return (bw_pd_bond_state *)pd->state;
+}
+
+/* Micromodulus of the bond of two storage places. */
+static inline double bw_pd_bond__micromodulus(const bw_pd_body *pd, int32_t h, int32_t l)
+{
+  return bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
+}
+
+/* pd_bond_law.c: c0 and s0 of the integrals; of bonds between two groups their E, the harmonic mean,
+ * and fracture energy. Local. */
+void bw_pd_bond__material(bw_pd_body *pd);
+double bw_pd_bond__joint_E(const bw_pd_body_config *config, int g, int h);
+double bw_pd_bond__joint_G0(const bw_pd_body_config *config, int g, int h);
+
+/* pd_bond_calibrate.c */
+double bw_pd_bond__classical_dilation(const bw_pd_body_config *config, double E); /* energy/e^2 */
+bw_status bw_pd_bond__full_family(bw_pd_body *pd) BW_MUST_CHECK;                  /* its sums */
+void bw_pd_bond__calibrate(bw_pd_body *pd);
+
+/* pd_bond_surface.c: state.w. Collective. */
+bw_status bw_pd_bond__surface_factors(bw_pd_body *pd) BW_MUST_CHECK;
+double bw_pd_bond__alpha(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
+                         int lane);
+
+/* pd_bond_tensor.c: bonds.factor, state.bulk. Collective. */
+bw_status bw_pd_bond__tensor(bw_pd_body *pd) BW_MUST_CHECK;
+
+/* Members of the law. */
+void bw_pd_bond__force(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping);
+bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block);
+double bw_pd_bond__bond_energy(const bw_pd_body *pd, const bw_pd_block *block,
+                               const bw_pd_slot *slot, int lane);
+double bw_pd_bond__energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t lanes_asked);
+bw_status bw_pd_bond__bound(bw_pd_body *pd) BW_MUST_CHECK;
+void bw_pd_bond__tangent(const bw_pd_body *pd, bw_real *const x[3], double kx[]);
+void bw_pd_bond__rows(const bw_pd_body *pd, double row[]);
+void bw_pd_bond__virial(const bw_pd_body *pd, const bw_pd_block *block, int lane, double sum[3][3]);

@@ -1,0 +1,156 @@
+/* The bond law as a row of the table of laws: what it refuses, its constants, its members. */
+#include "bw_memory.h"
+#include "pd_bond.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+static bw_status check(const bw_pd_body_config *c, const void *options)
+{
+  const bw_pd_bond_options *o = (const bw_pd_bond_options *)options;
+  const double nu = bw_pd_body_natural_poisson(c->geometry);
+  for (int g = 0; g < c->n_group; g++)
+    BW_REQUIRE(
+        isnan(c->material[g].nu) || fabs(c->material[g].nu - nu) < 1e-9, BW_EINPUT,
+        "pd_bond: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
+        "set it to that",
+        c->material[g].nu, c->geometry == BW_PD_PLANE_STRESS ? "1/3" : "1/4");
+  BW_REQUIRE((unsigned)o->surface_correction <= BW_PD_SURFACE_TENSOR, BW_EINPUT,
+             "pd_bond: surface_correction = %d is unknown", (int)o->surface_correction);
+  BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
+             "pd_bond: surface_correction = tensor is of lattices; with disorder = %g use energy",
+             c->disorder);
+  BW_REQUIRE((unsigned)o->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
+             "pd_bond: calibration = %d is unknown", (int)o->calibration);
+  return BW_OK;
+}
+
+/* Fracture energy of bonds between two groups. */
+double bw_pd_bond__joint_G0(const bw_pd_body_config *c, int g, int h)
+{
+  const double own = c->joint_G0[g][h];
+  return g == h || isnan(own) ? fmin(c->material[g].G0, c->material[h].G0) : own;
+}
+
+double bw_pd_bond__joint_E(const bw_pd_body_config *c, int g, int h)
+{
+  const double a = c->material[g].E, b = c->material[h].E;
+  return g == h ? a : 2 * a * b / (a + b);
+}
+
+/* POROUS 3.21 and 3.27 with ERRATA 1; both are proportional to E and G0/E, so that bonds between two
+ * groups have those of the harmonic mean of the two E. */
+void bw_pd_bond__material(bw_pd_body *pd)
+{
+  bw_pd_body_config *c = &pd->config;
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  const double d = pd->level->horizon, t = c->thickness;
+  for (int g = 0; g < c->n_group; g++)
+    for (int h = 0; h < c->n_group; h++) {
+      const double E = bw_pd_bond__joint_E(c, g, h);
+      const double micromodulus[] = {12 * E / (PI * d * d * d * d), 9 * E / (PI * t * d * d * d),
+                                     48 * E / (5 * PI * t * d * d * d)};
+      const double stretch2[] = {5 / (6 * E * d), 4 * PI / (9 * E * d), 5 * PI / (12 * E * d)};
+      state->c0[g][h] = micromodulus[c->geometry];
+      state->s0[g][h] = sqrt(stretch2[c->geometry] * bw_pd_bond__joint_G0(c, g, h));
+    }
+  for (int g = 0; g < c->n_group; g++)
+    c->material[g].nu = bw_pd_body_natural_poisson(c->geometry);
+}
+
+/* What of a kernel row is the law's, once c0 and s0 are known. */
+static void row_constants(const bw_pd_body *pd, int g, int h, bw_real row[])
+{
+  static const double factor[] = {1, 2, 0.5, BW_PD_ALPHA_UNIT}; /* none; volume: 2/(w+w); energy:
+                                                             (g+g)/2; tensor: whole numbers */
+  const bw_pd_bond_state *state = bw_pd_bond__state(pd);
+  const bw_pd_stencil *s = &pd->level->stencil;
+  const bool cloud = pd->config.disorder > 0;
+  for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
+    const double r0 = cloud ? 1 : s->r0[q], gamma = cloud ? 1 : s->fraction[q];
+    const double limit = r0 * (1 + state->s0[g][h]);
+    row[BW_PD_STIFFNESS] = (bw_real)(factor[state->options.surface_correction] * state->c0[g][h] *
+                                     gamma * pd->level->dv / (pd->config.material[g].rho * r0));
+    row[BW_PD_LIMIT2] = (bw_real)(limit * limit);
+  }
+}
+
+static void constants(bw_pd_body *pd)
+{
+  const int groups = pd->config.n_group;
+  bw_pd_bond__material(pd);
+  bw_pd_bond__calibrate(pd);
+  bw_pd_bond__own(pd)->breakable = false;
+  for (int g = 0; g < groups; g++)
+    for (int h = 0; h < groups; h++) {
+      if (isfinite(bw_pd_bond__state(pd)->s0[g][h])) bw_pd_bond__own(pd)->breakable = true;
+      row_constants(pd, g, h,
+                    pd->level->row + (size_t)((g * groups + h) * pd->level->stencil.n) * BW_PD_ROW);
+    }
+}
+
+static bw_status prepare(bw_pd_body *pd, const void *options)
+{
+  const int directions = pd->level->stencil.n;
+  bw_pd_bond_state *state = NULL;
+  bw_status st = BW_ALLOCATE(&state, 1);
+  pd->state = state;
+  if (st == BW_OK) {
+    state->options = *(const bw_pd_bond_options *)options;
+    st = BW_ALLOCATE(&state->bulk, (size_t)directions);
+    BW_THEN(st, bw_pd_body_storage_array(pd->points.n_storage, &state->w));
+  }
+  for (int q = 0; q < directions && st == BW_OK; q++)
+    state->bulk[q] = 1;
+  /* The factors of a body's surface refer to the full family's sums, and the tensor's factors change
+   * what a full family holds: in this order. */
+  BW_THEN(st, bw_pd_bond__full_family(pd));
+  BW_TRY(bw_comm_agree(pd->comm, st));
+  bw_pd_bond__material(pd);
+  bw_pd_bond__calibrate(pd);
+  BW_TRY(bw_pd_bond__surface_factors(pd));
+  return state->options.surface_correction == BW_PD_SURFACE_TENSOR ? bw_pd_bond__tensor(pd) : BW_OK;
+}
+
+static void destroy(bw_pd_body *pd)
+{
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  if (state == NULL) return;
+  bw_release(&state->bulk);
+  bw_pd_body_release_storage_array(&state->w);
+  bw_release(&pd->state);
+}
+
+double bw_pd_bond_law_micromodulus(const bw_pd_body *pd, int group)
+{
+  return bw_pd_bond__state(pd)->c0[group][group];
+}
+
+double bw_pd_bond_law_critical_stretch(const bw_pd_body *pd, int group)
+{
+  return bw_pd_bond__state(pd)->s0[group][group];
+}
+
+static const bw_pd_law_key keys[] = {
+    {"surface_correction", "", "factor of bonds whose families a surface has cut"},
+    {"calibration", "", "constants from integrals over the ball or from the lattice's sums"},
+    {NULL, NULL, NULL}};
+
+const bw_pd_law bw_pd_bond_law = {.name = "bond",
+                                  .keys = keys,
+                                  .check = check,
+                                  .prepare = prepare,
+                                  .constants = constants,
+                                  .n_sweep = 1,
+                                  .sweep = {bw_pd_bond__force},
+                                  .damps = true,
+                                  .breaks = bw_pd_bond__breaks,
+                                  .bond_energy = bw_pd_bond__bond_energy,
+                                  .energy = bw_pd_bond__energy,
+                                  .bound = bw_pd_bond__bound,
+                                  .tangent = bw_pd_bond__tangent,
+                                  .rows = bw_pd_bond__rows,
+                                  .virial = bw_pd_bond__virial,
+                                  .micromodulus = bw_pd_bond_law_micromodulus,
+                                  .destroy = destroy};

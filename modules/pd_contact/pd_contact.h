@@ -1,0 +1,80 @@
+/* pd_contact.h -- state of the contact between particles that no bond joins, and with walls.
+ *
+ * Two kinds of pairs. Family pairs whose bond broke are found where their slots are: no search.
+ * All others start further apart than the horizon; a cell search lists those nearer than reach +
+ * skin, anew when something moved by half the skin since. So the force is one of positions and
+ * broken bonds alone. Positions are in lattice axes, where periods act. */
+#pragma once
+#include "bw_pd_contact.h"
+#include "pd_law.h"
+
+typedef struct {
+  int32_t particle;
+  int8_t wall;
+  bool held; /* by an intact bond across the wall: does not meet it */
+} bw_pd_near;
+
+/* What a pair does to h at the distance r = sqrt(r2), d from h to l: adds its acceleration to
+ * sum[] and returns half of its energy over rho dV of the first group. */
+typedef struct {
+  double reach;   /* r_c [L] */
+  double k;       /* k_c dV/rho of h */
+  double weight;  /* rho of h over that of the first group */
+  double closest; /* least r/reach met */
+} bw_pd_pair;
+
+struct bw_pd_contact {
+  bw_pd_body *pd;     /* borrowed */
+  double reach, skin; /* the largest r_c; of the search [L] */
+  double closest;     /* least distance of a pair over its reach, in the forces so far */
+  bw_pd_pair law[BW_PD_GROUPS][BW_PD_GROUPS]; /* owner's group, other's */
+  bool built;
+  bw_real *u_built[3]; /* (n) displacement at the last search */
+
+  size_t n_mine, n_theirs, n_sent;
+  int32_t *mine; /* (n_mine) own particles */
+  int32_t *sent; /* (n_sent) own particle of each item of the plan */
+  bw_exchange *plan;
+  double *send, *y;   /* (n_sent,3); (n_mine + n_theirs,3) present positions */
+  int32_t *site;      /* (n_mine + n_theirs,3) */
+  uint8_t *group;     /* (n_mine + n_theirs) */
+  double *shift;      /* (n_mine + n_theirs,3) from the site, in a cloud; else NULL */
+  size_t *pair_start; /* (n_mine + 1) */
+  int32_t *pair;      /* index into y */
+  size_t n_busy;
+  int32_t *busy; /* (n_busy) those of mine that have pairs */
+
+  size_t n_near;
+  bw_pd_near *near; /* (n_near) own particles near walls, at the last search */
+  int64_t events;   /* of pd when `held` was found */
+  bw_pd_link *link; /* (stencil) scratch */
+
+  int n_wall;
+  bw_pd_wall wall[BW_PD_WALLS];
+  double wall_force[3]; /* on the walls, of this rank, at the last evaluation [M L/T^2] */
+};
+
+double bw_pd_contact__repel(bw_pd_pair *pair, const double d[3], double r2, double sum[3]);
+/* The pair law of a particle of group g with one of group h. */
+bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h);
+
+/* pd_contact_wall.c. act returns energy as repel does; with force adds to extra, sets wall_force. */
+bw_status bw_pd_contact__wall_search(bw_pd_contact *c) BW_MUST_CHECK;
+bw_status bw_pd_contact__wall_update(bw_pd_contact *c) BW_MUST_CHECK;
+double bw_pd_contact__wall_act(bw_pd_contact *c, bool force);
+
+void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3]);
+bw_status bw_pd_contact__search(bw_pd_contact *c) BW_MUST_CHECK; /* Collective. */
+void bw_pd_contact__release(bw_pd_contact *c);
+
+/* y_l - y_h with the nearest image. */
+static inline void bw_pd_contact__difference(const bw_pd_body *pd, const double h[3],
+                                             const double l[3], double d[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const double p = pd->config.period[k];
+    d[k] = l[k] - h[k];
+    if (p > 0 && d[k] > 0.5 * p) d[k] -= p * (double)(int64_t)(d[k] / p + 0.5);
+    if (p > 0 && d[k] < -0.5 * p) d[k] += p * (double)(int64_t)(-d[k] / p + 0.5);
+  }
+}

@@ -1,0 +1,62 @@
+/* The energy book: sums over particles, bonds and ranks. */
+#include "solid_internal.h"
+
+#include <math.h>
+
+/* Kinetic energy and momenta of this rank: book[0], [1..3], [4..6]. */
+static void motion(const bw_pd_body *pd, double book[7])
+{
+  for (size_t i = 0; i < pd->n; i++) {
+    const double mass = bw_pd_body_material(pd, i)->rho * bw_pd_body_level(pd, i)->dv;
+    double X[3], p[3];
+    bw_pd_body_reference(pd, i, X);
+    for (int k = 0; k < 3; k++) {
+      X[k] += (double)pd->u[k][pd->points.place[i]];
+      p[k] = mass * (double)pd->v[k][i];
+      book[0] += 0.5 * p[k] * (double)pd->v[k][i];
+      book[1 + k] += p[k];
+    }
+    for (int k = 0; k < 3; k++)
+      book[4 + k] += X[(k + 1) % 3] * p[(k + 2) % 3] - X[(k + 2) % 3] * p[(k + 1) % 3];
+  }
+}
+
+bw_status bw_pd_bond_account(bw_pd_bond *s, bw_pd_bond_ledger *out)
+{
+  bw_pd_body *pd = s->body;
+  double book[17] = {0};
+  int64_t count[3] = {pd->bonds.directed, 0, s->book.precracked};
+  if (!pd->current) BW_TRY(bw_pd_bond_evaluate(s));
+  if (s->contact != NULL) BW_TRY(bw_comm_agree(pd->comm, bw_pd_contact_update(s->contact)));
+  motion(pd, book);
+  book[7] = bw_pd_body_elastic(pd);
+  if (s->contact != NULL) book[8] = bw_pd_contact_energy(s->contact);
+  book[9] = s->book.damping;
+  book[10] = pd->bonds.released;
+  book[11] = s->book.external;
+  for (size_t q = 0; q < pd->bonds.n_slot; q++)
+    count[1] += __builtin_popcount((unsigned)(pd->bonds.slot[q].family & ~pd->bonds.slot[q].mask));
+  book[12] = s->book.retired;
+  for (int k = 0; k < 3; k++)
+    book[13 + k] = s->book.wall[k];
+  if (pd->law->dissipated != NULL) book[16] = pd->law->dissipated(pd);
+  double closest = s->contact != NULL ? bw_pd_contact_closest(s->contact) : INFINITY;
+  bw_comm_min(pd->comm, 1, &closest);
+  bw_comm_sum(pd->comm, 17, book);
+  bw_comm_sum_int(pd->comm, 3, count);
+  *out = (bw_pd_bond_ledger){.kinetic = book[0],
+                             .momentum = {book[1], book[2], book[3]},
+                             .angular = {book[4], book[5], book[6]},
+                             .elastic = book[7],
+                             .contact = book[8],
+                             .closest = closest,
+                             .damping = book[9],
+                             .fracture = book[10],
+                             .external = book[11],
+                             .retired = book[12],
+                             .plastic = book[16],
+                             .wall = {book[13], book[14], book[15]},
+                             .bonds = (count[0] - count[2]) / 2,
+                             .broken = (count[1] - count[2]) / 2};
+  return BW_OK;
+}

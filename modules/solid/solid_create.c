@@ -1,0 +1,122 @@
+/* Building and destroying a solid: a body with its law, contact and integrator. */
+#include "bw_memory.h"
+#include "solid_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+bw_pd_bond_config bw_pd_bond_config_default(void)
+{
+  bw_pd_bond_config c = {.geometry = BW_PD_3D,
+                         .ds = NAN,
+                         .thickness = 1,
+                         .horizon_ratio = 3,
+                         .rho = NAN,
+                         .E = NAN,
+                         .nu = NAN,
+                         .G0 = INFINITY,
+                         .volume_fraction = BW_PD_FRACTION_DEFAULT,
+                         .surface_correction = BW_PD_SURFACE_VOLUME,
+                         .integrator = BW_PD_VERLET,
+                         .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (int g = 0; g < BW_PD_GROUPS; g++)
+    for (int h = 0; h < BW_PD_GROUPS; h++)
+      c.joint_G0[g][h] = NAN;
+  return c;
+}
+
+static bw_status check_config(const bw_pd_bond_config *c)
+{
+  const double value[] = {c->damping_pair, c->damping_mean, c->damping_absolute};
+  const char *name[] = {"damping_pair", "damping_mean", "damping_absolute"};
+  BW_REQUIRE((unsigned)c->integrator <= BW_PD_RK3, BW_EINPUT, "pd_bond: integrator = %d is unknown",
+             (int)c->integrator);
+  BW_REQUIRE(c->n_more >= 0 && c->n_more < BW_PD_GROUPS, BW_EINPUT,
+             "pd_bond: n_more = %d must be from 0 to %d", c->n_more, BW_PD_GROUPS - 1);
+  for (int q = 0; q < 3; q++)
+    BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
+               "pd_bond: %s = %g must be zero or positive", name[q], value[q]);
+  for (int a = 0; a < 3; a++)
+    BW_REQUIRE(c->period[a] == 0 || !c->contact || c->period[a] / c->ds > 3.5, BW_EINPUT,
+               "pd_bond: period[%d] = %g with contact needs at least 4 ds", a, c->period[a]);
+  return BW_OK;
+}
+
+static bw_pd_body_config body_config(const bw_pd_bond_config *c)
+{
+  bw_pd_body_config b = {.geometry = c->geometry,
+                         .ds = c->ds,
+                         .thickness = c->thickness,
+                         .horizon_ratio = c->horizon_ratio,
+                         .volume_fraction = c->volume_fraction,
+                         .family_reach = c->family_reach,
+                         .disorder = c->disorder,
+                         .disorder_seed = c->disorder_seed,
+                         .n_group = 1 + c->n_more,
+                         .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
+  memcpy(b.origin, c->origin, sizeof b.origin);
+  memcpy(b.axes, c->axes, sizeof b.axes);
+  memcpy(b.period, c->period, sizeof b.period);
+  memcpy(b.joint_G0, c->joint_G0, sizeof b.joint_G0);
+  for (int g = 0; g < c->n_more; g++)
+    b.material[1 + g] = c->more[g];
+  return b;
+}
+
+static bw_status own_arrays(bw_pd_bond *s)
+{
+  bw_pd_body *pd = s->body;
+  BW_TRY(BW_ALLOCATE(&s->retired, pd->n));
+  if (s->config.contact) BW_TRY(bw_pd_contact_create(pd, &s->contact));
+  for (int k = 0; k < 3 && s->config.integrator == BW_PD_RK3; k++) {
+    BW_TRY(BW_ALLOCATE(&s->v_before[k], pd->n));
+    BW_TRY(BW_ALLOCATE(&s->a_before[k], pd->n));
+  }
+  return BW_OK;
+}
+
+static bw_status build(bw_pd_bond *s, const bw_comm *comm, int64_t n, const int32_t site[],
+                       const uint8_t kind[])
+{
+  bw_pd_bond_config *c = &s->config;
+  const bw_pd_body_config body = body_config(c);
+  const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
+  const bool own = c->law != NULL && c->law != &bw_pd_bond_law;
+  BW_TRY(bw_pd_body_create(comm, &body, own ? c->law : &bw_pd_bond_law,
+                           own ? c->law_options : &bonds, n, site, kind, &s->body));
+  c->nu = s->body->config.material[0].nu;
+  c->volume_fraction = s->body->config.volume_fraction;
+  bw_pd_body_set_damping(s->body, c->damping_pair, c->damping_mean, c->damping_absolute);
+  return bw_comm_agree(comm, own_arrays(s));
+}
+
+bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
+                            const int32_t site[], const uint8_t kind[], bw_pd_bond **out)
+{
+  bw_pd_bond *s = NULL;
+  *out = NULL;
+  bw_status st = BW_ALLOCATE(&s, 1);
+  BW_THEN(st, check_config(config));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK) {
+    s->config = *config;
+    st = build(s, comm, n, site, kind);
+  }
+  if (st != BW_OK) bw_pd_bond_destroy(&s);
+  *out = s;
+  return st;
+}
+
+void bw_pd_bond_destroy(bw_pd_bond **solid)
+{
+  bw_pd_bond *s = *solid;
+  if (s == NULL) return;
+  bw_pd_contact_destroy(&s->contact);
+  bw_pd_body_destroy(&s->body);
+  bw_release(&s->retired);
+  for (int k = 0; k < 3; k++) {
+    bw_release(&s->v_before[k]);
+    bw_release(&s->a_before[k]);
+  }
+  bw_release(solid);
+}

@@ -1,0 +1,38 @@
+/* solid_internal.h -- the solid: a body, its contact, its integrator and its book. */
+#pragma once
+#include "bw_solid.h"
+#include "pd_law.h"
+
+/* What has gone where since the start, of this rank. */
+typedef struct {
+  double damping;     /* dissipated [M L^2/T^2] */
+  double external;    /* work of forces and prescribed motion [M L^2/T^2] */
+  double retired;     /* elastic energy of bonds when their particles were retired [M L^2/T^2] */
+  double wall[3];     /* impulse on the walls [M L/T] */
+  int64_t precracked; /* bonds cut by pre-cracks, from both ends */
+} bw_solid_book;
+
+struct bw_pd_bond {
+  bw_pd_bond_config config; /* as it was asked for, defaults resolved */
+  bw_pd_body *body;
+  bw_pd_contact *contact;             /* NULL: none */
+  bw_real *v_before[3], *a_before[3]; /* (n) RK3's previous stage */
+  bool loaded;                        /* load.extra may differ from zero */
+  bool restored;                      /* a was given by set_restart */
+  size_t n_retired;
+  int32_t *retired; /* (n_retired of n) own particles */
+  bw_solid_book book;
+};
+
+/* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. leap: BW_EDIVERGED when
+ * a particle moved more than a horizon. */
+bw_status bw_solid__begin(bw_pd_bond *s) BW_MUST_CHECK;
+bw_status bw_solid__leap(bw_pd_bond *s, double dt) BW_MUST_CHECK;
+void bw_solid__land(bw_pd_bond *s, double dt);
+void bw_solid__end(bw_pd_bond *s);
+/* Forces at the present u (and v for damping). Collective. */
+bw_status bw_solid__evaluate(bw_pd_bond *s, bool check) BW_MUST_CHECK;
+
+/* solid_retire.c */
+void bw_solid__retire_rows(bw_pd_bond *s, const double rows[]); /* of a restart; Collective */
+void bw_solid__still_retired(bw_pd_bond *s);                    /* no force on them */

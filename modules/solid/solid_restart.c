@@ -1,0 +1,109 @@
+/* What a checkpoint holds. */
+#include "solid_internal.h"
+
+#include <string.h>
+
+size_t bw_pd_bond_bits_bytes(const bw_pd_bond *s)
+{
+  return ((size_t)s->body->level->stencil.n + 7) / 8;
+}
+
+void bw_pd_bond_get_bits(const bw_pd_bond *s, uint8_t bits[])
+{
+  const bw_pd_body *pd = s->body;
+  const size_t bytes = bw_pd_bond_bits_bytes(s);
+  memset(bits, 0, pd->n * bytes);
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
+    for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++)
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        if (pd->bonds.slot[q].mask >> lane & 1) {
+          const size_t h = (size_t)bw_pd_body_owner(&pd->bonds.block[b], lane);
+          const int d = pd->bonds.slot[q].direction;
+          bits[h * bytes + (size_t)d / 8] |= (uint8_t)(1u << d % 8);
+        }
+}
+
+bw_status bw_pd_bond_set_bits(bw_pd_bond *s, const uint8_t bits[])
+{
+  bw_pd_body *pd = s->body;
+  const size_t bytes = bw_pd_bond_bits_bytes(s);
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    pd->bonds.block[b].broken = false;
+    for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
+      bw_pd_slot *slot = &pd->bonds.slot[q];
+      slot->mask = 0;
+      for (int lane = 0; lane < BW_PD_LANES; lane++) {
+        if (!(slot->family >> lane & 1)) continue;
+        const size_t h = (size_t)bw_pd_body_owner(&pd->bonds.block[b], lane);
+        const int d = slot->direction;
+        if (bits[h * bytes + (size_t)d / 8] >> d % 8 & 1) slot->mask |= (uint8_t)(1u << lane);
+      }
+      if (slot->mask != slot->family) pd->bonds.block[b].broken = true;
+    }
+  }
+  pd->bonds.events++;
+  if (s->contact != NULL) bw_pd_contact_recheck(s->contact);
+  if (!s->restored) pd->current = false;
+  return BW_OK;
+}
+
+void bw_pd_bond_get_restart(const bw_pd_bond *s, double rows[], double sums[])
+{
+  const bw_pd_body *pd = s->body;
+  for (size_t i = 0; i < pd->n; i++) {
+    double *row = rows + BW_PD_RESTART_ROW * i;
+    for (size_t k = 0; k < 3; k++) {
+      row[k] = (double)pd->u[k][pd->points.place[i]];
+      row[3 + k] = (double)pd->v[k][i];
+      row[6 + k] = (double)(pd->a[k][i] + pd->load.extra[k][i]);
+      row[9 + k] = (double)pd->load.damp[k][i];
+    }
+    row[BW_PD_RESTART_ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
+  }
+  const bw_solid_book *book = &s->book;
+  const double none[3] = {0};
+  const double *on_walls = s->contact != NULL ? bw_pd_contact_wall_force(s->contact) : none;
+  const double mine[BW_PD_RESTART_SUMS] = {
+      book->damping, pd->bonds.released, book->external, (double)book->precracked,
+      book->retired, book->wall[0],      book->wall[1],  book->wall[2],
+      on_walls[0],   on_walls[1],        on_walls[2]};
+  memcpy(sums, mine, sizeof mine);
+  bw_comm_sum(pd->comm, BW_PD_RESTART_SUMS, sums);
+}
+
+/* The sums of all ranks are the first one's. */
+static void set_sums(bw_pd_bond *s, const double sums[])
+{
+  bw_pd_body *pd = s->body;
+  const double own = bw_comm_rank(pd->comm) == 0;
+  s->book.damping = own * sums[0];
+  pd->bonds.released = own * sums[1];
+  s->book.external = own * sums[2];
+  s->book.precracked = (int64_t)(own * sums[3]);
+  s->book.retired = own * sums[4];
+  for (int k = 0; k < 3; k++) {
+    s->book.wall[k] = own * sums[5 + k];
+    if (s->contact != NULL) bw_pd_contact_wall_force(s->contact)[k] = own * sums[8 + k];
+  }
+}
+
+bw_status bw_pd_bond_set_restart(bw_pd_bond *s, const double rows[], const double sums[])
+{
+  bw_pd_body *pd = s->body;
+  for (size_t i = 0; i < pd->n; i++)
+    for (size_t k = 0; k < 3; k++) {
+      const double *row = rows + BW_PD_RESTART_ROW * i + k;
+      pd->u[k][pd->points.place[i]] = (bw_real)row[0];
+      pd->v[k][i] = (bw_real)row[3];
+      pd->a[k][i] = (bw_real)row[6];
+      pd->load.damp[k][i] = (bw_real)row[9]; /* for the book: that of Verlet is of the half step */
+      pd->load.extra[k][i] = 0;              /* inside a */
+    }
+  bw_pd_body_adopt_prescribed(pd);
+  bw_solid__retire_rows(s, rows);
+  set_sums(s, sums);
+  bw_pd_body_refresh(pd, true);
+  pd->current = s->restored = true;
+  s->loaded = s->contact != NULL || bw_pd_body_damped(pd);
+  return BW_OK;
+}

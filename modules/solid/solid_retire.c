@@ -1,0 +1,73 @@
+/* Particles that have left the mechanics: they move on, no force acts on them or comes from them.
+ */
+#include "solid_internal.h"
+
+/* Everything that follows from the kinds of the own particles. */
+static void renew(bw_pd_bond *s)
+{
+  bw_pd_body *pd = s->body;
+  s->n_retired = 0;
+  for (size_t i = 0; i < pd->n; i++) {
+    pd->held.mobile[i] = (pd->points.kind[i] & (BW_PD_PRESCRIBED | BW_PD_RETIRED)) == 0;
+    if (pd->points.kind[i] & BW_PD_RETIRED) s->retired[s->n_retired++] = (int32_t)i;
+  }
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    bw_pd_block *block = &pd->bonds.block[b];
+    block->gone = 0;
+    for (int lane = 0; lane < BW_PD_LANES; lane++)
+      if (block->mask >> lane & 1 && pd->points.kind[bw_pd_body_owner(block, lane)] & BW_PD_RETIRED)
+        block->gone |= (uint8_t)(1u << lane);
+  }
+  bw_pd_body_fill_extended(pd, 1, pd->points.kind, pd->points.kind);
+  pd->revision++;
+  if (s->contact != NULL) bw_pd_contact_forget(s->contact);
+}
+
+void bw_solid__still_retired(bw_pd_bond *s)
+{
+  bw_pd_body *pd = s->body;
+  for (int k = 0; k < pd->dimension; k++)
+    for (size_t q = 0; q < s->n_retired; q++) {
+      const int32_t i = s->retired[q];
+      pd->a[k][i] = pd->load.extra[k][i] = pd->load.damp[k][i] = 0;
+    }
+}
+
+/* Energy of the bonds of the block's lanes that are retired now and were not before. */
+static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool gone[])
+{
+  uint8_t fresh = 0;
+  for (int lane = 0; lane < BW_PD_LANES; lane++)
+    if ((block->mask & ~block->gone) >> lane & 1) {
+      const int32_t i = bw_pd_body_owner(block, lane);
+      if (gone[i] && !(pd->points.kind[i] & BW_PD_PRESCRIBED)) fresh |= (uint8_t)(1u << lane);
+    }
+  return fresh == 0 ? 0 : pd->law->energy(pd, block, fresh);
+}
+
+bw_status bw_pd_bond_retire(bw_pd_bond *s, const bool gone[])
+{
+  bw_pd_body *pd = s->body;
+  if (!pd->current) bw_pd_body_refresh(pd, false);
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
+    s->book.retired += stored(pd, &pd->bonds.block[b], gone);
+  for (size_t i = 0; i < pd->n; i++)
+    if (gone[i] && !(pd->points.kind[i] & BW_PD_PRESCRIBED)) pd->points.kind[i] |= BW_PD_RETIRED;
+  renew(s);
+  return bw_comm_agree(pd->comm, bw_solid__evaluate(s, false));
+}
+
+void bw_solid__retire_rows(bw_pd_bond *s, const double rows[])
+{
+  bw_pd_body *pd = s->body;
+  int64_t changed = 0;
+  for (size_t i = 0; i < pd->n; i++) {
+    const bool gone = rows[BW_PD_RESTART_ROW * i + BW_PD_RESTART_ROW - 1] != 0;
+    const uint8_t kind =
+        (uint8_t)((pd->points.kind[i] & ~BW_PD_RETIRED) | (gone ? BW_PD_RETIRED : 0));
+    changed |= kind != pd->points.kind[i];
+    pd->points.kind[i] = kind;
+  }
+  bw_comm_max_int(pd->comm, 1, &changed);
+  if (changed) renew(s);
+}

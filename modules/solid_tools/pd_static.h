@@ -1,0 +1,14 @@
+/* pd_static.h -- shared by the relaxation and the linear solve. */
+#pragma once
+#include "bw_pd_static.h"
+#include "pd_law.h"
+
+bw_status bw_pd_static__check(const bw_pd_bond *s, const bw_pd_static_config *config);
+
+/* What residuals are measured by: at least `floor` (the scale before bonds broke, else 0). */
+typedef struct {
+  double floor, first, scale; /* first: -1 before the first call */
+} bw_pd_static_scale;
+
+/* Residual from norms squared of all ranks: of the free rows, of F, of the reactions. */
+double bw_pd_static__residual(double free2, double F2, double reaction2, bw_pd_static_scale *s);

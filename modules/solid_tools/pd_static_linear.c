@@ -1,0 +1,113 @@
+/* Conjugate gradients on the small-strain operator of the bonds that hold. */
+#include "bw_memory.h"
+#include "pd_static.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+  double *mass;         /* (n) preconditioner */
+  double *r, *p, *kp;   /* (n,3): F - K u on all rows, direction, K p */
+  bw_real *const *copy; /* storage: p and its copies, in the arrays of the velocity's copies */
+} solver;
+
+/* kp = K x. Collective. */
+static void product(bw_pd_body *pd, const solver *s, const double x[])
+{
+  for (int k = 0; k < 3; k++) {
+    for (size_t i = 0; i < pd->n; i++)
+      s->copy[k][pd->points.place[i]] = (bw_real)x[3 * i + (size_t)k];
+    bw_pd_body_fill_places(pd, s->copy[k]);
+  }
+  pd->law->tangent(pd, s->copy, s->kp);
+}
+
+/* Norms squared for the residual and r.r/m of the free rows. Collective. */
+static void norms(const bw_pd_body *pd, const solver *s, double sum[4])
+{
+  memset(sum, 0, 4 * sizeof *sum);
+  for (size_t i = 0; i < pd->n; i++)
+    for (size_t k = 0; k < (size_t)pd->dimension; k++) {
+      const double mobile = (double)pd->held.mobile[i], r = s->r[3 * i + k];
+      const double f = bw_pd_body_material(pd, i)->rho * (double)pd->load.f[k][i];
+      sum[0] += mobile * r * r;
+      sum[1] += mobile * f * f;
+      sum[2] += (1 - mobile) * r * r;
+      sum[3] += mobile * r * r / s->mass[i];
+    }
+  bw_comm_sum(pd->comm, 4, sum);
+}
+
+static double dot(const bw_pd_body *pd, const double a[], const double b[])
+{
+  double sum = 0;
+  for (size_t q = 0; q < 3 * pd->n; q++)
+    sum += a[q] * b[q];
+  bw_comm_sum(pd->comm, 1, &sum);
+  return sum;
+}
+
+/* p = r/m + beta p on the free rows, 0 on the prescribed ones. */
+static void turn(const bw_pd_body *pd, const solver *s, double beta)
+{
+  for (size_t i = 0; i < pd->n; i++)
+    for (size_t k = 0; k < (size_t)pd->dimension; k++) {
+      double *p = &s->p[3 * i + k];
+      *p = (double)pd->held.mobile[i] * s->r[3 * i + k] / s->mass[i] + beta * *p;
+    }
+}
+
+static bw_status iterate(bw_pd_body *pd, const bw_pd_static_config *config, const solver *s,
+                         double U[], bw_pd_static_report *report)
+{
+  double sum[4], before = 0;
+  bw_pd_static_scale by = {.first = -1};
+  pd->law->rows(pd, s->mass);
+  product(pd, s, U);
+  for (size_t i = 0; i < pd->n; i++)
+    for (size_t k = 0; k < 3; k++)
+      s->r[3 * i + k] =
+          bw_pd_body_material(pd, i)->rho * (double)pd->load.f[k][i] - s->kp[3 * i + k];
+  for (int q = 0; q <= config->max_iterations; q++) {
+    norms(pd, s, sum);
+    report->residual = bw_pd_static__residual(sum[0], sum[1], sum[2], &by);
+    if (report->residual <= config->tolerance) return BW_OK;
+    if (!isfinite(report->residual)) break;
+    turn(pd, s, q > 0 ? sum[3] / before : 0);
+    before = sum[3];
+    product(pd, s, s->p);
+    report->iterations++;
+    const double step = sum[3] / dot(pd, s->p, s->kp);
+    for (size_t x = 0; x < 3 * pd->n; x++) {
+      U[x] += step * s->p[x];
+      s->r[x] -= step * s->kp[x];
+    }
+  }
+  return BW_FAIL(BW_EDIVERGED,
+                 "pd_static_linear: the residual is %g after %lld products, %g was asked; is the "
+                 "body held?",
+                 report->residual, (long long)report->iterations, config->tolerance);
+}
+
+bw_status bw_pd_static_linear(bw_pd_bond *solid, const bw_pd_static_config *config, double U[],
+                              bw_pd_static_report *report)
+{
+  bw_pd_body *pd = bw_pd_bond_body(solid);
+  solver s = {.copy = pd->vs};
+  *report = (bw_pd_static_report){.residual = NAN};
+  bw_status st = bw_pd_static__check(solid, config);
+  BW_THEN(st, BW_ALLOCATE(&s.mass, pd->n));
+  BW_THEN(st, BW_ALLOCATE(&s.r, 3 * pd->n));
+  BW_THEN(st, BW_ALLOCATE(&s.p, 3 * pd->n));
+  BW_THEN(st, BW_ALLOCATE(&s.kp, 3 * pd->n));
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) {
+    st = iterate(pd, config, &s, U, report);
+    pd->current = false; /* the velocity's copies were used */
+  }
+  bw_release(&s.mass);
+  bw_release(&s.r);
+  bw_release(&s.p);
+  bw_release(&s.kp);
+  return st;
+}

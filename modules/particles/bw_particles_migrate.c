@@ -183,6 +183,7 @@ bw_status bw_particles_space_near(const bw_particles_space *s, size_t n, const d
   bw_status st = BW_ALLOCATE(&seen, size);
   BW_THEN(st, grow(0, size, &capacity, own, destination));
   for (size_t q = 0; q < n && st == BW_OK; q++) {
+    /* Its ranks are written straight to the end of the list: room for all that there may be. */
     st = grow(*rows, size, &capacity, own, destination);
     if (st != BW_OK) break;
     const size_t found = ranks_near(s, x + 3 * q, reach, q + 1, seen, *destination + *rows);
@@ -220,6 +221,7 @@ bw_status bw_particles_migrate(const bw_particles_space *s, size_t n, const doub
   void *with = NULL;
   bw_status st = plan_way(s, n, x, &plan);
   if (st == BW_OK) {
+    /* Counts have been exchanged; room is made before the first point leaves. */
     *n_out = bw_exchange_received(plan);
     st = BW_ALLOCATE(&there, 3 * *n_out);
     BW_THEN(st, bw_allocate(*n_out, bytes, &with));

@@ -49,6 +49,8 @@ static bw_status find_box(const bw_comm *comm, size_t n, const int32_t site[],
   int32_t lower[3], upper[3];
   int64_t corner[6], total = (int64_t)n;
   bw_particles_extent(n, site, lower, upper);
+  /* Lower corners with their sign turned: one reduction by the largest value serves both. A rank
+   * without sites has no say. */
   for (int k = 0; k < 3; k++) {
     corner[k] = n > 0 ? -(int64_t)lower[k] : INT64_MIN;
     corner[3 + k] = n > 0 ? (int64_t)upper[k] : INT64_MIN;
@@ -215,6 +217,7 @@ static void next_depth(work *w)
 static void bisect(work *w, size_t n)
 {
   int n_next = 0;
+  /* All particles are one group of all ranks; each depth of the tree halves the groups' ranks. */
   const group all = {.parts = w->p->parts, .slowest = 2, .n = w->p->total, .end = n};
   put_group(w, &n_next, all);
   group *first = w->next;

@@ -176,8 +176,9 @@ static inline bw_status bending_make_solid(bending_flow *f)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(f->ds, s.origin, true);
   bw_status st =
-      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n, &site, &kind);
+      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, &lattice, 0, 1, &n, &site, &kind, NULL);
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);

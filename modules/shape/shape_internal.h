@@ -44,6 +44,21 @@ static inline const double *bw_shape__own(const bw_shape *s, const double x[3], 
   return y;
 }
 
+/* The sites to look at, made from shapes and lattice once; `shape` is borrowed. */
+typedef struct {
+  int count, dims;
+  const bw_shape *shape;
+  double ds, origin[3];
+  bool turned;
+  double axes[3][3];
+  bw_shape__extent space; /* of all that is added; endless shapes end here */
+  int64_t lo[3], hi[3];
+} bw_shape__region;
+
+/* Checks all and finds the range. Errors as bw_shape_range. Local. */
+bw_status bw_shape__region_make(int count, const bw_shape shape[], const bw_shape_lattice *lattice,
+                                bw_shape__region *region) BW_MUST_CHECK;
+
 /* A mask of which nothing is held yet; `path` names it in messages. Local. */
 bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const double lower[3],
                                 const double spacing[3], bw_shape_mask **out) BW_MUST_CHECK;

@@ -36,7 +36,8 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
+  bw_status st = bw_shape_fill(1, &block, &lattice, 0, 1, &n, &site, &kind, NULL);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, pd));
   bw_release(&site);
   bw_release(&kind);

@@ -45,7 +45,8 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = 3.015;
   c.family_reach = BW_PD_REACH_HORIZON;
   c.disorder = disorder;
-  bw_status st = bw_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
+  bw_status st = bw_shape_fill(1, &block, &lattice, 0, 1, &n, &site, &kind, NULL);
   bw_pd_bond_ledger e;
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_bond_account(pd, &e));

@@ -29,7 +29,8 @@ static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_pd_bo
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_shape_fill(3, body, ds, c.origin, false, &n, &site, &kind);
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, c.origin, false);
+  bw_status st = bw_shape_fill(3, body, &lattice, 0, 1, &n, &site, &kind, NULL);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, solid));
   bw_release(&site);
   bw_release(&kind);

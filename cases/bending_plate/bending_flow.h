@@ -181,8 +181,9 @@ static inline bw_status bending_make_solid(bending_flow *f)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(f->ds, s.origin, true);
   bw_status st =
-      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n, &site, &kind);
+      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, &lattice, 0, 1, &n, &site, &kind, NULL);
   /* Sites and kinds are copied into the solid, which divides them over the ranks. */
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);

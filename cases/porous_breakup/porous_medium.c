@@ -127,7 +127,7 @@ static bw_status image(const porous_config *q, medium_body *b)
   const bw_shape box = box_of(q);
   snprintf(b->key, sizeof b->key, "medium.image.solid = [%g, %g] of %s", m->solid[0], m->solid[1],
            m->file);
-  BW_TRY(bw_shape_mask_read_image(m->file, m->solid[0], m->solid[1], &b->mask));
+  BW_TRY(bw_shape_mask_open_image(m->file, m->solid[0], m->solid[1], &b->mask));
   /* An image smaller than the medium would leave a part of it empty. */
   for (int d = 0; d < 3; d++) {
     if (!isnan(m->voxel)) b->mask->spacing[d] = m->voxel;
@@ -237,7 +237,8 @@ static bw_status fill(const porous_config *q, medium_way way, medium_body *b, in
   BW_TRY(way(q, b));
   /* The slab comes last: it is under the box and takes nothing from it. */
   if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
-  BW_TRY(bw_shape_fill(b->count, b->shape, spacing(q), origin, false, n, site, kind));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
+  BW_TRY(bw_shape_fill(b->count, b->shape, &lattice, 0, 1, n, site, kind, NULL));
   int64_t above = 0;
   /* The slab alone is no medium. */
   for (int64_t k = 0; k < *n; k++)

@@ -1,5 +1,5 @@
 /* Headers of NRRD and MetaImage files. */
-#include "shape_mask.h"
+#include "shape_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -235,7 +235,7 @@ static bw_status beside(const header *h, size_t room, char out[])
   return BW_OK;
 }
 
-bw_status bw_shape_mask_read_image(const char *path, double low, double high, bw_shape_mask **out)
+bw_status bw_shape_mask_open_image(const char *path, double low, double high, bw_shape_mask **out)
 {
   *out = NULL;
   header h = {.path = path, .dims = 3, .v = {.size = {1, 1, 1}, .spacing = {1, 1, 1}}};
@@ -253,6 +253,11 @@ bw_status bw_shape_mask_read_image(const char *path, double low, double high, bw
   BW_THEN(st, read_header(file, &h, nrrd));
   fclose(file);
   if (st == BW_OK && !h.attached) st = beside(&h, sizeof data, data);
-  BW_THEN(st, bw_shape_mask_read_raw(h.attached ? path : data, &h.v, low, high, out));
+  BW_THEN(st, bw_shape_mask_open_raw(h.attached ? path : data, &h.v, low, high, out));
   return st;
+}
+
+bw_status bw_shape_mask_read_image(const char *path, double low, double high, bw_shape_mask **out)
+{
+  return bw_shape__mask_all(bw_shape_mask_open_image(path, low, high, out), out);
 }

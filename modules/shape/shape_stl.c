@@ -1,6 +1,6 @@
 /* Closed surfaces of triangles, filled by the parity of crossings. */
 #include "bw_memory.h"
-#include "shape_mask.h"
+#include "shape_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -188,6 +188,7 @@ bw_status bw_shape_mask_read_stl(const char *path, double scale, double spacing,
     size[d] = (int64_t)fmax(1, cells);
   }
   BW_THEN(st, bw_shape__mask_create(path, size, lower, cell, out));
+  BW_THEN(st, bw_shape__mask_room(path, 0, size[2], *out));
   BW_THEN(st, fill(path, &s, scale, *out));
   bw_release(&s.corner);
   if (st != BW_OK) bw_shape_mask_destroy(out);

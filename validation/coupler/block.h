@@ -91,7 +91,8 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = bw_shape_fill(shapes, shape, H, c.origin, true, &n, &site, &kind);
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(H, c.origin, true);
+  bw_status st = bw_shape_fill(shapes, shape, &lattice, 0, 1, &n, &site, &kind, NULL);
   s->mass = 0.0;
   for (int64_t q = 0; st == BW_OK && q < n; q++)
     s->mass += site[3 * q + 1] >= 0 ? H * H * H : 0.0;

@@ -90,7 +90,8 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
     }
     shape[q].upper[2] = H;
   }
-  bw_check_ok(bw_shape_fill(b->n_block, shape, H, c.origin, true, &n, &site, &kind));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(H, c.origin, true);
+  bw_check_ok(bw_shape_fill(b->n_block, shape, &lattice, 0, 1, &n, &site, &kind, NULL));
   bw_check_ok(bw_pd_bond_create(bw_check_world(), &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);

@@ -60,7 +60,8 @@ static inline scene build_blocks(double retraction, double relaxation, double sp
   uint8_t *kind = NULL;
   bw_check_ok(bw_grid_create(comm, &grid, &s.grid));
   bw_check_ok(bw_ns_channel_create(s.grid, &flow, &s.fluid));
-  bw_check_ok(bw_shape_fill(1, &cube, H, solid.origin, false, &n, &site, &kind));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(H, solid.origin, false);
+  bw_check_ok(bw_shape_fill(1, &cube, &lattice, 0, 1, &n, &site, &kind, NULL));
   ck_assert_int_eq(n, BLOCK * BLOCK * BLOCK);
   bw_check_ok(bw_pd_bond_create(comm, &solid, n, site, kind, &s.solid));
   bw_check_ok(bw_coupler_create(&config, s.fluid, s.solid, &s.coupler));

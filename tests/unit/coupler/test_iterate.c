@@ -24,7 +24,8 @@ static double make_light(scene *s)
   material.rho = 0.1 * RHO;
   material.E = material.rho * c * c;
   material.damping_mean = material.rho * c / (BLOCK * H);
-  bw_check_ok(bw_shape_fill(1, &cube, H, material.origin, false, &n, &site, &kind));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(H, material.origin, false);
+  bw_check_ok(bw_shape_fill(1, &cube, &lattice, 0, 1, &n, &site, &kind, NULL));
   bw_check_ok(bw_pd_bond_create(bw_check_world(), &material, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);

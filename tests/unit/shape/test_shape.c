@@ -8,12 +8,20 @@
 
 static const double zero[3] = {0.0, 0.0, 0.0};
 
+/* The whole body on a straight lattice. */
+static bw_status fill(int count, const bw_shape shape[], double ds, const double origin[3],
+                      bool planar, int64_t *n, int32_t **site, uint8_t **kind)
+{
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, origin, planar);
+  return bw_shape_fill(count, shape, &lattice, 0, 1, n, site, kind, NULL);
+}
+
 static int64_t sites_of(int count, const bw_shape shape[], double ds, bool planar)
 {
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_check_ok(bw_shape_fill(count, shape, ds, zero, planar, &n, &site, &kind));
+  bw_check_ok(fill(count, shape, ds, zero, planar, &n, &site, &kind));
   bw_release(&site);
   bw_release(&kind);
   return n;
@@ -76,7 +84,7 @@ START_TEST(order_origin_and_kind)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_check_ok(bw_shape_fill(3, body, 1.0, zero, false, &n, &site, &kind));
+  bw_check_ok(fill(3, body, 1.0, zero, false, &n, &site, &kind));
   ck_assert_int_eq(n, 12 - 1 + 1);
   int64_t before = -1;
   int marked = 0;
@@ -91,7 +99,7 @@ START_TEST(order_origin_and_kind)
   bw_release(&site);
   bw_release(&kind);
   /* sites are counted from the origin, shapes are not: y in 0 .. 2 is site -10 .. -9 */
-  bw_check_ok(bw_shape_fill(1, body, 1.0, origin, false, &n, &site, &kind));
+  bw_check_ok(fill(1, body, 1.0, origin, false, &n, &site, &kind));
   ck_assert_int_eq(site[1], -10);
   ck_assert_int_eq(site[0], 0); /* centre at x = 0 is inside, at x = 3 (site 3) it is not */
   ck_assert_int_eq(n, 12);
@@ -141,19 +149,19 @@ START_TEST(impossible_shapes_are_refused_by_number)
   const bw_shape good = {.kind = BW_SHAPE_BOX, .upper = {2, 2, 2}};
   bw_shape list[2] = {good, good};
   list[1].upper[1] = -1;
-  bw_check_status(bw_shape_fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "shape 1"));
   list[1] = (bw_shape){.kind = BW_SHAPE_PORES_SC, .radius = 1.0};
-  bw_check_status(bw_shape_fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
   list[1] = (bw_shape){.kind = BW_SHAPE_CYLINDER, .radius = 1.0, .axis = 3};
-  bw_check_status(bw_shape_fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
   list[0] = (bw_shape){.kind = BW_SHAPE_CYLINDER, .radius = 1.0, .axis = 1};
-  bw_check_status(bw_shape_fill(1, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(1, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
   list[0] = list[1] = good;
   list[1].remove = true;
-  bw_check_status(bw_shape_fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
-  bw_check_status(bw_shape_fill(1, &good, NAN, zero, false, &n, &site, &kind), BW_EINPUT);
-  bw_check_status(bw_shape_fill(0, &good, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(2, list, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(1, &good, NAN, zero, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(0, &good, 1.0, zero, false, &n, &site, &kind), BW_EINPUT);
   ck_assert_ptr_null(site);
 }
 END_TEST
@@ -163,4 +171,4 @@ static const bw_check_test tests[] = {
     BW_TEST(order_origin_and_kind),        BW_TEST(round_shapes_have_their_volume),
     BW_TEST(outside_is_the_rest_of_space), BW_TEST(impossible_shapes_are_refused_by_number),
 };
-BW_CHECK_MAIN("pd_bond.shape", tests)
+BW_CHECK_MAIN("shape.bodies", tests)

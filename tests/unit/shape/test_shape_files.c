@@ -8,6 +8,14 @@
 #include <string.h>
 #include <unistd.h>
 
+/* The whole body on a straight lattice. */
+static bw_status fill(int count, const bw_shape shape[], double ds, const double origin[3],
+                      bool planar, int64_t *n, int32_t **site, uint8_t **kind)
+{
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, origin, planar);
+  return bw_shape_fill(count, shape, &lattice, 0, 1, n, site, kind, NULL);
+}
+
 /* Names in a folder of this process. */
 static char *path_of(const char *name)
 {
@@ -212,7 +220,10 @@ START_TEST(wrong_layouts_are_refused_by_name)
   refuse_raw(&v, 5, 8, "origin nan");
   for (int d = 0; d < 3; d++)
     v.size[d] = 100000, v.lower[d] = 0;
-  refuse_raw(&v, 5, 8, "memory");
+  refuse_raw(&v, 5, 8, "ends after 0");
+  for (int d = 0; d < 3; d++)
+    v.size[d] = 2000000;
+  refuse_raw(&v, 5, 8, "numbered");
   remove(path_of("r.raw"));
   refuse_raw(&good, 5, 8, "cannot be opened");
 }
@@ -269,7 +280,7 @@ START_TEST(surfaces_are_filled)
     int64_t n;
     int32_t *site;
     uint8_t *kind;
-    bw_check_ok(bw_shape_fill(1, &shape, 0.5, (double[3]){0}, false, &n, &site, &kind));
+    bw_check_ok(fill(1, &shape, 0.5, (double[3]){0}, false, &n, &site, &kind));
     ck_assert_int_eq(n, want);
     bw_release(&site);
     bw_release(&kind);
@@ -301,6 +312,7 @@ START_TEST(bad_surfaces_are_refused_by_name)
   refuse_surface(1, 0.5, BW_EINPUT, "not closed");
   refuse_surface(0, 0.5, BW_EINPUT, "scale = 0");
   refuse_surface(1, -0.5, BW_EINPUT, "spacing = -0.5");
+  refuse_surface(1, 1e-4, BW_EINPUT, "more than fit into memory");
   refuse_surface(1e9, 0.5, BW_EINPUT, "is scale = 1e+09 right?");
   tetrahedron(7, NAN, 6, 4, "bad.stl", false);
   refuse_surface(1, 0.5, BW_EINPUT, "not finite");
@@ -320,7 +332,7 @@ START_TEST(bad_surfaces_are_refused_by_name)
   int64_t n;
   int32_t *site;
   uint8_t *kind;
-  bw_check_status(bw_shape_fill(1, &shape, 1, (double[3]){0}, false, &n, &site, &kind), BW_EINPUT);
+  bw_check_status(fill(1, &shape, 1, (double[3]){0}, false, &n, &site, &kind), BW_EINPUT);
 }
 END_TEST
 
@@ -328,4 +340,4 @@ static const bw_check_test tests[] = {
     BW_TEST(raw_voxels_of_every_type),         BW_TEST(images_in_four_forms),
     BW_TEST(bad_images_are_refused_by_name),   BW_TEST(surfaces_are_filled),
     BW_TEST(bad_surfaces_are_refused_by_name), BW_TEST(wrong_layouts_are_refused_by_name)};
-BW_CHECK_MAIN("pd_bond.shape_files", tests)
+BW_CHECK_MAIN("shape.files", tests)

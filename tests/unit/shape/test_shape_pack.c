@@ -112,4 +112,4 @@ END_TEST
 static const bw_check_test tests[] = {BW_TEST(packs_keep_their_distance),
                                       BW_TEST(packs_follow_their_seed),
                                       BW_TEST(impossible_packs_are_refused_by_name)};
-BW_CHECK_MAIN("pd_bond.shape_pack", tests)
+BW_CHECK_MAIN("shape.pack", tests)

@@ -1,23 +1,13 @@
-#include "bw_shape.h"
-#include "bw_memory.h"
+/* The table of shapes: what is inside, where they end, what they need. */
+#include "shape_internal.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-/* Ties (a centre exactly on a surface) must not depend on rounding, or mirrored bodies would
- * not be mirror images: the surface is moved by this part of ds (boxes) or radius (balls). */
-static const double TIE = 1e-9;
+typedef bw_shape__extent extent;
 
-/* Where a shape may be; an endless direction is -INFINITY .. INFINITY. */
-typedef struct {
-  double lower[3], upper[3];
-} extent;
-
-typedef struct {
-  const char *name;
-  bool (*inside)(const bw_shape *s, int dims, double tie, const double x[3]);
-  extent (*bounds)(const bw_shape *s);
-  bool needs_box, needs_radius, needs_pitch, needs_axis, needs_mask;
-} shape_row;
+static const double TIE = BW_SHAPE__TIE;
 
 /* Half-open, so that a box of n ds holds n sites and two that touch share none. */
 static bool inside_box(const bw_shape *s, int dims, double tie, const double x[3])
@@ -140,7 +130,7 @@ static extent bounds_mask(const bw_shape *s)
   return e;
 }
 
-static const shape_row rows[BW_SHAPE_COUNT] = {
+const bw_shape__row bw_shape__rows[BW_SHAPE_COUNT] = {
     [BW_SHAPE_BOX] = {"box", inside_box, bounds_box, .needs_box = true},
     [BW_SHAPE_SPHERE] = {"sphere", inside_sphere, bounds_sphere, .needs_radius = true},
     [BW_SHAPE_CYLINDER] = {"cylinder", inside_cylinder, bounds_cylinder, .needs_radius = true,
@@ -156,15 +146,15 @@ static const shape_row rows[BW_SHAPE_COUNT] = {
 
 const char *bw_shape_name(bw_shape_kind kind)
 {
-  return (unsigned)kind < BW_SHAPE_COUNT ? rows[kind].name : "unknown";
+  return (unsigned)kind < BW_SHAPE_COUNT ? bw_shape__rows[kind].name : "unknown";
 }
 
-static bw_status check_shape(int number, const bw_shape *s, int dims)
+bw_status bw_shape__check(int number, const bw_shape *s, int dims)
 {
   BW_REQUIRE((unsigned)s->kind < BW_SHAPE_COUNT, BW_EINPUT,
              "shape %d: kind %d is none of the %d shapes there are", number, (int)s->kind,
              (int)BW_SHAPE_COUNT);
-  const shape_row *row = &rows[s->kind];
+  const bw_shape__row *row = &bw_shape__rows[s->kind];
   for (int d = 0; d < dims; d++) {
     if (row->needs_box)
       BW_REQUIRE(isfinite(s->lower[d]) && isfinite(s->upper[d]) && s->upper[d] > s->lower[d],
@@ -188,101 +178,77 @@ static bw_status check_shape(int number, const bw_shape *s, int dims)
   if (row->needs_axis)
     BW_REQUIRE(s->axis >= 0 && s->axis <= 2, BW_EINPUT,
                "shape %d (%s): axis = %d has to be 0, 1 or 2", number, row->name, s->axis);
+  if (s->frame != NULL) {
+    char what[64];
+    snprintf(what, sizeof what, "shape %d (%s): frame", number, row->name);
+    BW_TRY(bw_shape__check_axes(what, s->frame->axes, dims));
+    for (int d = 0; d < dims; d++)
+      BW_REQUIRE(isfinite(s->frame->about[d]), BW_EINPUT,
+                 "shape %d (%s): frame.about[%d] = %g is not finite", number, row->name, d,
+                 s->frame->about[d]);
+  }
   return BW_OK;
 }
 
-/* Sites lo[d] <= site[d] < hi[d] that can be solid: the union of the finite extents of what is
- * added; an endless shape ends where the others end. */
-static bw_status site_range(int count, const bw_shape shape[], double ds, const double origin[3],
-                            int dims, int64_t lo[3], int64_t hi[3])
+bw_status bw_shape__check_axes(const char *what, const double axes[3][3], int dims)
 {
-  for (int d = 0; d < dims; d++) {
-    double lower = INFINITY, upper = -INFINITY;
-    for (int q = 0; q < count; q++) {
-      const extent e = rows[shape[q].kind].bounds(&shape[q]);
-      if (shape[q].remove || shape[q].outside || !isfinite(e.lower[d])) continue;
-      lower = fmin(lower, e.lower[d]);
-      upper = fmax(upper, e.upper[d]);
+  const double limit = 1e-9;
+  for (int a = 0; a < 3; a++)
+    for (int b = a; b < 3; b++) {
+      const double *p = axes[a], *q = axes[b];
+      const double dot = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+      BW_REQUIRE(fabs(dot - (a == b)) <= limit, BW_EINPUT,
+                 "%s: the product of axes %d and %d is %g, not %d; bw_shape_turn makes orthonormal "
+                 "ones",
+                 what, a, b, dot, a == b);
     }
-    BW_REQUIRE(upper > lower, BW_EINPUT,
-               "shapes: nothing that is added ends in direction %d; add a box to cut from", d);
-    const double a = ceil((lower - origin[d]) / ds - 0.5 - TIE);
-    const double b = ceil((upper - origin[d]) / ds - 0.5 - TIE);
-    BW_REQUIRE(a > (double)INT32_MIN && b < (double)INT32_MAX, BW_EINPUT,
-               "shapes: %g .. %g in direction %d is more than 2^31 sites of ds = %g", lower, upper,
-               d, ds);
-    lo[d] = (int64_t)a;
-    hi[d] = (int64_t)b;
+  double right = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    right += axes[0][d] * (axes[1][e] * axes[2][f] - axes[1][f] * axes[2][e]);
   }
-  if (dims == 2) lo[2] = 0, hi[2] = 1;
+  BW_REQUIRE(right > 0.0, BW_EINPUT, "%s: the axes are left-handed; exchange two of them", what);
+  BW_REQUIRE(dims == 3 || fabs(axes[2][2] - 1.0) <= limit, BW_EINPUT,
+             "%s: a planar body turns about z only, axis 2 is (%g, %g, %g)", what, axes[2][0],
+             axes[2][1], axes[2][2]);
   return BW_OK;
 }
 
-/* Is the site solid, and of which particle kind? The last shape that holds it decides. */
-static bool solid_at(int count, const bw_shape shape[], int dims, double tie, const double x[3],
-                     uint8_t *kind)
+extent bw_shape__bounds(const bw_shape *s, int dims)
 {
-  bool solid = false;
-  for (int q = 0; q < count; q++) {
-    if (shape[q].remove && !solid) continue; /* nothing there to take away */
-    if (rows[shape[q].kind].inside(&shape[q], dims, tie, x) == shape[q].outside) continue;
-    solid = !shape[q].remove;
-    *kind = shape[q].particle_kind;
+  const extent own = bw_shape__rows[s->kind].bounds(s);
+  if (s->frame == NULL) return own;
+  const bw_shape_frame *f = s->frame;
+  extent e;
+  for (int d = 0; d < 3; d++) {
+    e.lower[d] = e.upper[d] = f->about[d];
+    for (int a = 0; a < dims; a++) {
+      const double w = f->axes[a][d];
+      if (w == 0.0) continue; /* 0 times an endless direction is nothing */
+      const double p = w * (own.lower[a] - f->about[a]), q = w * (own.upper[a] - f->about[a]);
+      e.lower[d] += fmin(p, q);
+      e.upper[d] += fmax(p, q);
+    }
+    /* Which of its faces a box keeps turns with it: a hair more, so that no range cuts one off. */
+    const double hair = 1e3 * TIE * (e.upper[d] - e.lower[d]);
+    e.lower[d] -= hair;
+    e.upper[d] += hair;
   }
-  return solid;
+  return e;
 }
 
-/* Count the solid sites, and write them when site is not NULL. */
-static int64_t scan(int count, const bw_shape shape[], double ds, const double origin[3], int dims,
-                    const int64_t lo[3], const int64_t hi[3], int32_t *site, uint8_t *kind)
+void bw_shape_turn(const double axis[3], double angle, double axes[3][3])
 {
-  int64_t n = 0;
-  double x[3] = {0.0, 0.0, 0.0};
-  for (int64_t k = lo[2]; k < hi[2]; k++)
-    for (int64_t j = lo[1]; j < hi[1]; j++)
-      for (int64_t i = lo[0]; i < hi[0]; i++) {
-        const int64_t at[3] = {i, j, k};
-        for (int d = 0; d < dims; d++)
-          x[d] = origin[d] + ((double)at[d] + 0.5) * ds;
-        uint8_t what = 0;
-        if (!solid_at(count, shape, dims, TIE * ds, x, &what)) continue;
-        if (site != NULL) {
-          for (int d = 0; d < 3; d++)
-            site[3 * n + d] = (int32_t)at[d];
-          kind[n] = what;
-        }
-        n++;
-      }
-  return n;
-}
-
-bw_status bw_shape_fill(int count, const bw_shape shape[], double ds, const double origin[3],
-                        bool planar, int64_t *n, int32_t **site, uint8_t **kind)
-{
-  *n = 0;
-  *site = NULL;
-  *kind = NULL;
-  const int dims = planar ? 2 : 3;
-  BW_REQUIRE(isfinite(ds) && ds > 0.0, BW_EINPUT, "shapes: ds = %g has to be positive", ds);
-  BW_REQUIRE(count > 0, BW_EINPUT, "shapes: the list is empty; a body needs one at least");
-  for (int d = 0; d < 3; d++)
-    BW_REQUIRE(isfinite(origin[d]), BW_EINPUT, "shapes: origin[%d] = %g is not finite", d,
-               origin[d]);
-  for (int q = 0; q < count; q++)
-    BW_TRY(check_shape(q, &shape[q], dims));
-  int64_t lo[3], hi[3];
-  BW_TRY(site_range(count, shape, ds, origin, dims, lo, hi));
-  const int64_t found = scan(count, shape, ds, origin, dims, lo, hi, NULL, NULL);
-  BW_REQUIRE(found > 0, BW_EINPUT,
-             "shapes: no site of spacing %g is inside the body; it is thinner than ds or all of "
-             "it was removed",
-             ds);
-  bw_status st = BW_ALLOCATE(site, 3 * (size_t)found);
-  BW_THEN(st, BW_ALLOCATE(kind, (size_t)found));
-  if (st != BW_OK) {
-    bw_release(site);
-    return st;
+  const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  const double c = cos(angle), s = sin(angle);
+  const double n[3] = {axis[0] / length, axis[1] / length, axis[2] / length};
+  /* Rodrigues: row a is the unit vector e_a turned. */
+  for (int a = 0; a < 3; a++) {
+    const int b = (a + 1) % 3, g = (a + 2) % 3;
+    for (int d = 0; d < 3; d++)
+      axes[a][d] = (1.0 - c) * n[a] * n[d];
+    axes[a][a] += c;
+    axes[a][b] += s * n[g];
+    axes[a][g] -= s * n[b];
   }
-  *n = scan(count, shape, ds, origin, dims, lo, hi, *site, *kind);
-  return BW_OK;
 }

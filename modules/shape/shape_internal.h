@@ -1,0 +1,70 @@
+/* shape_internal.h -- shared by the sources of the module: the table of shapes, masks in making. */
+#pragma once
+#include "bw_shape.h"
+#include "bw_shape_mask.h"
+
+/* Ties (a centre exactly on a surface) must not depend on rounding, or mirrored bodies would
+ * not be mirror images: the surface is moved by this part of ds (boxes) or radius (balls). */
+#define BW_SHAPE__TIE 1e-9
+
+/* Where a shape may be; an endless direction is -INFINITY .. INFINITY. */
+typedef struct {
+  double lower[3], upper[3];
+} bw_shape__extent;
+
+/* A kind of shape: x (3) is in the shape's own frame, `tie` a length. */
+typedef struct {
+  const char *name;
+  bool (*inside)(const bw_shape *s, int dims, double tie, const double x[3]);
+  bw_shape__extent (*bounds)(const bw_shape *s);
+  bool needs_box, needs_radius, needs_pitch, needs_axis, needs_mask;
+} bw_shape__row;
+extern const bw_shape__row bw_shape__rows[BW_SHAPE_COUNT];
+
+/* BW_EINPUT names the shape by `number`. Local. */
+bw_status bw_shape__check(int number, const bw_shape *s, int dims) BW_MUST_CHECK;
+
+/* Are the rows of axes orthonormal and right-handed, and in 2D a turn about z? `what` names them.
+ * Local. */
+bw_status bw_shape__check_axes(const char *what, const double axes[3][3], int dims) BW_MUST_CHECK;
+
+/* The extent in space, a hair too large where the shape has a frame. Local. */
+bw_shape__extent bw_shape__bounds(const bw_shape *s, int dims);
+
+/* x (3) in the shape's own frame: x itself, or y, which is written. Local. */
+static inline const double *bw_shape__own(const bw_shape *s, const double x[3], double y[3])
+{
+  const bw_shape_frame *f = s->frame;
+  if (f == NULL) return x;
+  for (int a = 0; a < 3; a++) {
+    y[a] = f->about[a];
+    for (int d = 0; d < 3; d++)
+      y[a] += f->axes[a][d] * (x[d] - f->about[d]);
+  }
+  return y;
+}
+
+/* The sites to look at, made from shapes and lattice once; `shape` is borrowed. */
+typedef struct {
+  int count, dims;
+  const bw_shape *shape;
+  double ds, origin[3];
+  bool turned;
+  double axes[3][3];
+  bw_shape__extent space; /* of all that is added; endless shapes end here */
+  int64_t lo[3], hi[3];
+} bw_shape__region;
+
+/* Checks all and finds the range. Errors as bw_shape_range. Local. */
+bw_status bw_shape__region_make(int count, const bw_shape shape[], const bw_shape_lattice *lattice,
+                                bw_shape__region *region) BW_MUST_CHECK;
+
+/* A mask of which nothing is held yet; `path` names it in messages. Local. */
+bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const double lower[3],
+                                const double spacing[3], bw_shape_mask **out) BW_MUST_CHECK;
+/* Room for these layers in place of those held, all of them empty. Local. */
+bw_status bw_shape__mask_room(const char *path, int64_t first, int64_t layers,
+                              bw_shape_mask *mask) BW_MUST_CHECK;
+/* A mask that was opened with status `st`, with all of its layers and without its file; destroyed
+ * after a failure. Local. */
+bw_status bw_shape__mask_all(bw_status st, bw_shape_mask **mask) BW_MUST_CHECK;

@@ -48,7 +48,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
   bw_status st = bw_shape_fill(1, &block, &lattice, 0, 1, &n, &site, &kind, NULL);
   bw_pd_bond_ledger e;
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_bond_account(pd, &e));
   /* Each bond is evaluated from both of its ends. */
   if (st == BW_OK) {

@@ -215,7 +215,7 @@ static bw_status wave_create(const bw_comm *comm, bw_pd_bond_config c, const int
     site[3 * q + 1] = (int32_t)(q / size[0] % size[1]);
     site[3 * q + 2] = (int32_t)(q / size[0] / size[1]);
   }
-  BW_THEN(st, bw_pd_bond_create(comm, &c, all, site, NULL, &w->pd));
+  BW_THEN(st, bw_solid_create_same(comm, &c, all, site, NULL, &w->pd));
   bw_release(&site);
   BW_TRY(st);
   w->n = bw_pd_bond_count(w->pd);

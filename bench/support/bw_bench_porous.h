@@ -31,7 +31,7 @@ static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_pd_bo
   uint8_t *kind = NULL;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, c.origin, false);
   bw_status st = bw_shape_fill(3, body, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, solid));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, solid));
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -185,7 +185,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   bw_status st =
       bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, &lattice, 0, 1, &n, &site, &kind, NULL);
   /* Sites and kinds are copied into the solid, which divides them over the ranks. */
-  BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
+  BW_THEN(st, bw_solid_create_same(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);
   if (st != BW_OK) return st;

@@ -155,7 +155,7 @@ static bw_status make_solid(specimen *p)
   st = bw_comm_agree(p->comm, st);
   if (st == BW_OK) (void)scan(p, &c, site, loads, kind);
   /* Every rank has the whole list; the solid divides it. */
-  BW_THEN(st, bw_pd_bond_create(p->comm, &c, n, site, kind, &p->solid));
+  BW_THEN(st, bw_solid_create_same(p->comm, &c, n, site, kind, &p->solid));
   BW_THEN(st, own_loads(p, loads));
   BW_THEN(st, cut_notches(p));
   bw_release(&site);

@@ -60,7 +60,7 @@ static bw_status build_solid(porous_run *p)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   bw_status st = porous_medium_sites(p->comm, q, &n, &site, &kind);
-  BW_THEN(st, bw_pd_bond_create(p->comm, &solid, n, site, kind, &p->solid));
+  BW_THEN(st, bw_solid_create_same(p->comm, &solid, n, site, kind, &p->solid));
   bw_release(&site);
   bw_release(&kind);
   return st;

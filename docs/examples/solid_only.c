@@ -30,7 +30,7 @@ static bw_status pull(const bw_comm *world)
   bw_pd_bond *bar;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(config.ds, config.origin, true);
   BW_TRY(bw_shape_fill(4, shapes, &lattice, 0, 1, &n, &site, &kind, NULL));
-  BW_TRY(bw_pd_bond_create(world, &config, n, site, kind, &bar));
+  BW_TRY(bw_solid_create_same(world, &config, n, site, kind, &bar));
   BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(bar)));
   bw_pd_bond_get_reference(bar, V);
   for (size_t i = 0; i < bw_pd_bond_count(bar); i++) {

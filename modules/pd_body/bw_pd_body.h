@@ -74,6 +74,15 @@ typedef struct {
                                                    NaN: the smaller of the two */
 } bw_pd_body_config;
 
+/* What one rank gives to a body that is made: its part of the sites, any division will do. The
+ * global id of a particle is its row in the lists of all ranks joined in rank order. */
+typedef struct {
+  int64_t n;            /* sites that this rank gives; 0 is fine */
+  const int32_t *site;  /* (n,3) */
+  const uint8_t *kind;  /* (n) bits as above; NULL: free */
+  const uint8_t *group; /* (n) rows of material; NULL: 0 */
+} bw_pd_sites;
+
 /* A bond of a particle as seen from it. */
 typedef struct {
   int32_t neighbour; /* index into own particles and copies */

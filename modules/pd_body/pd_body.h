@@ -13,9 +13,10 @@
  * a family runs in the same order on any number of ranks. */
 #pragma once
 #include "bw_exchange.h"
+#include "bw_particles_copies.h"
+#include "bw_particles_map.h"
 #include "bw_pd_body.h"
 #include "pd_level.h"
-#include "pd_map.h"
 
 /* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). */
 #ifdef BW_SINGLE
@@ -78,13 +79,10 @@ typedef struct {
   int32_t *occupant; /* (n_storage) extended index, -1: hole */
 } bw_pd_points;
 
-/* How copies are kept current: they ask, owners answer (the plan is used backward). */
+/* Copies of what others own, and images. */
 typedef struct {
-  bw_exchange *plan;
-  size_t n_asked;
-  int32_t *asked;          /* (n_asked) own particle of each answer */
-  bw_real *reply, *answer; /* (n_asked,6), (copies,6) */
-  bw_real *extended_X;     /* (n_extended,3), made on demand */
+  bw_particles_copies *copies;
+  bw_real *extended_X; /* (n_extended,3), made on demand */
 } bw_pd_halo;
 
 /* Who is bonded to whom. */
@@ -154,11 +152,10 @@ struct bw_pd_body {
 /* pd_create.c. Zeros, with BW_PD_PAD more before and after. */
 bw_status bw_pd_body_storage_array(size_t n, bw_real **out) BW_MUST_CHECK;
 void bw_pd_body_release_storage_array(bw_real **array);
-/* Particles, families and bonds of `n` sites (n,3), kind (n) or NULL, with the constants of the law.
+/* Particles, families and bonds of the sites that the ranks give, with the constants of the law.
  * `comm` and `law` are borrowed until destroy. Collective. */
 bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config,
-                            const bw_pd_law *law, const void *options, int64_t n,
-                            const int32_t site[], const uint8_t kind[],
+                            const bw_pd_law *law, const void *options, const bw_pd_sites *given,
                             bw_pd_body **out) BW_MUST_CHECK;
 void bw_pd_body_destroy(bw_pd_body **pd); /* NULL is fine. Collective. */
 
@@ -189,22 +186,18 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
 int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
 void bw_pd_body_rows(bw_pd_body *pd); /* the columns of the kernel rows that are geometry */
 
-/* pd_partition.c: part[n] of `parts` compact blocks of equal counts; the axes of the lattice order of
- * a body of so many sites each way, fastest first */
-bw_status bw_pd_body_partition(int parts, size_t n, const int32_t site[],
-                               int32_t part[]) BW_MUST_CHECK;
+/* pd_axes.c: the axes of the lattice order of a body of so many sites each way, fastest first */
 void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
-bw_status bw_pd_body_lattice_order(const int axis[3], size_t n, const int32_t site[],
-                                   int32_t order[]) BW_MUST_CHECK;
 
 /* pd_halo.c */
-bw_status bw_pd_body_distribute(bw_pd_body *pd, size_t n, const int32_t site[],
-                                const uint8_t kind[], bw_pd_map *near) BW_MUST_CHECK;
-void bw_pd_body_refresh(bw_pd_body *pd, bool velocity); /* copies' u (and v). Collective. */
-void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places);
+/* near: site (shifted for images) -> extended index, to be destroyed by the caller. Collective. */
+bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given,
+                                bw_particles_map *near) BW_MUST_CHECK;
+void bw_pd_body_refresh(bw_pd_body *pd, bool velocity);       /* copies' u (and v). Collective. */
+void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places); /* copies' values. Collective. */
 
 /* pd_slots.c */
-bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_pd_map *near) BW_MUST_CHECK;
+bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near) BW_MUST_CHECK;
 
 /* pd_damping.c: load.damp of `n` blocks (list NULL: all); absolute: adds that kind alone */
 bool bw_pd_body_damped(const bw_pd_body *pd);

@@ -157,9 +157,9 @@ static void release_field(field *f)
 
 /* Extended particles by tiles of TILE sites each way. */
 typedef struct {
-  bw_pd_map number;     /* tile -> number */
-  int32_t n;            /* tiles */
-  int32_t *head, *next; /* (n_extended) first of a tile, next of its tile; -1: none */
+  bw_particles_map number; /* tile -> number */
+  int32_t n;               /* tiles */
+  int32_t *head, *next;    /* (n_extended) first of a tile, next of its tile; -1: none */
 } tiling;
 
 static void tile_of(const int32_t site[3], int32_t tile[3])
@@ -182,10 +182,10 @@ static bw_status make_tiles(const bw_pd_body *pd, tiling *t)
   BW_TRY(BW_ALLOCATE(&t->head, pd->n_extended));
   BW_TRY(BW_ALLOCATE(&t->next, pd->n_extended));
   if (pd->n_extended == 0) return BW_OK;
-  BW_TRY(bw_pd_map_create(64, lower, upper, &t->number));
+  BW_TRY(bw_particles_map_create(64, lower, upper, &t->number));
   for (size_t e = 0; e < pd->n_extended; e++) {
     tile_of(pd->points.site + 3 * e, tile);
-    BW_TRY(bw_pd_map_put(&t->number, tile, t->n, &found));
+    BW_TRY(bw_particles_map_put(&t->number, tile, t->n, &found));
     if (found < 0) t->head[t->n] = -1, found = t->n++;
     t->next[e] = t->head[found];
     t->head[found] = (int32_t)e;
@@ -220,7 +220,7 @@ bw_status bw_pd_body_scatter(bw_pd_body *pd)
   bw_status st = make_tiles(pd, &t);
   for (int32_t q = 0; q < t.n && st == BW_OK; q++)
     st = scatter_tile(pd, &t, q);
-  bw_pd_map_destroy(&t.number);
+  bw_particles_map_destroy(&t.number);
   bw_release(&t.head);
   bw_release(&t.next);
   return st;

@@ -38,7 +38,6 @@ static bw_status state_arrays(bw_pd_body *pd)
 {
   const size_t n = pd->n;
   BW_TRY(BW_ALLOCATE(&pd->held.mobile, n));
-  BW_TRY(BW_ALLOCATE(&pd->halo.extended_X, 3 * pd->n_extended));
   BW_TRY(BW_ALLOCATE(&pd->field, BW_PD_FIELDS));
   for (int k = 0; k < 3; k++) {
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->u[k]));
@@ -77,27 +76,30 @@ static bw_status prescribed_list(bw_pd_body *pd)
   return BW_OK;
 }
 
-static bw_status check_list(int64_t n, const int32_t site[], const uint8_t kind[])
+/* first: global id of this rank's first row. */
+static bw_status check_sites(const bw_pd_body_config *c, const bw_pd_sites *s, int64_t first)
 {
-  BW_REQUIRE(n > 0 && site != NULL, BW_EINPUT, "pd_bond: no particles given (n = %lld)",
-             (long long)n);
-  BW_REQUIRE(n < INT32_MAX, BW_EINPUT, "pd_bond: %lld particles; the limit is 2^31", (long long)n);
-  for (int64_t q = 0; kind != NULL && q < n; q++)
-    BW_REQUIRE(kind[q] <= (BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE), BW_EINPUT,
-               "pd_bond: particle %lld has the unknown kind %d", (long long)q, kind[q]);
+  BW_REQUIRE(s->n >= 0 && s->n < INT32_MAX && (s->n == 0 || s->site != NULL), BW_EINPUT,
+             "pd_bond: %lld particles given by one rank; it takes 0 to 2^31", (long long)s->n);
+  for (int64_t q = 0; q < s->n; q++) {
+    const int kind = s->kind == NULL ? 0 : s->kind[q], group = s->group == NULL ? 0 : s->group[q];
+    BW_REQUIRE(kind <= (BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE), BW_EINPUT,
+               "pd_bond: particle %lld has the unknown kind %d", (long long)(first + q), kind);
+    BW_REQUIRE(group < c->n_group, BW_EINPUT,
+               "pd_bond: particle %lld is of group %d; there are materials for %d",
+               (long long)(first + q), group, c->n_group);
+  }
   return BW_OK;
 }
 
 /* Lattice and families first, as the law's constants are sums over them. */
-static bw_status build(bw_pd_body *pd, int64_t n, const int32_t site[], const uint8_t kind[],
-                       const void *options)
+static bw_status build(bw_pd_body *pd, const bw_pd_sites *given, const void *options)
 {
-  bw_pd_map near = {0};
-  pd->points.total = n;
+  bw_particles_map near = {0};
   bw_status st = bw_pd_body_levels(pd);
   BW_THEN(st, bw_pd_body_stencil(pd));
   st = bw_comm_agree(pd->comm, st);
-  if (st == BW_OK) st = bw_pd_body_distribute(pd, (size_t)n, site, kind, &near);
+  if (st == BW_OK) st = bw_pd_body_distribute(pd, given, &near);
   if (st == BW_OK) {
     BW_THEN(st, bw_pd_body_slots(pd, &near));
     BW_THEN(st, state_arrays(pd));
@@ -105,7 +107,7 @@ static bw_status build(bw_pd_body *pd, int64_t n, const int32_t site[], const ui
     BW_THEN(st, prescribed_list(pd));
     st = bw_comm_agree(pd->comm, st);
   }
-  bw_pd_map_destroy(&near);
+  bw_particles_map_destroy(&near);
   BW_TRY(st);
   bw_pd_body_rows(pd);
   BW_TRY(bw_pd_body_damping_bound(pd));
@@ -116,22 +118,27 @@ static bw_status build(bw_pd_body *pd, int64_t n, const int32_t site[], const ui
 }
 
 bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config,
-                            const bw_pd_law *law, const void *options, int64_t n,
-                            const int32_t site[], const uint8_t kind[], bw_pd_body **out)
+                            const bw_pd_law *law, const void *options, const bw_pd_sites *given,
+                            bw_pd_body **out)
 {
   bw_pd_body *pd = NULL;
   *out = NULL;
   bw_status st = bw_pd_body_check(config);
   BW_THEN(st, law->check(config, options));
-  BW_THEN(st, check_list(n, site, kind));
+  const int64_t first = bw_comm_prefix_sum(comm, given->n);
+  BW_THEN(st, check_sites(config, given, first));
   BW_THEN(st, BW_ALLOCATE(&pd, 1));
+  int64_t total = given->n;
+  bw_comm_sum_int(comm, 1, &total);
+  if (st == BW_OK && total <= 0)
+    st = BW_FAIL(BW_EINPUT, "pd_bond: no particles given (n = %lld)", (long long)total);
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     pd->comm = comm;
     pd->config = *config;
     pd->law = law;
     pd->breakage = true;
-    st = build(pd, n, site, kind, options);
+    st = build(pd, given, options);
   }
   if (st != BW_OK) bw_pd_body_destroy(&pd);
   *out = pd;
@@ -154,17 +161,16 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
 {
   bw_pd_body *pd = *pd_;
   if (pd == NULL) return;
-  pd->law->destroy(pd);
+  if (pd->law != NULL) pd->law->destroy(pd);
   for (int q = 0; q < pd->n_field; q++)
     bw_pd_body_release_storage_array(&pd->field[q].value);
   if (pd->level != NULL) release_level(pd->level);
-  bw_exchange_destroy(&pd->halo.plan);
-  void *plain[] = {&pd->weight,       &pd->level,        &pd->points.site,   &pd->points.id,
-                   &pd->points.kind,  &pd->points.group, &pd->points.place,  &pd->points.occupant,
-                   &pd->halo.asked,   &pd->halo.reply,   &pd->halo.answer,   &pd->halo.extended_X,
-                   &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,     &pd->bonds.hit,
-                   &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle, &pd->held.velocity,
-                   &pd->field};
+  bw_particles_copies_destroy(&pd->halo.copies);
+  void *plain[] = {&pd->weight,          &pd->level,        &pd->points.site,  &pd->points.id,
+                   &pd->points.kind,     &pd->points.group, &pd->points.place, &pd->points.occupant,
+                   &pd->halo.extended_X, &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,
+                   &pd->bonds.hit,       &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle,
+                   &pd->held.velocity,   &pd->field};
   for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
     bw_release(plain[q]);
   for (int k = 0; k < 3; k++) {

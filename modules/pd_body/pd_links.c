@@ -75,33 +75,14 @@ bw_pd_motion bw_pd_body_get_motion(bw_pd_body *pd, bool velocity)
   return m;
 }
 
-/* In pieces that fit the halo's buffers: nothing is allocated here. */
 void bw_pd_body_fill_extended(bw_pd_body *pd, size_t bytes, const void *own, void *all)
 {
-  unsigned char *to = all, *reply = (unsigned char *)pd->halo.reply;
-  unsigned char *answer = (unsigned char *)pd->halo.answer;
-  const size_t room = 6 * sizeof(bw_real), copies = pd->n_extended - pd->n;
-  if (all != own) memmove(all, own, pd->n * bytes);
-  for (size_t at = 0; at < bytes; at += room) {
-    const size_t piece = bytes - at < room ? bytes - at : room;
-    for (size_t q = 0; q < pd->halo.n_asked; q++)
-      memcpy(reply + q * piece, to + (size_t)pd->halo.asked[q] * bytes + at, piece);
-    bw_exchange_backward(pd->halo.plan, piece, reply, answer);
-    for (size_t c = 0; c < copies; c++)
-      memcpy(to + (pd->n + c) * bytes + at, answer + c * piece, piece);
-  }
+  bw_particles_copies_values(pd->halo.copies, bytes, own, all);
 }
 
-/* In bw_real: that is what the halo's buffers hold. */
 void bw_pd_body_sum_extended(bw_pd_body *pd, double *all)
 {
-  const size_t copies = pd->n_extended - pd->n;
-  for (size_t c = 0; c < 3 * copies; c++)
-    pd->halo.answer[c] = (bw_real)all[3 * pd->n + c];
-  bw_exchange_forward(pd->halo.plan, 3 * sizeof(bw_real), pd->halo.answer, pd->halo.reply);
-  for (size_t q = 0; q < pd->halo.n_asked; q++)
-    for (size_t k = 0; k < 3; k++)
-      all[3 * (size_t)pd->halo.asked[q] + k] += (double)pd->halo.reply[3 * q + k];
+  bw_particles_copies_sum(pd->halo.copies, 3, all);
 }
 
 double bw_pd_body_length(const bw_pd_body *pd, int32_t h, const bw_pd_slot *slot, int lane,

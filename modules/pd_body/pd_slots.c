@@ -1,5 +1,6 @@
 /* Storage numbering, runs, blocks and slots of bonds. */
 #include "bw_memory.h"
+#include "bw_particles_order.h"
 #include "pd_body.h"
 
 #include <string.h>
@@ -25,7 +26,7 @@ static bw_status number_packed(bw_pd_body *pd)
   int32_t *order = NULL;
   BW_TRY(BW_ALLOCATE(&order, pd->n_extended));
   const bw_status st =
-      bw_pd_body_lattice_order(pd->points.axis, pd->n_extended, pd->points.site, order);
+      bw_particles_lattice_order(pd->points.axis, pd->n_extended, pd->points.site, order);
   for (size_t q = 0; q < pd->n_extended && st == BW_OK; q++)
     pd->points.place[order[q]] = (int32_t)q;
   bw_release(&order);
@@ -103,8 +104,8 @@ static bool beyond_family(const bw_pd_body *pd, int direction, int32_t h, int32_
 }
 
 /* Slots of one direction of a block, to out[] when not NULL; returns how many. */
-static int direction_slots(const bw_pd_body *pd, const bw_pd_map *near, const bw_pd_block *block,
-                           int direction, bw_pd_slot out[BW_PD_LANES])
+static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
+                           const bw_pd_block *block, int direction, bw_pd_slot out[BW_PD_LANES])
 {
   const int32_t *o = pd->level->stencil.offset + 3 * direction;
   int n = 0;
@@ -112,7 +113,7 @@ static int direction_slots(const bw_pd_body *pd, const bw_pd_map *near, const bw
     if (!(block->mask >> lane & 1)) continue;
     const int32_t *s = pd->points.site + 3 * (size_t)bw_pd_body_owner(block, lane);
     const int32_t e =
-        bw_pd_map_get(near, (const int32_t[3]){s[0] + o[0], s[1] + o[1], s[2] + o[2]});
+        bw_particles_map_get(near, (const int32_t[3]){s[0] + o[0], s[1] + o[1], s[2] + o[2]});
     if (e < 0) continue;
     const int32_t base = pd->points.place[e] - lane;
     if (beyond_family(pd, direction, block->first + lane, pd->points.place[e])) continue;
@@ -127,7 +128,7 @@ static int direction_slots(const bw_pd_body *pd, const bw_pd_map *near, const bw
 }
 
 /* near: site -> extended index. */
-bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_pd_map *near)
+bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
 {
   BW_TRY(number(pd));
   if (pd->config.disorder > 0) BW_TRY(bw_pd_body_scatter(pd));

@@ -68,12 +68,16 @@ typedef struct {
 
 bw_pd_bond_config bw_pd_bond_config_default(void);
 
-/* Build particles, families and bonds of `n` lattice sites: site (n,3), kind (n) or NULL. All
- * ranks pass the same list. BW_EINPUT names the field; two particles on one site are an error.
- * `comm` is borrowed until destroy. Collective. */
-bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
-                            const int32_t site[], const uint8_t kind[],
-                            bw_pd_bond **out) BW_MUST_CHECK;
+/* Build particles, families and bonds of the lattice sites that the ranks give, each its part (see
+ * bw_pd_sites). BW_EINPUT names the field; two particles on one site are an error; BW_EMEM.
+ * `comm` is borrowed until destroy. *out is the caller's, NULL after a failure. Collective. */
+bw_status bw_solid_create(const bw_comm *comm, const bw_pd_bond_config *config,
+                          const bw_pd_sites *given, bw_pd_bond **out) BW_MUST_CHECK;
+/* The same for a small body that every rank has the whole list of: site (n,3), kind (n) or NULL, the
+ * same on all ranks; each takes its share. Collective. */
+bw_status bw_solid_create_same(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
+                               const int32_t site[], const uint8_t kind[],
+                               bw_pd_bond **out) BW_MUST_CHECK;
 void bw_pd_bond_destroy(bw_pd_bond **pd); /* NULL is fine. Collective. */
 
 /* Break the bonds that cross a segment (2D: from a to b; ends included) or a parallelogram with

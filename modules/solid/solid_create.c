@@ -75,23 +75,22 @@ static bw_status own_arrays(bw_pd_bond *s)
   return BW_OK;
 }
 
-static bw_status build(bw_pd_bond *s, const bw_comm *comm, int64_t n, const int32_t site[],
-                       const uint8_t kind[])
+static bw_status build(bw_pd_bond *s, const bw_comm *comm, const bw_pd_sites *given)
 {
   bw_pd_bond_config *c = &s->config;
   const bw_pd_body_config body = body_config(c);
   const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
   const bool own = c->law != NULL && c->law != &bw_pd_bond_law;
   BW_TRY(bw_pd_body_create(comm, &body, own ? c->law : &bw_pd_bond_law,
-                           own ? c->law_options : &bonds, n, site, kind, &s->body));
+                           own ? c->law_options : &bonds, given, &s->body));
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;
   bw_pd_body_set_damping(s->body, c->damping_pair, c->damping_mean, c->damping_absolute);
   return bw_comm_agree(comm, own_arrays(s));
 }
 
-bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
-                            const int32_t site[], const uint8_t kind[], bw_pd_bond **out)
+bw_status bw_solid_create(const bw_comm *comm, const bw_pd_bond_config *config,
+                          const bw_pd_sites *given, bw_pd_bond **out)
 {
   bw_pd_bond *s = NULL;
   *out = NULL;
@@ -100,11 +99,24 @@ bw_status bw_pd_bond_create(const bw_comm *comm, const bw_pd_bond_config *config
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     s->config = *config;
-    st = build(s, comm, n, site, kind);
+    st = build(s, comm, given);
   }
   if (st != BW_OK) bw_pd_bond_destroy(&s);
   *out = s;
   return st;
+}
+
+bw_status bw_solid_create_same(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
+                               const int32_t site[], const uint8_t kind[], bw_pd_bond **out)
+{
+  const int64_t rank = bw_comm_rank(comm), size = bw_comm_size(comm);
+  const int64_t all = n > 0 && site != NULL ? n : 0;
+  const int64_t first = all / size * rank + all % size * rank / size;
+  const int64_t last = all / size * (rank + 1) + all % size * (rank + 1) / size;
+  const bw_pd_sites part = {.n = last - first,
+                            .site = site == NULL ? NULL : site + 3 * first,
+                            .kind = kind == NULL ? NULL : kind + first};
+  return bw_solid_create(comm, config, &part, out);
 }
 
 void bw_pd_bond_destroy(bw_pd_bond **solid)

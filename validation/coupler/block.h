@@ -96,7 +96,7 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   s->mass = 0.0;
   for (int64_t q = 0; st == BW_OK && q < n; q++)
     s->mass += site[3 * q + 1] >= 0 ? H * H * H : 0.0;
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
   if (st != BW_OK) return st;

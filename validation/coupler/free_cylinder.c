@@ -120,7 +120,7 @@ static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s
   c.origin[2] = 0.5 * s->h;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(s->h, c.origin, true);
   bw_status st = bw_shape_fill(1, &cylinder, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &s->solid));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -32,7 +32,7 @@ static inline bw_status body_make(const bw_comm *comm, const bw_pd_bond_config *
     const int what = choice == NULL ? BW_PD_FREE : choice(s, data);
     if (what >= 0) kind[n++] = (uint8_t)what;
   }
-  BW_THEN(st, bw_pd_bond_create(comm, c, n, site, kind, pd));
+  BW_THEN(st, bw_solid_create_same(comm, c, n, site, kind, pd));
   bw_release(&site);
   bw_release(&kind);
   return st;

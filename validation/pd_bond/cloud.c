@@ -207,7 +207,7 @@ static bw_status strip_make(const bw_comm *comm, const strip *p, bw_pd_bond_conf
     kind[n] = BW_PD_PRESCRIBED;
     n += in_strip(p, s);
   }
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, pd));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, pd));
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -34,7 +34,7 @@ static bw_status make(const bw_comm *comm, double G0, double damping, bw_pd_bond
     site[3 * q + 1] = q / NX % NY;
     site[3 * q + 2] = q / NX / NY;
   }
-  BW_TRY(bw_pd_bond_create(comm, &c, NX * NY * NZ, site, NULL, pd));
+  BW_TRY(bw_solid_create_same(comm, &c, NX * NY * NZ, site, NULL, pd));
   bw_release(&site);
 
   double *X = NULL, *V = NULL;

@@ -68,7 +68,7 @@ static bw_status column(const bw_comm *comm, const setting *s, double m, int hei
     site[3 * q + 1] = q;
     kind[q] = BW_PD_PRESCRIBED;
   }
-  const bw_status st = bw_pd_bond_create(comm, &c, height, site, kind, pd);
+  const bw_status st = bw_solid_create_same(comm, &c, height, site, kind, pd);
   bw_release(&site);
   bw_release(&kind);
   return st;
@@ -196,7 +196,7 @@ static bw_status band(const bw_comm *comm, const setting *s, double m, int lengt
     site[3 * q + 1] = (int32_t)(q / length) - wide - site[3 * q];
     kind[q] = BW_PD_PRESCRIBED;
   }
-  BW_TRY(bw_pd_bond_create(comm, &c, n, site, kind, &pd));
+  BW_TRY(bw_solid_create_same(comm, &c, n, site, kind, &pd));
   BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(pd)));
   const double dt = 0.5 * bw_pd_bond_dt_max(pd), speed = 1e-3 * S0 / dt;
   bw_pd_bond_get_reference(pd, V);

@@ -97,7 +97,7 @@ static bw_status block_energy(const bw_comm *comm, const material *g, double m, 
     site[3 * q + 1] = (int32_t)(q / size[0] % size[1]);
     site[3 * q + 2] = (int32_t)(q / size[0] / size[1]);
   }
-  BW_TRY(bw_pd_bond_create(comm, &c, n, site, NULL, &pd));
+  BW_TRY(bw_solid_create_same(comm, &c, n, site, NULL, &pd));
   const size_t mine = bw_pd_bond_count(pd);
   BW_TRY(BW_ALLOCATE(&X, 3 * mine));
   BW_TRY(BW_ALLOCATE(&V, 3 * mine));

@@ -50,7 +50,7 @@ static bw_status make(const bw_comm *comm, const wave *w, double m, int length, 
   BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)length));
   for (int32_t q = 0; q < length; q++)
     site[3 * q] = q;
-  const bw_status st = bw_pd_bond_create(comm, &c, length, site, NULL, pd);
+  const bw_status st = bw_solid_create_same(comm, &c, length, site, NULL, pd);
   bw_release(&site);
   return st;
 }

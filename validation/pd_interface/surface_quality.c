@@ -184,7 +184,7 @@ static bw_status measure(const bw_comm *comm, const body *b, bw_pd_area area, ta
   const bw_shape_lattice lattice = bw_shape_lattice_straight(1.0, c.origin, b->planar);
   bw_status st = bw_shape_fill(b->count, b->shape, &lattice, 0, 1, &n, &site, &kind, NULL);
   BW_THEN(st, BW_ALLOCATE(&solid, (size_t)SIDE * SIDE * SIDE));
-  BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
+  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_interface_create(pd, &ic, &pi));
   BW_THEN(st, BW_ALLOCATE(&X0, 3 * bw_pd_bond_count(pd)));
   if (st == BW_OK) {

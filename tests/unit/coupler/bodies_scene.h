@@ -92,7 +92,7 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
   }
   const bw_shape_lattice lattice = bw_shape_lattice_straight(H, c.origin, true);
   bw_check_ok(bw_shape_fill(b->n_block, shape, &lattice, 0, 1, &n, &site, &kind, NULL));
-  bw_check_ok(bw_pd_bond_create(bw_check_world(), &c, n, site, kind, &s->solid));
+  bw_check_ok(bw_solid_create_same(bw_check_world(), &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
   s->n = bw_pd_bond_count(s->solid);

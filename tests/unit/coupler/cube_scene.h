@@ -63,7 +63,7 @@ static inline scene build_blocks(double retraction, double relaxation, double sp
   const bw_shape_lattice lattice = bw_shape_lattice_straight(H, solid.origin, false);
   bw_check_ok(bw_shape_fill(1, &cube, &lattice, 0, 1, &n, &site, &kind, NULL));
   ck_assert_int_eq(n, BLOCK * BLOCK * BLOCK);
-  bw_check_ok(bw_pd_bond_create(comm, &solid, n, site, kind, &s.solid));
+  bw_check_ok(bw_solid_create_same(comm, &solid, n, site, kind, &s.solid));
   bw_check_ok(bw_coupler_create(&config, s.fluid, s.solid, &s.coupler));
   bw_check_ok(bw_ns_channel_set_velocity(s.fluid, stream, NULL, 0.0));
   bw_release(&site);

@@ -26,7 +26,7 @@ static double make_light(scene *s)
   material.damping_mean = material.rho * c / (BLOCK * H);
   const bw_shape_lattice lattice = bw_shape_lattice_straight(H, material.origin, false);
   bw_check_ok(bw_shape_fill(1, &cube, &lattice, 0, 1, &n, &site, &kind, NULL));
-  bw_check_ok(bw_pd_bond_create(bw_check_world(), &material, n, site, kind, &s->solid));
+  bw_check_ok(bw_solid_create_same(bw_check_world(), &material, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
   return c;

@@ -93,7 +93,7 @@ static inline body body_create(int count, const bw_shape shape[], const bw_pd_bo
       bw_shape_lattice_straight(c->ds, c->origin, c->geometry != BW_PD_3D);
   bw_check_ok(bw_shape_fill(count, shape, &lattice, 0, 1, &b.n, &b.site, &b.kind, NULL));
   body_mark(&b);
-  bw_check_ok(bw_pd_bond_create(bw_check_world(), c, b.n, b.site, b.kind, &b.pd));
+  bw_check_ok(bw_solid_create_same(bw_check_world(), c, b.n, b.site, b.kind, &b.pd));
   bw_check_ok(bw_pd_interface_create(b.pd, ic, &b.pi));
   return b;
 }

@@ -45,7 +45,7 @@ static inline bw_pd_bond *pd_make(const bw_comm *comm, const bw_pd_bond_config *
                                   const pd_body *body)
 {
   bw_pd_bond *pd = NULL;
-  bw_check_ok(bw_pd_bond_create(comm, c, body->n, body->site, body->kind, &pd));
+  bw_check_ok(bw_solid_create_same(comm, c, body->n, body->site, body->kind, &pd));
   return pd;
 }
 

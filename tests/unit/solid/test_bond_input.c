@@ -134,7 +134,7 @@ START_TEST(bad_configurations_are_named)
     bw_pd_bond_config c = pd_soft(BW_PD_3D);
     bw_pd_bond *pd = NULL;
     bad[q].spoil(&c);
-    bw_check_status(bw_pd_bond_create(bw_check_world(), &c, body.n, body.site, NULL, &pd),
+    bw_check_status(bw_solid_create_same(bw_check_world(), &c, body.n, body.site, NULL, &pd),
                     BW_EINPUT);
     ck_assert_ptr_null(pd);
     ck_assert_msg(strstr(bw_last_message(), bad[q].word) != NULL, "case %zu says: %s", q,
@@ -155,15 +155,15 @@ START_TEST(bad_lists_are_named)
   pd_body body = pd_box(3, 2, 1);
   const bw_pd_bond_config c = pd_soft(BW_PD_3D);
   bw_pd_bond *pd = NULL;
-  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 0, body.site, NULL, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 0, body.site, NULL, &pd), BW_EINPUT);
   body.kind[4] = 8;
-  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, body.kind, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, body.kind, &pd), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "particle 4"));
   body.site[3 * 5] = 0;
-  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "3 and 5"));
   body.site[3 * 5] = 1 << 21;
-  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "2^20"));
   pd_body_release(&body);
 }

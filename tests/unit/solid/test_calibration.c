@@ -92,7 +92,7 @@ START_TEST(unknown_calibration_is_refused)
   pd_body one = pd_box(1, 1, 1);
   bw_pd_bond *pd = NULL;
   c.calibration = (bw_pd_calibration)7;
-  bw_check_status(bw_pd_bond_create(bw_check_world(), &c, 1, one.site, NULL, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 1, one.site, NULL, &pd), BW_EINPUT);
   pd_body_release(&one);
 }
 END_TEST

@@ -161,7 +161,7 @@ START_TEST(impossible_clouds_are_refused)
     bw_pd_bond_config c = pd_soft(BW_PD_3D);
     bw_pd_bond *pd = NULL;
     c.disorder = bad[q].disorder, c.horizon_ratio = bad[q].m, c.volume_fraction = bad[q].fraction;
-    bw_check_status(bw_pd_bond_create(bw_check_world(), &c, body.n, body.site, NULL, &pd),
+    bw_check_status(bw_solid_create_same(bw_check_world(), &c, body.n, body.site, NULL, &pd),
                     BW_EINPUT);
     ck_assert_ptr_nonnull(strstr(bw_last_message(), bad[q].word));
   }

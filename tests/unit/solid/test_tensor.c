@@ -142,7 +142,7 @@ START_TEST(a_cloud_is_refused)
   c.disorder = 0.2;
   pd_body body = pd_box(2, 2, 2);
   bw_pd_bond *pd = NULL;
-  ck_assert_int_eq(bw_pd_bond_create(bw_check_world(), &c, body.n, body.site, body.kind, &pd),
+  ck_assert_int_eq(bw_solid_create_same(bw_check_world(), &c, body.n, body.site, body.kind, &pd),
                    BW_EINPUT);
   ck_assert_ptr_null(pd);
   pd_body_release(&body);

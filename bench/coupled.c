@@ -21,7 +21,7 @@ static const double DT = 5.0e-5, WHOLE = 5.0; /* [s], fracture energy [J/m2] */
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
 } scene;
 
@@ -143,7 +143,7 @@ static bw_status run_scene(bw_bench *b, const char *name, bw_coupler_load_kind l
   BW_THEN(st, bw_coupler_step(s.coupler, DT)); /* warms up */
   BW_THEN(st, report(b, &s, name));
   bw_coupler_destroy(&s.coupler);
-  bw_pd_bond_destroy(&s.solid);
+  bw_solid_destroy(&s.solid);
   bw_ns_channel_destroy(&s.fluid);
   bw_grid_destroy(&s.grid);
   return st;

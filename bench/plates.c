@@ -24,10 +24,9 @@
 
 enum { STEPS = 3 };
 
-static bw_status box(const bw_comm *comm, const int size[3], double m, bool contact,
-                     bw_pd_bond **pd)
+static bw_status box(const bw_comm *comm, const int size[3], double m, bool contact, bw_solid **pd)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = m;
   c.contact = contact;
   /* A block of whole particles. */
@@ -44,7 +43,7 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
   return st;
 }
 
-static double ms_per_step(const bw_comm *comm, bw_pd_bond *pd, bw_status *st)
+static double ms_per_step(const bw_comm *comm, bw_solid *pd, bw_status *st)
 {
   return 1e3 * bw_bench_solid_seconds(comm, pd, STEPS, st);
 }
@@ -89,39 +88,39 @@ static bw_status broken(bw_bench *b, const bw_comm *self, bool contact)
 {
   const char *name = contact ? "broken_contact_48x32x32_np1" : "broken_48x32x32_np1";
   const int size[3] = {48, 32, 32};
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(box(self, size, 3.0, contact, &pd));
-  bw_pd_bond_ledger e = {0};
-  bw_status st = bw_pd_bond_account(pd, &e);
+  bw_solid_ledger e = {0};
+  bw_status st = bw_solid_account(pd, &e);
   const int64_t bonds = e.bonds;
   const double whole = ms_per_step(self, pd, &st);
   /* Cut by planes every four spacings, then timed against itself when it was whole. */
   for (int cut = 4; cut < size[0] && st == BW_OK; cut += 4) {
     const double x = 1e-3 * cut, far = 1;
-    st = bw_pd_bond_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
-                             (double[3]){x, -far, far});
+    st = bw_solid_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
+                           (double[3]){x, -far, far});
   }
-  BW_THEN(st, bw_pd_bond_account(pd, &e));
+  BW_THEN(st, bw_solid_account(pd, &e));
   if (st == BW_OK) {
     const double part = 1 - (double)e.bonds / (double)bonds;
     const double ms = ms_per_step(self, pd, &st);
     put(b, name, "broken_fraction", "-", part, NULL, NAN, NAN);
     put(b, name, "ms_per_step", "ms", ms, "the same block whole", whole, NAN);
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return st;
 }
 
 static bw_status halo(bw_bench *b, const bw_comm *comm)
 {
   const int size[3] = {48, 32, 32};
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(box(comm, size, 3.0, false, &pd));
   /* Copies of others' particles, on the rank that has most. */
-  double copies = (double)(bw_pd_bond_get_extended(pd).n - bw_pd_bond_count(pd));
+  double copies = (double)(bw_solid_get_extended(pd).n - bw_solid_count(pd));
   bw_comm_max(comm, 1, &copies);
   put(b, "halo_48x32x32_np2", "copies_per_rank", "-", copies, NULL, NAN, 3.0 * 32 * 32);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -129,24 +128,24 @@ static bw_status million(bw_bench *b, const bw_comm *comm, const char *name, dou
                          double *ms)
 {
   const int size[3] = {500, 200, 10};
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   double before = -(double)bw_memory_resident(), lists;
   bw_status st = box(comm, size, 3.0, false, &pd);
   if (st != BW_OK) return st;
   /* Resident memory by which creation grew it. */
-  before += (double)bw_memory_resident(), lists = (double)bw_pd_bond_list_bytes(pd);
+  before += (double)bw_memory_resident(), lists = (double)bw_solid_list_bytes(pd);
   bw_comm_sum(comm, 1, &before);
   bw_comm_sum(comm, 1, &lists);
-  const double n = (double)bw_pd_bond_total(pd);
+  const double n = (double)bw_solid_total(pd);
   /* Floor: lists once, positions and velocities in and out. */
   const double moved = lists + n * 12.0 * sizeof(bw_real); /* X, V in and out */
   *ms = ms_per_step(comm, pd, &st);
   put(b, name, "ms_per_step", "ms", *ms, NULL, NAN, 1e3 * moved / (triad * bw_comm_size(comm)));
   put(b, name, "bytes_per_particle", "B", before / n, NULL, NAN, NAN);
-  bw_pd_bond_ledger e = {0};
-  BW_THEN(st, bw_pd_bond_account(pd, &e));
+  bw_solid_ledger e = {0};
+  BW_THEN(st, bw_solid_account(pd, &e));
   put(b, name, "bonds", "-", (double)e.bonds, NULL, NAN, NAN);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return st;
 }
 

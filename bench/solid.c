@@ -8,8 +8,8 @@
  * TEST ranks=2 */
 #include "bw_bench_solid.h"
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
 #include "bw_shape.h"
+#include "bw_solid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,8 +37,8 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
                          double rival, double triad)
 {
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
@@ -47,14 +47,14 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.disorder = disorder;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
   bw_status st = bw_shape_fill(1, &block, &lattice, 0, 1, &n, &site, &kind, NULL);
-  bw_pd_bond_ledger e;
+  bw_solid_ledger e;
   BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &pd));
-  BW_THEN(st, bw_pd_bond_account(pd, &e));
+  BW_THEN(st, bw_solid_account(pd, &e));
   /* Each bond is evaluated from both of its ends. */
   if (st == BW_OK) {
     const double bonds = 2.0 * (double)e.bonds;
     const double seconds = bw_bench_solid_seconds(comm, pd, STEPS, &st);
-    double bytes = (double)bw_pd_bond_list_bytes(pd);
+    double bytes = (double)bw_solid_list_bytes(pd);
     bw_comm_sum(comm, 1, &bytes);
     /* Floor: lists, positions read and forces written once. */
     const double moved = bytes + (double)n * 6.0 * sizeof(bw_real);
@@ -66,7 +66,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
     bw_bench_put(
         b, &(bw_bench_row){name, "bytes_per_directed_bond", "B", bytes / bonds, NULL, NAN, NAN});
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -36,7 +36,7 @@ static void turn(void *context)
     bw_pd_interface_turn(f->interface, f->spin);
 }
 
-static bw_status report(bw_bench *b, bw_pd_bond *pd, follower *f)
+static bw_status report(bw_bench *b, bw_solid *pd, follower *f)
 {
   const bw_comm *comm = bw_bench_comm(b);
   const char *name = "porous_np1";
@@ -63,16 +63,16 @@ static bw_status run(bw_bench *b)
 {
   const bw_comm *comm = bw_bench_comm(b);
   bw_pd_interface_config c = bw_pd_interface_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   follower f = {NULL, NULL, BW_OK};
   c.walled[1][0] = c.walled[1][1] = true;
   c.lower[1] = 0.0, c.upper[1] = bw_bench_height;
   bw_status st = bw_bench_porous(comm, 0.05, &pd);
   BW_THEN(st, bw_pd_interface_create(pd, &c, &f.interface));
-  BW_THEN(st, BW_ALLOCATE(&f.spin, 3 * bw_pd_bond_count(pd)));
+  BW_THEN(st, BW_ALLOCATE(&f.spin, 3 * bw_solid_count(pd)));
   BW_THEN(st, report(b, pd, &f));
   bw_pd_interface_destroy(&f.interface);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   bw_release(&f.spin);
   return st;
 }

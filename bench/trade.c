@@ -15,7 +15,7 @@
  * TEST ranks=1 */
 #include "../cases/cylinder_drag/cylinder_flow.h"
 #include "bw_bench.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -183,7 +183,7 @@ static bw_status study_vortex(bw_bench *b, const bw_comm *comm)
 static const double YOUNG = 1.0, DENSITY = 1.0, STRAIN = 1e-4;
 
 typedef struct {
-  bw_pd_bond *pd;
+  bw_solid *pd;
   size_t n;
   double k, amplitude;
   double *X, *V, *A, *shape; /* (n,3), (n,3), (n,3), (n): sin(k x) */
@@ -191,7 +191,7 @@ typedef struct {
 
 static void wave_destroy(wave_body *w)
 {
-  bw_pd_bond_destroy(&w->pd);
+  bw_solid_destroy(&w->pd);
   bw_release(&w->X);
   bw_release(&w->V);
   bw_release(&w->A);
@@ -199,7 +199,7 @@ static void wave_destroy(wave_body *w)
 }
 
 /* size: particles per direction; one wave over size[0]. Destroy also after a failure. */
-static bw_status wave_create(const bw_comm *comm, bw_pd_bond_config c, const int size[3],
+static bw_status wave_create(const bw_comm *comm, bw_solid_config c, const int size[3],
                              wave_body *w)
 {
   const int64_t all = (int64_t)size[0] * size[1] * size[2];
@@ -218,19 +218,19 @@ static bw_status wave_create(const bw_comm *comm, bw_pd_bond_config c, const int
   BW_THEN(st, bw_solid_create_same(comm, &c, all, site, NULL, &w->pd));
   bw_release(&site);
   BW_TRY(st);
-  w->n = bw_pd_bond_count(w->pd);
+  w->n = bw_solid_count(w->pd);
   w->k = TURN / size[0], w->amplitude = STRAIN / w->k;
   BW_TRY(BW_ALLOCATE(&w->X, 3 * w->n));
   BW_TRY(BW_ALLOCATE(&w->V, 3 * w->n));
   BW_TRY(BW_ALLOCATE(&w->A, 3 * w->n));
   BW_TRY(BW_ALLOCATE(&w->shape, w->n));
-  bw_pd_bond_get_reference(w->pd, w->X);
+  bw_solid_get_reference(w->pd, w->X);
   /* Displaced by one wave along x, at rest. */
   for (size_t i = 0; i < w->n; i++) {
     w->shape[i] = sin(w->k * w->X[3 * i]);
     w->X[3 * i] += w->amplitude * w->shape[i];
   }
-  bw_pd_bond_set_state(w->pd, w->X, w->V);
+  bw_solid_set_state(w->pd, w->X, w->V);
   return BW_OK;
 }
 
@@ -248,23 +248,23 @@ static double wave_part(const wave_body *w, const double field[])
 /* The wave is a mode of the lattice: its frequency from the acceleration. */
 static bw_status wave_frequency(wave_body *w, double *omega)
 {
-  bw_pd_bond_ledger e; /* not wanted: making it evaluates the force */
-  BW_TRY(bw_pd_bond_account(w->pd, &e));
-  bw_pd_bond_get_acceleration(w->pd, w->A);
+  bw_solid_ledger e; /* not wanted: making it evaluates the force */
+  BW_TRY(bw_solid_account(w->pd, &e));
+  bw_solid_get_acceleration(w->pd, w->A);
   *omega = sqrt(-wave_part(w, w->A) / w->amplitude);
   return BW_OK;
 }
 
 /* Core-seconds in which a wave of unit speed crosses a unit length; the first steps warm up. */
-static bw_status wave_cost(bw_pd_bond *pd, double *seconds)
+static bw_status wave_cost(bw_solid *pd, double *seconds)
 {
   enum { WARM = 2, STEPS = 20 };
-  const double dt = 0.9 * bw_pd_bond_dt_max(pd);
+  const double dt = 0.9 * bw_solid_dt_max(pd);
   double start = 0.0;
   /* Time per unit of simulated time, at 0.9 of the limit. */
   for (int q = 0; q < WARM + STEPS; q++) {
     if (q == WARM) start = core_seconds();
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
   }
   *seconds = (core_seconds() - start) / (STEPS * dt);
   return BW_OK;
@@ -276,7 +276,7 @@ static bw_status study_wave(bw_bench *b, const bw_comm *comm)
   const int length = 32;
   const double speed = sqrt(1.2 * YOUNG / DENSITY);
   for (int q = 0; q < 10; q++) {
-    bw_pd_bond_config c = bw_pd_bond_config_default();
+    bw_solid_config c = bw_solid_config_default();
     wave_body w;
     char name[96];
     c.horizon_ratio = 2 + q % 5;
@@ -296,11 +296,11 @@ static bw_status study_wave(bw_bench *b, const bw_comm *comm)
 }
 
 /* Error of the standing wave after three periods, over its amplitude. */
-static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, double share,
+static bw_status oscillation(const bw_comm *comm, bw_solid_integrator integrator, double share,
                              trade *out)
 {
   enum { PERIODS = 3 };
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   wave_body w;
   c.integrator = integrator;
   double omega = NAN;
@@ -309,19 +309,19 @@ static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, d
   if (st == BW_OK) {
     /* Against the lattice's own frequency: what is left is the integrator's error. */
     const double end = PERIODS * TURN / omega;
-    const int steps = (int)ceil(end / (share * bw_pd_bond_dt_max(w.pd)));
+    const int steps = (int)ceil(end / (share * bw_solid_dt_max(w.pd)));
     for (int q = 0; st == BW_OK && q < steps; q++)
-      st = bw_pd_bond_step(w.pd, end / steps);
-    bw_pd_bond_get_position(w.pd, w.X);
-    bw_pd_bond_get_velocity(w.pd, w.V);
-    bw_pd_bond_get_reference(w.pd, w.A);
+      st = bw_solid_step(w.pd, end / steps);
+    bw_solid_get_position(w.pd, w.X);
+    bw_solid_get_velocity(w.pd, w.V);
+    bw_solid_get_reference(w.pd, w.A);
     /* Displacements. */
     for (size_t i = 0; i < 3 * w.n; i++)
       w.X[i] -= w.A[i];
     /* Distance in the plane of displacement and velocity, over the amplitude. */
     out->error =
         hypot(wave_part(&w, w.X) / w.amplitude - 1.0, wave_part(&w, w.V) / (omega * w.amplitude));
-    out->cost = (double)steps * (integrator == BW_PD_RK3 ? 3 : 1) / PERIODS;
+    out->cost = (double)steps * (integrator == BW_SOLID_RK3 ? 3 : 1) / PERIODS;
   }
   wave_destroy(&w);
   return st;
@@ -329,12 +329,13 @@ static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, d
 
 static bw_status study_oscillation(bw_bench *b, const bw_comm *comm)
 {
-  static const char *const integrator[] = {[BW_PD_VERLET] = "velocity Verlet", [BW_PD_RK3] = "RK3"};
+  static const char *const integrator[] = {
+      [BW_SOLID_VERLET] = "velocity Verlet", [BW_SOLID_RK3] = "RK3"};
   for (int q = 0; q < 2; q++)
     for (double share = 0.95; share > 0.1; share /= 2.0) {
       trade t = {NAN, NAN};
       char name[96];
-      BW_TRY(oscillation(comm, (bw_pd_integrator)q, share, &t));
+      BW_TRY(oscillation(comm, (bw_solid_integrator)q, share, &t));
       snprintf(name, sizeof name, "oscillation/%s/%.2g", integrator[q], share);
       put(b, name, "evaluations", t);
     }

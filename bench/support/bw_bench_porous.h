@@ -2,14 +2,14 @@
  * the ghost layers under it. */
 #pragma once
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
 #include "bw_shape.h"
+#include "bw_solid.h"
 
 static const double bw_bench_height = 0.1; /* of the channel [m] */
 enum { BW_BENCH_CELLS = 64 };              /* over it */
 
 /* G0: fracture energy [J/m2]; 0.05 in S1. Collective. */
-static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_pd_bond **solid)
+static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_solid **solid)
 {
   const double h = bw_bench_height, ds = h / BW_BENCH_CELLS, pitch = h / 4;
   const bw_shape body[] = {
@@ -24,7 +24,7 @@ static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_pd_bo
        .upper = {h, 0, h},
        .particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE},
   };
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.ds = ds, c.rho = 3000, c.E = 1.0e8, c.G0 = G0, c.contact = true, c.period[2] = h;
   int64_t n = 0;
   int32_t *site = NULL;

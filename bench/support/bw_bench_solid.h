@@ -1,10 +1,10 @@
 /* bw_bench_solid.h -- the time of a peridynamic step, for the benchmarks of solids. */
 #pragma once
 #include "bw_bench.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 
 typedef struct {
-  bw_pd_bond *pd;
+  bw_solid *pd;
   int steps;
   double dt;
   bw_status st;
@@ -14,14 +14,14 @@ static inline void bw_bench_solid_advance(void *context)
 {
   bw_bench_solid *w = context;
   for (int q = 0; q < w->steps; q++)
-    BW_THEN(w->st, bw_pd_bond_step(w->pd, w->dt));
+    BW_THEN(w->st, bw_solid_step(w->pd, w->dt));
 }
 
 /* Seconds per step, the median of repetitions of `steps` at half the limit. Collective. */
-static inline double bw_bench_solid_seconds(const bw_comm *comm, bw_pd_bond *pd, int steps,
+static inline double bw_bench_solid_seconds(const bw_comm *comm, bw_solid *pd, int steps,
                                             bw_status *st)
 {
-  bw_bench_solid w = {pd, steps, 0.5 * bw_pd_bond_dt_max(pd), BW_OK};
+  bw_bench_solid w = {pd, steps, 0.5 * bw_solid_dt_max(pd), BW_OK};
   const double seconds = bw_bench_median(comm, bw_bench_solid_advance, &w) / steps;
   *st = w.st;
   return seconds;

@@ -1,6 +1,6 @@
 #include "bending_case.h"
 #include "bw_coupler_fields.h"
-#include "bw_pd_bond_words.h"
+#include "bw_solid_words.h"
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field channel_fields[] = {
@@ -29,7 +29,7 @@ static const bw_config_field plate_fields[] = {
     V(bending_plate, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "k_d of POROUS 3.41"),
     V(bending_plate, damping_absolute, BW_OPTIONAL, BW_AT_LEAST(0), "kg/(m3 s)",
       "to bring it to rest"),
-    BW_CONFIG_WORD(bending_plate, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
+    BW_CONFIG_WORD(bending_plate, surface_correction, BW_OPTIONAL, bw_solid_correction_words,
                    "stiffness of bonds near surfaces"),
     BW_CONFIG_END};
 

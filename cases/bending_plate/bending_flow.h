@@ -41,7 +41,7 @@ typedef struct {
   const bw_comm *comm;
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
   double h, ds;
   size_t n;
@@ -78,7 +78,7 @@ static inline bending_config bending_config_default(void)
 static inline void bending_destroy(bending_flow *f)
 {
   bw_coupler_destroy(&f->coupler);
-  bw_pd_bond_destroy(&f->solid);
+  bw_solid_destroy(&f->solid);
   bw_ns_channel_destroy(&f->fluid);
   bw_grid_destroy(&f->grid);
   bw_release(&f->X0);
@@ -146,10 +146,10 @@ static inline bw_status bending_make_fluid(bending_flow *f)
   return bw_ns_channel_watch_box(f->fluid, (int[3]){lo, 0, 0}, (int[3]){hi, grid.n[1], 1});
 }
 
-static inline bw_pd_bond_config bending_material(const bending_flow *f)
+static inline bw_solid_config bending_material(const bending_flow *f)
 {
   const bending_plate *p = &f->config.plate;
-  bw_pd_bond_config s = bw_pd_bond_config_default();
+  bw_solid_config s = bw_solid_config_default();
   s.geometry = BW_PD_PLANE_STRAIN;
   s.ds = f->ds;
   s.thickness = f->h;
@@ -177,7 +177,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
        .lower = {p->front, under},
        .upper = {end, 0.0, f->h},
        .particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE}};
-  const bw_pd_bond_config s = bending_material(f);
+  const bw_solid_config s = bending_material(f);
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
@@ -189,10 +189,10 @@ static inline bw_status bending_make_solid(bending_flow *f)
   bw_release(&site);
   bw_release(&kind);
   if (st != BW_OK) return st;
-  f->n = bw_pd_bond_count(f->solid);
+  f->n = bw_solid_count(f->solid);
   st = BW_ALLOCATE(&f->X0, 3 * f->n);
   BW_THEN(st, BW_ALLOCATE(&f->X, 3 * f->n));
-  if (st == BW_OK) bw_pd_bond_get_reference(f->solid, f->X0);
+  if (st == BW_OK) bw_solid_get_reference(f->solid, f->X0);
   return bw_comm_agree(f->comm, st);
 }
 
@@ -220,7 +220,7 @@ static inline void bending_tip(bending_flow *f, double tip[2])
 {
   const bending_plate *p = &f->config.plate;
   double sum[6] = {0};
-  bw_pd_bond_get_position(f->solid, f->X);
+  bw_solid_get_position(f->solid, f->X);
   for (size_t i = 0; i < f->n; i++) {
     const double *x = f->X + 3 * i, *x0 = f->X0 + 3 * i;
     /* Only columns about the middle line, in the reference shape. */
@@ -245,8 +245,8 @@ static inline bw_status bending_look(bending_flow *f, bending_measure *m)
 {
   bw_coupler_report r;
   BW_TRY(bw_coupler_measure(f->coupler, &r));
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(f->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(f->solid, &e));
   /* The report is of the whole depth; per unit depth it compares with two dimensions. */
   *m = (bending_measure){.given = r.work_given / f->h,
                          .received = e.external / f->h,

@@ -11,14 +11,14 @@ void bending_describe(bending_run *p)
   bw_log *log = bw_case_log(p->run);
   bw_log_info(log, "channel    %d x %d cells of %g m; plate %g x %g m, %lld particles of %g m",
               c->channel.cells[0], c->channel.cells[1], p->flow.h, c->plate.thickness, H,
-              (long long)bw_pd_bond_total(p->flow.solid), p->flow.ds);
+              (long long)bw_solid_total(p->flow.solid), p->flow.ds);
   /* The numbers that the physics depends on. */
   bw_log_info(log, "groups     Re = U_b H/nu = %g, E* = E/(rho_f U_b^2) = %g, density ratio %g",
               U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
               c->plate.density / rho);
   const double dt = p->config->time.step;
   bw_log_info(log, "time step  %g s; solid %d sub-steps (limit %.3g s); %.0f steps, H/U_b = %g s",
-              dt, bw_coupler_substeps(p->flow.coupler, dt), bw_pd_bond_dt_max(p->flow.solid),
+              dt, bw_coupler_substeps(p->flow.coupler, dt), bw_solid_dt_max(p->flow.solid),
               p->config->time.end / dt, H / U);
 }
 
@@ -83,9 +83,9 @@ static bw_status write_plate(bending_run *p, const char *path)
   /* Writing is collective: nobody goes on alone. */
   st = bw_comm_agree(p->flow.comm, st);
   if (st == BW_OK) {
-    bw_pd_bond_get_position(p->flow.solid, p->flow.X);
-    bw_pd_bond_get_velocity(p->flow.solid, V);
-    bw_pd_bond_get_damage(p->flow.solid, damage);
+    bw_solid_get_position(p->flow.solid, p->flow.X);
+    bw_solid_get_velocity(p->flow.solid, V);
+    bw_solid_get_damage(p->flow.solid, damage);
     for (size_t i = 0; i < 3 * n; i++)
       U[i] = p->flow.X[i] - p->flow.X0[i];
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},

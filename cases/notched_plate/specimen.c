@@ -55,14 +55,14 @@ static uint8_t kind_of(const specimen *p, uint8_t loads)
   return kind;
 }
 
-static bw_pd_bond_config material(const specimen *p)
+static bw_solid_config material(const specimen *p)
 {
   const specimen_solid *s = &p->config.solid;
   const specimen_shape *shape = &p->config.shape;
   /* The lattice's axes, turned; the plate itself is not. */
   const double turn = shape->lattice_angle * acos(-1.0) / 180.0;
   const double e[2] = {cos(turn), sin(turn)};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = (bw_pd_geometry)s->geometry;
   c.ds = p->ds;
   c.thickness = shape->thickness;
@@ -73,7 +73,7 @@ static bw_pd_bond_config material(const specimen *p)
   c.surface_correction = (bw_pd_surface_correction)s->surface_correction;
   c.volume_fraction = (bw_pd_volume_fraction)s->volume_fraction;
   c.family_reach = (bw_pd_family_reach)s->family_reach;
-  c.integrator = (bw_pd_integrator)s->integrator;
+  c.integrator = (bw_solid_integrator)s->integrator;
   c.disorder = s->disorder;
   c.disorder_seed = s->disorder_seed;
   c.contact = s->contact;
@@ -87,7 +87,7 @@ static bw_pd_bond_config material(const specimen *p)
 }
 
 /* Sites of the plate, x fastest; written when site is not NULL. Returns how many. */
-static int64_t scan(const specimen *p, const bw_pd_bond_config *c, int32_t *site, uint8_t *loads,
+static int64_t scan(const specimen *p, const bw_solid_config *c, int32_t *site, uint8_t *loads,
                     uint8_t *kind)
 {
   const specimen_shape *s = &p->config.shape;
@@ -125,7 +125,7 @@ static bw_status cut_notches(specimen *p)
     const double z = solid ? below : 0.0;
     const double a[3] = {k->from[0], k->from[1], z}, b[3] = {k->to[0], k->to[1], z};
     const double c[3] = {k->from[0], k->from[1], above};
-    BW_TRY(bw_pd_bond_precrack(p->solid, a, b, solid ? c : NULL));
+    BW_TRY(bw_solid_precrack(p->solid, a, b, solid ? c : NULL));
   }
   return BW_OK;
 }
@@ -133,16 +133,16 @@ static bw_status cut_notches(specimen *p)
 /* The rows of this rank's particles from those of all. Collective. */
 static bw_status own_loads(specimen *p, const uint8_t all[])
 {
-  p->n = bw_pd_bond_count(p->solid);
+  p->n = bw_solid_count(p->solid);
   BW_TRY(bw_comm_agree(p->comm, BW_ALLOCATE(&p->loads, p->n)));
   for (size_t h = 0; h < p->n; h++)
-    p->loads[h] = all[bw_pd_bond_id(p->solid)[h]];
+    p->loads[h] = all[bw_solid_id(p->solid)[h]];
   return BW_OK;
 }
 
 static bw_status make_solid(specimen *p)
 {
-  const bw_pd_bond_config c = material(p);
+  const bw_solid_config c = material(p);
   /* Counted first, then listed. */
   const int64_t n = scan(p, &c, NULL, NULL, NULL);
   BW_REQUIRE(n > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
@@ -183,7 +183,7 @@ static void share_tractions(specimen *p)
     const double length = upright ? s->height : s->length;
     /* Loaded length times depth is the area; its force is shared equally by volume. */
     const double part = fmin(load->to, length) - fmax(load->from, 0.0);
-    const double volume = (double)count[q] * bw_pd_bond_volume(p->solid);
+    const double volume = (double)count[q] * bw_solid_volume(p->solid);
     p->share[q] = count[q] > 0 ? part * depth / volume : 0.0;
   }
 }
@@ -204,7 +204,7 @@ static void apply_traction(specimen *p)
         for (size_t d = 0; d < 2; d++)
           p->F[3 * h + d] += part * load->value[d] * p->share[q];
   }
-  bw_pd_bond_set_force(p->solid, p->F);
+  bw_solid_set_force(p->solid, p->F);
 }
 
 /* Velocities that are held and those given at the start. */
@@ -221,9 +221,9 @@ static bw_status apply_velocity(specimen *p)
       for (size_t h = 0; load->kind != SPECIMEN_TRACTION && h < p->n; h++)
         if (p->loads[h] >> q & 1) V[3 * h] = load->value[0], V[3 * h + 1] = load->value[1];
     }
-    bw_pd_bond_get_position(p->solid, X);
-    bw_pd_bond_set_state(p->solid, X, V);
-    bw_pd_bond_set_prescribed(p->solid, V);
+    bw_solid_get_position(p->solid, X);
+    bw_solid_set_state(p->solid, X, V);
+    bw_solid_set_prescribed(p->solid, V);
   }
   bw_release(&X);
   bw_release(&V);
@@ -274,16 +274,16 @@ bw_status specimen_create(const bw_comm *comm, const specimen_config *config, sp
   p->track.step = 0.5 * p->ds;
   BW_THEN(st, bw_pd_crack_track_note(&p->track, 0.0, 0.0));
   BW_TRY(bw_comm_agree(comm, st));
-  bw_pd_bond_get_reference(p->solid, p->X0);
+  bw_solid_get_reference(p->solid, p->X0);
   /* Loads at t = 0. */
   share_tractions(p);
   apply_traction(p);
   BW_TRY(apply_velocity(p));
   /* What the notches cracked is no part of the crack that is followed. */
-  bw_pd_bond_get_damage(p->solid, p->damage);
+  bw_solid_get_damage(p->solid, p->damage);
   for (size_t h = 0; h < p->n; h++)
     p->notched[h] = p->damage[h] > BW_PD_CRACK_LEVEL;
-  p->events = bw_pd_bond_events(p->solid);
+  p->events = bw_solid_events(p->solid);
   for (int d = 0; d < 2; d++)
     p->crack.tip[d] = config->follow.from[d];
   return BW_OK;
@@ -297,7 +297,7 @@ bool specimen_done(const specimen *p)
 
 bw_status specimen_step(specimen *p)
 {
-  BW_TRY(bw_pd_bond_step(p->solid, p->config.time.step));
+  BW_TRY(bw_solid_step(p->solid, p->config.time.step));
   p->steps++;
   p->time = (double)p->steps * p->config.time.step;
   /* A load that is complete need not be told again. */
@@ -308,7 +308,7 @@ bw_status specimen_step(specimen *p)
 
 void specimen_destroy(specimen *p)
 {
-  bw_pd_bond_destroy(&p->solid);
+  bw_solid_destroy(&p->solid);
   bw_release(&p->X0);
   bw_release(&p->loads);
   bw_release(&p->damage);

@@ -7,8 +7,8 @@
  * validation/pd_bond. */
 #pragma once
 #include "bw_config.h"
-#include "bw_pd_bond.h"
 #include "bw_pd_crack.h"
+#include "bw_solid.h"
 
 enum { SPECIMEN_NOTCHES = 4, SPECIMEN_HOLES = 4, SPECIMEN_LOADS = 4 };
 
@@ -24,7 +24,7 @@ typedef struct {
   double centre[2], radius; /* [m] */
 } specimen_hole;
 typedef struct {
-  int geometry; /* enums of bw_pd_bond.h */
+  int geometry; /* enums of bw_solid.h */
   double young_modulus, density, fracture_energy, horizon_ratio;
   int surface_correction, volume_fraction, family_reach, integrator;
   double disorder; /* of the particles off their sites, in spacings   default 0: a lattice */
@@ -91,7 +91,7 @@ typedef struct {
 typedef struct {
   const bw_comm *comm;
   specimen_config config;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   double ds, time;
   int64_t steps, events;
   size_t n;

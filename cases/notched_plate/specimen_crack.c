@@ -15,7 +15,7 @@ bw_status specimen_find(specimen *p, bw_pd_crack *crack)
 {
   const bw_pd_crack_config look = bw_pd_crack_config_default();
   const specimen_follow *f = &p->config.follow;
-  bw_pd_bond_get_damage(p->solid, p->damage);
+  bw_solid_get_damage(p->solid, p->damage);
   /* Notches do not count. */
   for (size_t h = 0; h < p->n; h++)
     if (p->notched[h]) p->damage[h] = 0.0;
@@ -99,8 +99,8 @@ static bw_status find_tip(specimen *p)
 /* Has a bond broken on any rank since the last look? Collective. */
 static bool broke(specimen *p)
 {
-  int64_t news = bw_pd_bond_events(p->solid) != p->events;
-  p->events = bw_pd_bond_events(p->solid);
+  int64_t news = bw_solid_events(p->solid) != p->events;
+  p->events = bw_solid_events(p->solid);
   bw_comm_max_int(p->comm, 1, &news);
   return news != 0;
 }

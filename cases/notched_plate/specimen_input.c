@@ -1,5 +1,5 @@
 /* The case file. */
-#include "bw_pd_bond_words.h"
+#include "bw_solid_words.h"
 #include "specimen.h"
 #include <limits.h>
 #include <math.h>
@@ -33,13 +33,13 @@ static const bw_config_field solid_fields[] = {
     V(specimen_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
     V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "G0"),
     V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
-    BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
+    BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, bw_solid_correction_words,
                    "stiffness of bonds near edges"),
-    BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, bw_pd_bond_fraction_words,
+    BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, bw_solid_fraction_words,
                    "part of a partner within the horizon"),
-    BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, bw_pd_bond_reach_words,
+    BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, bw_solid_reach_words,
                    "who is a partner"),
-    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words, "in time"),
+    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_solid_integrator_words, "in time"),
     V(specimen_solid, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "spacings",
       "particles off their sites; 0: a lattice"),
     V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another one: another cloud"),
@@ -113,7 +113,7 @@ specimen_config specimen_default(void)
                 .surface_correction = BW_PD_SURFACE_VOLUME,
                 .volume_fraction = BW_PD_FRACTION_DEFAULT,
                 .family_reach = BW_PD_REACH_HALF_CELL,
-                .integrator = BW_PD_VERLET},
+                .integrator = BW_SOLID_VERLET},
       .follow = {.from = {NAN, NAN},
                  .lower = {NAN, NAN},
                  .upper = {NAN, NAN},

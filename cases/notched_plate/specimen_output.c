@@ -8,15 +8,15 @@
 bw_status specimen_describe(const specimen *p, bw_log *log)
 {
   const specimen_solid *s = &p->config.solid;
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   bw_log_info(log, "%lld particles of %g m, lattice turned by %g deg, horizon %g m, %lld bonds",
-              (long long)bw_pd_bond_total(p->solid), p->ds, p->config.shape.lattice_angle,
-              bw_pd_bond_horizon(p->solid), (long long)e.bonds);
+              (long long)bw_solid_total(p->solid), p->ds, p->config.shape.lattice_angle,
+              bw_solid_horizon(p->solid), (long long)e.bonds);
   bw_log_info(log, "bonds break at a stretch of %.4g; sound travels at %.0f m/s (sqrt(E/rho))",
-              bw_pd_bond_critical_stretch(p->solid), sqrt(s->young_modulus / s->density));
+              bw_solid_critical_stretch(p->solid), sqrt(s->young_modulus / s->density));
   bw_log_info(log, "time step %g s of at most %.3g s, %.0f steps", p->config.time.step,
-              bw_pd_bond_dt_max(p->solid), ceil(p->config.time.end / p->config.time.step - 1e-9));
+              bw_solid_dt_max(p->solid), ceil(p->config.time.end / p->config.time.step - 1e-9));
   return BW_OK;
 }
 
@@ -36,8 +36,8 @@ bw_status specimen_open_history(const specimen *p, const bw_case *run, bw_histor
 
 bw_status specimen_sample(specimen *p, bw_history *history)
 {
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   const specimen_crack *c = &p->crack;
   /* What is left of the work is the error of the integration in time. */
   const double spent = e.kinetic + e.elastic + e.fracture + e.damping;
@@ -56,8 +56,8 @@ static bw_status write_particles(specimen *p, const char *path)
   st = bw_comm_agree(p->comm, st);
   /* Present places, with the displacement from the reference shape. */
   if (st == BW_OK) {
-    bw_pd_bond_get_position(p->solid, X);
-    bw_pd_bond_get_damage(p->solid, p->damage);
+    bw_solid_get_position(p->solid, X);
+    bw_solid_get_damage(p->solid, p->damage);
     for (size_t i = 0; i < 3 * p->n; i++)
       U[i] = X[i] - p->X0[i];
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, p->damage},
@@ -103,7 +103,7 @@ bw_status specimen_crack_file(specimen *p, const bw_case *run)
   const bw_pd_crack_config look = bw_pd_crack_config_default();
   bw_pd_crack crack;
   char *path = NULL;
-  bw_pd_bond_get_damage(p->solid, p->damage);
+  bw_solid_get_damage(p->solid, p->damage);
   BW_TRY(bw_pd_crack_collect(p->comm, &look, p->n, p->X0, p->damage, &crack));
   bw_status st = bw_case_path(run, "crack.csv", &path);
   BW_THEN(st, write_crack(p, &crack, path));
@@ -127,8 +127,8 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   char text[3][16];
   bw_pd_crack_line line;
   specimen_fork fork;
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   /* Collective measures first, then the log of rank 0. */
   BW_TRY(specimen_fit(p, &line));
   BW_TRY(specimen_branches(p, &fork));

@@ -43,7 +43,7 @@ static bw_status build_fluid(porous_run *p)
 static bw_status build_solid(porous_run *p)
 {
   const porous_config *q = p->config;
-  bw_pd_bond_config solid = bw_pd_bond_config_default();
+  bw_solid_config solid = bw_solid_config_default();
   /* Particles at the fluid's spacing: ds = dx (ERRATA 17). */
   solid.ds = q->domain.length[1] / q->domain.cells[1];
   solid.horizon_ratio = q->solid.horizon_ratio;
@@ -51,7 +51,7 @@ static bw_status build_solid(porous_run *p)
   solid.E = q->solid.young_modulus;
   solid.G0 = q->solid.fracture_energy;
   solid.surface_correction = (bw_pd_surface_correction)q->solid.surface_correction;
-  solid.integrator = (bw_pd_integrator)q->solid.integrator;
+  solid.integrator = (bw_solid_integrator)q->solid.integrator;
   solid.damping_pair = q->solid.damping_pair;
   solid.contact = q->solid.contact;
   /* Bonds cross the periodic seam as the fluid does. */
@@ -82,9 +82,9 @@ void porous_enter_phase(porous_run *p)
 {
   const porous_phase *f = porous_phase_of(p->config, p->phase);
   bw_coupler_hold_solid(p->coupler, p->phase == PHASE_FLOW);
-  bw_pd_bond_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
-  bw_pd_bond_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
-                         f->settling_rate * p->config->solid.density);
+  bw_solid_enable_breakage(p->solid, p->phase == PHASE_BREAKAGE);
+  bw_solid_set_damping(p->solid, p->config->solid.damping_pair, 0.0,
+                       f->settling_rate * p->config->solid.density);
 }
 
 static void uniform_stream(const double x[3], double t, void *context, double u[3])
@@ -124,7 +124,7 @@ bw_status porous_build(porous_run *p)
 void porous_destroy(porous_run *p)
 {
   bw_coupler_destroy(&p->coupler);
-  bw_pd_bond_destroy(&p->solid);
+  bw_solid_destroy(&p->solid);
   bw_ns_channel_destroy(&p->fluid);
   bw_grid_destroy(&p->grid);
 }
@@ -135,8 +135,8 @@ static bw_status describe_cost(porous_run *p)
   static const double fluid_ns = 45.0, bond_ns = 1.8; /* core-ns: cell and sub-step, bond */
   const int *n = p->config->domain.cells;
   const double cells = (double)n[0] * n[1] * n[2];
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   const double bonds = 2.0 * (double)e.bonds;
   double bytes = (double)bw_memory_resident(), seconds = 0.0;
   bw_comm_sum(p->comm, 1, &bytes);
@@ -160,7 +160,7 @@ bw_status porous_describe(porous_run *p)
   const double clamped = (double)q->medium.clamped_layers *
                          round(q->medium.length / q->domain.length[1] * q->domain.cells[1]) *
                          q->domain.cells[2];
-  const int64_t total = bw_pd_bond_total(p->solid);
+  const int64_t total = bw_solid_total(p->solid);
   /* Sizes. */
   bw_log_info(log, "channel    %d x %d x %d cells, spacing %g m, %d ranks", q->domain.cells[0],
               q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
@@ -175,8 +175,8 @@ bw_status porous_describe(porous_run *p)
               "s0 = %.4e",
               U * h / q->fluid.viscosity, q->solid.young_modulus / (rho * U * U),
               q->solid.density / rho, rho * U * U / q->solid.young_modulus,
-              bw_pd_bond_critical_stretch(p->solid));
-  const double fluid_max = bw_ns_channel_dt_max(p->fluid), solid_max = bw_pd_bond_dt_max(p->solid);
+              bw_solid_critical_stretch(p->solid));
+  const double fluid_max = bw_ns_channel_dt_max(p->fluid), solid_max = bw_solid_dt_max(p->solid);
   for (int k = 0; k < PHASE_COUNT; k++) {
     const porous_phase *f = porous_phase_of(q, k);
     bw_log_info(log,

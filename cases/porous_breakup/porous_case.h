@@ -3,8 +3,8 @@
 #include "bw_case.h"
 #include "bw_coupler.h"
 #include "bw_history.h"
-#include "bw_pd_stress.h"
 #include "bw_shape.h"
+#include "bw_solid_stress.h"
 
 /* ---- what the YAML file says (tables in porous_config.c) ---- */
 typedef struct {
@@ -79,7 +79,7 @@ typedef struct {
   const bw_comm *comm;
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
   bw_history *history;
   int phase;                        /* PHASE_... */

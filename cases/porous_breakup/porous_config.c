@@ -1,5 +1,5 @@
 #include "bw_coupler_fields.h"
-#include "bw_pd_bond_words.h"
+#include "bw_solid_words.h"
 #include "porous_case.h"
 
 #include <limits.h>
@@ -24,9 +24,9 @@ static const bw_config_field solid_fields[] = {
     V(porous_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
     V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
     V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "pairwise damping k_d"),
-    BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
+    BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, bw_solid_correction_words,
                    "stiffness of bonds near surfaces"),
-    BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words,
+    BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, bw_solid_integrator_words,
                    "of the solid"),
     V(porous_solid, contact, BW_OPTIONAL, BW_ANY, "", "repulsion between fragments"),
     BW_CONFIG_END};
@@ -111,7 +111,7 @@ porous_config porous_config_default(void)
                                    .fracture_energy = NAN,
                                    .horizon_ratio = 3.0,
                                    .surface_correction = BW_PD_SURFACE_VOLUME,
-                                   .integrator = BW_PD_VERLET,
+                                   .integrator = BW_SOLID_VERLET,
                                    .contact = true},
                          .medium = {.lattice = BW_SHAPE_PORES_SC,
                                     .front = NAN,

@@ -99,10 +99,10 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
                               const double damage[], double row[])
 {
   const porous_config *q = p->config;
-  const double *L = q->domain.length, volume = bw_pd_bond_volume(p->solid);
+  const double *L = q->domain.length, volume = bw_solid_volume(p->solid);
   const double lower = q->medium.front, upper = lower + q->medium.length;
   double sums[3] = {0, 0, 0}, most[2] = {0, 0};
-  for (size_t i = 0; i < bw_pd_bond_count(p->solid); i++) {
+  for (size_t i = 0; i < bw_solid_count(p->solid); i++) {
     const double *x = X + 3 * i;
     double d2 = 0.0;
     for (int d = 0; d < 3; d++)
@@ -144,7 +144,7 @@ static bw_status measure_fragments(porous_run *p, double row[])
     fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   }
   row[COL_FRAGMENTS] = n > 0 ? (double)(n - 1) : 0.0;
-  row[COL_DETACHED] = detached / (double)bw_pd_bond_total(p->solid);
+  row[COL_DETACHED] = detached / (double)bw_solid_total(p->solid);
   row[COL_LARGEST] = largest;
   row[COL_FRAGMENT_SPEED] = fastest / p->config->fluid.bulk_velocity;
   bw_release(&piece);
@@ -153,16 +153,16 @@ static bw_status measure_fragments(porous_run *p, double row[])
 
 static bw_status measure_solid(porous_run *p, double row[])
 {
-  const size_t n = bw_pd_bond_count(p->solid);
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  const size_t n = bw_solid_count(p->solid);
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   /* Warned once: from here on contact may have been overrun. */
-  if (e.closest < BW_PD_TOO_CLOSE && !p->warned)
+  if (e.closest < BW_SOLID_TOO_CLOSE && !p->warned)
     bw_log_warn(bw_case_log(p->run),
                 "pieces hit each other so hard that particles came within %.2f of a spacing: they "
                 "may pass through each other from here on",
                 e.closest);
-  p->warned = p->warned || e.closest < BW_PD_TOO_CLOSE;
+  p->warned = p->warned || e.closest < BW_SOLID_TOO_CLOSE;
   double *X = NULL, *X0 = NULL, *damage = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * n);
   BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));
@@ -170,9 +170,9 @@ static bw_status measure_solid(porous_run *p, double row[])
   st = bw_comm_agree(p->comm, st);
   /* The ledger and what the particles show. */
   if (st == BW_OK) {
-    bw_pd_bond_get_position(p->solid, X);
-    bw_pd_bond_get_reference(p->solid, X0);
-    bw_pd_bond_get_damage(p->solid, damage);
+    bw_solid_get_position(p->solid, X);
+    bw_solid_get_reference(p->solid, X0);
+    bw_solid_get_damage(p->solid, damage);
     measure_particles(p, X, X0, damage, row);
     row[COL_BROKEN] = (double)e.broken;
     row[COL_BROKEN_FRACTION] = (double)e.broken / (double)e.bonds;

@@ -39,7 +39,7 @@ static bw_status write_fluid(porous_run *p, const char *path)
 
 static bw_status write_solid(porous_run *p, const char *path)
 {
-  const size_t n = bw_pd_bond_count(p->solid);
+  const size_t n = bw_solid_count(p->solid);
   double *X = NULL, *V = NULL, *U = NULL, *damage = NULL;
   int64_t *piece = NULL;
   porous_tensors t = {0};
@@ -57,10 +57,10 @@ static bw_status write_solid(porous_run *p, const char *path)
   BW_THEN(st, porous_tensors_make(p, &t));
   /* Present places; U holds the reference shape until it is taken off. */
   if (st == BW_OK) {
-    bw_pd_bond_get_position(p->solid, X);
-    bw_pd_bond_get_velocity(p->solid, V);
-    bw_pd_bond_get_reference(p->solid, U);
-    bw_pd_bond_get_damage(p->solid, damage);
+    bw_solid_get_position(p->solid, X);
+    bw_solid_get_velocity(p->solid, V);
+    bw_solid_get_reference(p->solid, U);
+    bw_solid_get_damage(p->solid, damage);
     for (size_t i = 0; i < 3 * n; i++)
       U[i] = X[i] - U[i];
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
@@ -70,7 +70,7 @@ static bw_status write_solid(porous_run *p, const char *path)
                                    {"von_mises", BW_VTK_FLOAT64, 1, t.von_mises},
                                    {"principal_strain", BW_VTK_FLOAT64, 3, t.strain},
                                    {"fragment", BW_VTK_INT64, 1, piece},
-                                   {"id", BW_VTK_INT64, 1, bw_pd_bond_id(p->solid)}};
+                                   {"id", BW_VTK_INT64, 1, bw_solid_id(p->solid)}};
     st = bw_vtk_write_points(p->comm, path, n, X, sizeof arrays / sizeof *arrays, arrays);
   }
   bw_release(&X);

@@ -8,7 +8,7 @@
 
 bw_status porous_tensors_make(porous_run *p, porous_tensors *t)
 {
-  const size_t n = bw_pd_bond_count(p->solid);
+  const size_t n = bw_solid_count(p->solid);
   double *F = NULL, *tensor = NULL;
   *t = (porous_tensors){0};
   bw_status st = BW_ALLOCATE(&F, 9 * n);
@@ -19,7 +19,7 @@ bw_status porous_tensors_make(porous_run *p, porous_tensors *t)
   st = bw_comm_agree(p->comm, st);
   /* One tensor after the other in the same array: stress, then strain from F. */
   if (st == BW_OK) {
-    bw_pd_stress_compute(p->solid, F, tensor);
+    bw_solid_stress_compute(p->solid, F, tensor);
     bw_pd_tensor_von_mises(n, tensor, t->von_mises);
     st = bw_pd_tensor_principal(n, tensor, t->stress, NULL);
     bw_pd_tensor_strain(n, F, tensor);
@@ -47,9 +47,9 @@ static const double RANGE = 2; /* of the limits E s0 and s0 */
 static bw_status densities(const porous_run *p, const porous_tensors *t,
                            double density[CURVES][BINS], double outside[CURVES])
 {
-  const size_t n = bw_pd_bond_count(p->solid);
-  const uint8_t *kind = bw_pd_bond_kind(p->solid);
-  const double s0 = bw_pd_bond_critical_stretch(p->solid);
+  const size_t n = bw_solid_count(p->solid);
+  const uint8_t *kind = bw_solid_kind(p->solid);
+  const double s0 = bw_solid_critical_stretch(p->solid);
   const double limit[CURVES] = {p->config->solid.young_modulus * s0,
                                 p->config->solid.young_modulus * s0, s0};
   double *value = NULL, *weight = NULL;
@@ -65,7 +65,8 @@ static bw_status densities(const porous_run *p, const porous_tensors *t,
       const double of[CURVES] = {t->stress[3 * i], t->von_mises[i], t->strain[3 * i]};
       value[i] = of[c] / limit[c];
     }
-    st = bw_pd_stress_pdf(p->comm, n, value, weight, -RANGE, RANGE, BINS, density[c], &outside[c]);
+    st = bw_solid_stress_pdf(p->comm, n, value, weight, -RANGE, RANGE, BINS, density[c],
+                             &outside[c]);
   }
   bw_release(&value);
   bw_release(&weight);
@@ -88,8 +89,8 @@ bw_status porous_stress_csv(porous_run *p)
       snprintf(text, 3 * ROW,
                "# limit: stress %.9g Pa, strain %.9g; outside the range: %.3g %.3g %.3g\n"
                "over_limit[-],max_principal_stress[-],von_mises[-],max_principal_strain[-]\n",
-               p->config->solid.young_modulus * bw_pd_bond_critical_stretch(p->solid),
-               bw_pd_bond_critical_stretch(p->solid), outside[0], outside[1], outside[2]);
+               p->config->solid.young_modulus * bw_solid_critical_stretch(p->solid),
+               bw_solid_critical_stretch(p->solid), outside[0], outside[1], outside[2]);
   for (int b = 0; b < BINS; b++)
     used += snprintf(text + used, ROW, "%.9g,%.9g,%.9g,%.9g\n", RANGE * ((2 * b + 1.0) / BINS - 1),
                      density[0][b], density[1][b], density[2][b]);

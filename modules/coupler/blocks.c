@@ -41,7 +41,7 @@ static int8_t face_of(const double axes[3][3], const double N[3])
 }
 
 /* Which block of k^3 lattice sites a reference position lies in, packed. */
-static int64_t block_of(const bw_pd_bond_config *s, int k, const double X0[3])
+static int64_t block_of(const bw_solid_config *s, int k, const double X0[3])
 {
   int64_t packed = 0;
   for (int d = 0; d < 3; d++) {
@@ -59,17 +59,17 @@ static int64_t block_of(const bw_pd_bond_config *s, int k, const double X0[3])
 bw_status bw_coupler__blocks_create(bw_coupler *c)
 {
   bw_coupler__blocks *b = &c->blocks;
-  const bw_pd_bond_config *s = bw_pd_bond_settings(c->solid);
+  const bw_solid_config *s = bw_solid_settings(c->solid);
   bw_status st = BW_ALLOCATE(&b->particle, c->n);
   BW_THEN(st, BW_ALLOCATE(&b->broken, c->n));
   BW_THEN(st, BW_ALLOCATE(&b->face, c->n));
   BW_THEN(st, BW_ALLOCATE(&b->block, c->n));
   BW_THEN(st, BW_ALLOCATE(&b->send, ROW * c->n));
-  st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
+  st = bw_comm_agree(bw_solid_comm(c->solid), st);
   if (st != BW_OK) return st;
   /* The first surface: faces and blocks belong to the reference shape and never change. */
   const bw_pd_surface surface = bw_pd_interface_surface(c->interface);
-  bw_pd_bond_get_reference(c->solid, c->X);
+  bw_solid_get_reference(c->solid, c->X);
   for (size_t i = 0; i < c->n; i++) {
     b->block[i] = block_of(s, c->block, c->X + 3 * i);
     b->face[i] = -1;
@@ -87,8 +87,8 @@ static bool plan_is_stale(bw_coupler *c)
   /* The surface changed, or a particle on it lost a bond and gets a marker of its own. */
   double stale = b->n_surface != c->n_surface ||
                  memcmp(b->particle, c->particle, c->n_surface * sizeof *c->particle) != 0;
-  if (stale == 0.0 && b->events != bw_pd_bond_events(c->solid)) stale = 1.0;
-  bw_comm_max(bw_pd_bond_comm(c->solid), 1, &stale);
+  if (stale == 0.0 && b->events != bw_solid_events(c->solid)) stale = 1.0;
+  bw_comm_max(bw_solid_comm(c->solid), 1, &stale);
   return stale > 0.0;
 }
 
@@ -108,7 +108,7 @@ static int64_t key_of(const bw_coupler *c, int32_t p)
 {
   const bw_coupler__blocks *b = &c->blocks;
   /* New faces and damaged particles move by themselves, so no block may speak for them. */
-  if (b->face[p] < 0 || b->broken[p] > 0) return OWN_MARKER | bw_pd_bond_id(c->solid)[p];
+  if (b->face[p] < 0 || b->broken[p] > 0) return OWN_MARKER | bw_solid_id(c->solid)[p];
   return ((int64_t)b->face[p] << (3 * BITS)) | b->block[p];
 }
 
@@ -159,17 +159,17 @@ static bw_status allocate_markers(bw_coupler__blocks *b)
 static bw_status make_plan(bw_coupler *c)
 {
   bw_coupler__blocks *b = &c->blocks;
-  const bw_comm *comm = bw_pd_bond_comm(c->solid);
+  const bw_comm *comm = bw_solid_comm(c->solid);
   const size_t n = c->n_surface;
   int *rank = NULL;
   int64_t *send = NULL, *receive = NULL;
-  bw_pd_bond_get_broken(c->solid, b->broken);
+  bw_solid_get_broken(c->solid, b->broken);
   bw_status st = BW_ALLOCATE(&rank, n);
   BW_THEN(st, BW_ALLOCATE(&send, 2 * n));
   /* Members name their block; the rank that gathers it follows from the block alone. */
   for (size_t q = 0; st == BW_OK && q < n; q++) {
     send[2 * q] = key_of(c, c->particle[q]);
-    send[2 * q + 1] = bw_pd_bond_id(c->solid)[c->particle[q]];
+    send[2 * q + 1] = bw_solid_id(c->solid)[c->particle[q]];
     rank[q] = rank_of(send[2 * q], bw_comm_size(comm));
   }
   st = bw_comm_agree(comm, st);
@@ -191,7 +191,7 @@ static bw_status make_plan(bw_coupler *c)
   /* What plan_is_stale compares the next surface with. */
   memcpy(b->particle, c->particle, n * sizeof *c->particle);
   b->n_surface = n;
-  b->events = bw_pd_bond_events(c->solid);
+  b->events = bw_solid_events(c->solid);
   bw_release(&rank);
   bw_release(&send);
   bw_release(&receive);

@@ -16,7 +16,7 @@ bw_status bw_coupler__bodies_create(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_ns_channel_config *fluid = bw_ns_channel_settings(c->fluid);
-  const bool planar = bw_pd_bond_settings(c->solid)->geometry != BW_PD_3D;
+  const bool planar = bw_solid_settings(c->solid)->geometry != BW_PD_3D;
   bw_pd_wall wall[BW_PD_WALLS];
   int n = 0;
   /* The box lies where n.x > offset. Outflows let bodies pass, periodic sides are no walls. */
@@ -28,13 +28,13 @@ bw_status bw_coupler__bodies_create(bw_coupler *c)
       wall[n] = (bw_pd_wall){.offset = s == 0 ? 0.0 : -g->length[d]};
       wall[n++].normal[d] = s == 0 ? 1.0 : -1.0;
     }
-  bw_status st = BW_ALLOCATE(&c->stays, bw_pd_bond_get_extended(c->solid).n);
+  bw_status st = BW_ALLOCATE(&c->stays, bw_solid_get_extended(c->solid).n);
   BW_THEN(st, BW_ALLOCATE(&c->gone, c->n));
-  BW_THEN(st, BW_ALLOCATE(&c->link, (size_t)bw_pd_bond_max_family(c->solid)));
+  BW_THEN(st, BW_ALLOCATE(&c->link, (size_t)bw_solid_max_family(c->solid)));
   /* Walls act through contact; without it there is nothing to tell the solid. */
-  st = bw_comm_agree(bw_pd_bond_comm(c->solid), st);
-  if (st != BW_OK || !bw_pd_bond_settings(c->solid)->contact) return st;
-  return bw_pd_bond_set_walls(c->solid, n, wall);
+  st = bw_comm_agree(bw_solid_comm(c->solid), st);
+  if (st != BW_OK || !bw_solid_settings(c->solid)->contact) return st;
+  return bw_solid_set_walls(c->solid, n, wall);
 }
 
 void bw_coupler__bodies_release(bw_coupler *c)
@@ -50,7 +50,7 @@ void bw_coupler__bodies_release(bw_coupler *c)
 void bw_coupler__push_solid(bw_coupler *c)
 {
   const bool probed = c->config.load == BW_LOAD_PROBES;
-  const double excess = bw_pd_bond_settings(c->solid)->rho - c->config.rho;
+  const double excess = bw_solid_settings(c->solid)->rho - c->config.rho;
   double more[3];
   for (int d = 0; d < 3; d++)
     /* Weight less buoyancy. */
@@ -61,7 +61,7 @@ void bw_coupler__push_solid(bw_coupler *c)
   for (size_t i = 0; i < c->n; i++)
     for (int d = 0; d < 3; d++)
       c->V[3 * i + d] = c->F[3 * i + d] + more[d];
-  bw_pd_bond_set_force(c->solid, c->V);
+  bw_solid_set_force(c->solid, c->V);
 }
 
 /* Is the whole cube of a particle at x beyond an outflow (open), or any side of the box? */
@@ -69,7 +69,7 @@ static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   /* To leave, all of the cube has to be outside; to be inside, its centre. */
-  const double half = open_only ? 0.5 * bw_pd_bond_settings(c->solid)->ds : 0.0;
+  const double half = open_only ? 0.5 * bw_solid_settings(c->solid)->ds : 0.0;
   for (int d = 0; d < 3; d++) {
     if (g->periodic[d] || (g->n[d] == 1 && g->halo[d] == 0)) continue;
     if ((!open_only || c->open[d][0]) && x[d] < -half) return true;
@@ -81,31 +81,31 @@ static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
 double bw_coupler__wetted(bw_coupler *c)
 {
   size_t n = 0;
-  bw_pd_bond_get_position(c->solid, c->X);
+  bw_solid_get_position(c->solid, c->X);
   for (size_t i = 0; i < c->n; i++)
     n += !is_beyond(c, c->X + 3 * i, false);
-  return (double)n * bw_pd_bond_volume(c->solid);
+  return (double)n * bw_solid_volume(c->solid);
 }
 
 /* c->gone: particles beyond an outflow. Returns how many on all ranks. */
 static int64_t find_beyond(bw_coupler *c)
 {
-  const uint8_t *kind = bw_pd_bond_kind(c->solid), settled = BW_PD_PRESCRIBED | BW_PD_RETIRED;
+  const uint8_t *kind = bw_solid_kind(c->solid), settled = BW_PD_PRESCRIBED | BW_PD_RETIRED;
   int64_t n = 0;
-  bw_pd_bond_get_position(c->solid, c->X);
+  bw_solid_get_position(c->solid, c->X);
   /* Held particles stay, retired ones are gone already. */
   for (size_t i = 0; i < c->n; i++) {
     c->gone[i] = !(kind[i] & settled) && is_beyond(c, c->X + 3 * i, true);
     n += c->gone[i];
   }
-  bw_comm_sum_int(bw_pd_bond_comm(c->solid), 1, &n);
+  bw_comm_sum_int(bw_solid_comm(c->solid), 1, &n);
   return n;
 }
 
 /* Does a bond that holds join particle i to one that stays? */
 static bool is_kept(bw_coupler *c, size_t i)
 {
-  const int n = bw_pd_bond_links(c->solid, i, c->link);
+  const int n = bw_solid_links(c->solid, i, c->link);
   for (int q = 0; q < n; q++)
     if (c->link[q].intact && c->stays[c->link[q].neighbour]) return true;
   return false;
@@ -122,7 +122,7 @@ static int64_t keep_joined(bw_coupler *c)
   /* Staying spreads along bonds that hold, also to copies
    * on other ranks, until it reaches nobody new. */
   do {
-    bw_pd_bond_fill_extended(c->solid, sizeof *c->stays, c->stays, c->stays);
+    bw_solid_fill_extended(c->solid, sizeof *c->stays, c->stays, c->stays);
     memset(count, 0, sizeof count);
     for (size_t i = 0; i < c->n; i++) {
       if (!c->gone[i]) continue;
@@ -130,7 +130,7 @@ static int64_t keep_joined(bw_coupler *c)
       c->gone[i] = !c->stays[i];
       count[c->gone[i]]++;
     }
-    bw_comm_sum_int(bw_pd_bond_comm(c->solid), 2, count);
+    bw_comm_sum_int(bw_solid_comm(c->solid), 2, count);
   } while (count[0] > 0);
   return count[1];
 }
@@ -140,22 +140,22 @@ bw_status bw_coupler__let_go(bw_coupler *c)
 {
   /* Most steps end at the first of these questions. */
   if (!c->has_outflow || find_beyond(c) == 0 || keep_joined(c) == 0) return BW_OK;
-  return bw_pd_bond_retire(c->solid, c->gone);
+  return bw_solid_retire(c->solid, c->gone);
 }
 
 /* Mass in the box (held particles under its walls too), beyond its sides, and retired. */
 void bw_coupler__count_mass(bw_coupler *c, double mass[3])
 {
-  const uint8_t *kind = bw_pd_bond_kind(c->solid);
-  const double of_one = bw_pd_bond_settings(c->solid)->rho * bw_pd_bond_volume(c->solid);
+  const uint8_t *kind = bw_solid_kind(c->solid);
+  const double of_one = bw_solid_settings(c->solid)->rho * bw_solid_volume(c->solid);
   int64_t count[3] = {0};
-  bw_pd_bond_get_position(c->solid, c->X);
+  bw_solid_get_position(c->solid, c->X);
   /* Counted, not summed: the three add up to all particles to the last bit. */
   for (size_t i = 0; i < c->n; i++) {
     const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, c->X + 3 * i, false);
     count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0]++;
   }
-  bw_comm_sum_int(bw_pd_bond_comm(c->solid), 3, count);
+  bw_comm_sum_int(bw_solid_comm(c->solid), 3, count);
   for (int q = 0; q < 3; q++)
     mass[q] = of_one * (double)count[q];
 }

@@ -97,7 +97,7 @@ static bw_status create_arrays(bw_coupler *c)
 {
   BW_TRY(bw_timer_create(BW_PART_COUNT, parts, &c->timer));
   /* A row per particle suffices for ever: the surface can be no larger. */
-  const size_t n = c->n = bw_pd_bond_count(c->solid);
+  const size_t n = c->n = bw_solid_count(c->solid);
   double **vector[N_VECTORS];
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
@@ -112,8 +112,8 @@ static bw_status create_arrays(bw_coupler *c)
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
 }
 
-bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid,
-                            bw_pd_bond *solid, bw_coupler **out)
+bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid, bw_solid *solid,
+                            bw_coupler **out)
 {
   const bw_grid *grid = bw_ns_channel_grid(fluid);
   const bw_grid_view *g = bw_grid_look(grid);
@@ -131,13 +131,13 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   c->held = c->watched = true;
   c->h = g->spacing[0];
   /* Both ends of each bond are evaluated. */
-  bw_pd_bond_ledger ledger = {0};
-  st = bw_pd_bond_account(solid, &ledger);
+  bw_solid_ledger ledger = {0};
+  st = bw_solid_account(solid, &ledger);
   c->bonds = 2.0 * (double)ledger.bonds / bw_comm_size(bw_grid_comm(grid));
   BW_THEN(st, create_parts(c));
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   /* Whole particles share a marker; a spacing below one of theirs gives each its own. */
-  const double k = c->config.marker_spacing * c->h / bw_pd_bond_settings(solid)->ds;
+  const double k = c->config.marker_spacing * c->h / bw_solid_settings(solid)->ds;
   c->block = (int)fmax(1.0, floor(k + 1e-9));
   BW_THEN(st, bw_coupler__bodies_create(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);

@@ -36,9 +36,9 @@
  * surface particle has its own probe in any case.
  *
  * Free bodies. With contact on in the solid, sides of the fluid that are walls, free-slip or inflow
- * are walls to the particles (bw_pd_bond_set_walls); what moves through a periodic side goes on; a
+ * are walls to the particles (bw_solid_set_walls); what moves through a periodic side goes on; a
  * piece passes an outflow, meets the fluid with the part that is still inside, and is retired
- * (bw_pd_bond_retire) when all of it has passed. Fluid pressure is without its hydrostatic part, so
+ * (bw_solid_retire) when all of it has passed. Fluid pressure is without its hydrostatic part, so
  * bodies weigh (rho_s - rho) g.
  *
  * The solid can be held (rigid): then no solid step, no load, no surface update is computed.
@@ -48,9 +48,9 @@
 #include "bw_checkpoint.h"
 #include "bw_ibm_mdf.h"
 #include "bw_ns_channel.h"
-#include "bw_pd_bond.h"
 #include "bw_pd_interface.h"
 #include "bw_probe.h"
+#include "bw_solid.h"
 #include "bw_timer.h"
 
 typedef struct bw_coupler bw_coupler;
@@ -88,8 +88,8 @@ bw_coupler_config bw_coupler_config_default(void);
 
 /* `fluid` and `solid` are borrowed until destroy; the fluid's grid must be uniform with a halo of
  * 2. The solid starts held. Fails with BW_EINPUT (message names the value). */
-bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid,
-                            bw_pd_bond *solid, bw_coupler **out) BW_MUST_CHECK;
+bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid, bw_solid *solid,
+                            bw_coupler **out) BW_MUST_CHECK;
 void bw_coupler_destroy(bw_coupler **c); /* NULL is fine */
 
 /* Hold the solid where it is (true) or let it move (false). Local. */

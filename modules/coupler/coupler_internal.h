@@ -12,12 +12,12 @@ typedef struct {
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
   bool filled;
-  double fluid_numbers[2];                  /* time, gradient of the forcing */
-  bw_real *field[4];                        /* u, v, w, p; NULL where the fluid has none */
-  double *rows;                             /* (n,BW_PD_RESTART_ROW) of bw_pd_bond_get_restart */
-  double sums[BW_PD_RESTART_SUMS], work[2]; /* of all ranks: given, late */
-  uint8_t *bits;                            /* (n, bits_bytes) */
-  double *V_before, *F;                     /* (n,3) */
+  double fluid_numbers[2]; /* time, gradient of the forcing */
+  bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
+  double *rows;            /* (n,BW_SOLID_RESTART_ROW) of bw_solid_get_restart */
+  double sums[BW_SOLID_RESTART_SUMS], work[2]; /* of all ranks: given, late */
+  uint8_t *bits;                               /* (n, bits_bytes) */
+  double *V_before, *F;                        /* (n,3) */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
@@ -30,7 +30,7 @@ typedef struct {
   double *send, *receive;            /* (n_surface,7), (n_members,7): area, X, V */
   double *X, *V, *dV, *area, *force; /* (n,3), (n,3), (n), (n), (n,3) */
   size_t n_surface;                  /* surface the plan is for */
-  int64_t events;                    /* broken bonds then, bw_pd_bond_events */
+  int64_t events;                    /* broken bonds then, bw_solid_events */
   int32_t *particle;                 /* (particles) and its members */
   uint16_t *broken;                  /* (particles) broken bonds of each */
   int8_t *face;                      /* (particles) 2 axis + side of the reference normal, or -1 */
@@ -51,7 +51,7 @@ typedef struct {
 struct bw_coupler {
   bw_coupler_config config;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_pd_interface *interface;
   bw_ibm_mdf *ibm;
   bw_probe *probe;
@@ -92,7 +92,7 @@ struct bw_coupler {
   bool open[3][2], has_outflow; /* outflow sides */
   bool *gone;                   /* (n) scratch: particles beyond an outflow */
   uint8_t *stays;               /* (particles and copies) scratch: not gone */
-  bw_pd_bond_link *link;        /* (family) scratch */
+  bw_pd_link *link;             /* (family) scratch */
   bw_coupler__work work;
   bw_coupler__state kept;
   bw_coupler__iteration iteration;

@@ -70,7 +70,7 @@ static double compare(bw_coupler *c, double dt)
   bw_coupler__iteration *t = &c->iteration;
   double *V = c->accel, sums[2] = {0.0, 0.0}; /* scratch */
   /* The solid has answered: X_{n+1}, V_{n+1}. */
-  bw_pd_bond_get_position(c->solid, c->X);
+  bw_solid_get_position(c->solid, c->X);
   bw_coupler__marker_velocity(c, V);
   /* theta (X_{n+1} - X_n)/dt + (1 - theta) V_{n+1}, per particle. */
   for (size_t i = 0; i < 3 * c->n; i++)
@@ -85,7 +85,7 @@ static double compare(bw_coupler *c, double dt)
       sums[1] += answer * answer;
     }
   /* Relative to the answer, over all ranks. */
-  bw_comm_sum(bw_pd_bond_comm(c->solid), 2, sums);
+  bw_comm_sum(bw_solid_comm(c->solid), 2, sums);
   return sums[0] > 0.0 ? sqrt(sums[0] / fmax(sums[1], 1e-300)) : 0.0;
 }
 
@@ -100,7 +100,7 @@ static void project(const bw_coupler *c, const double a[], double out[])
     for (size_t k = 0; k < 3 * c->n_surface; k++)
       out[i] += a[k] * b[k];
   }
-  bw_comm_sum(bw_pd_bond_comm(c->solid), t->columns + 1, out);
+  bw_comm_sum(bw_solid_comm(c->solid), t->columns + 1, out);
 }
 
 /* a -= sum_i f_i b_i */
@@ -176,7 +176,7 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
   const bw_coupler__work work = c->work;
   /* Every try begins here: fluid and solid at t, markers at the old surface. */
   bw_coupler__state_capture(c, &t->start);
-  bw_pd_bond_get_position(c->solid, t->X);
+  bw_solid_get_position(c->solid, t->X);
   /* The first guess: the surface moves on as it does. */
   memcpy(t->guess, c->marker_V, 3 * c->n_surface * sizeof *t->guess);
   /* Columns of earlier steps are not used, so that a restart repeats the step exactly. */

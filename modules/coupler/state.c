@@ -34,8 +34,8 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   /* In two dimensions there is no w. */
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
-  BW_TRY(BW_ALLOCATE(&s->rows, BW_PD_RESTART_ROW * c->n));
-  BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_pd_bond_bits_bytes(c->solid)));
+  BW_TRY(BW_ALLOCATE(&s->rows, BW_SOLID_RESTART_ROW * c->n));
+  BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   return BW_ALLOCATE(&s->F, 3 * c->n);
 }
@@ -52,11 +52,11 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   s->fluid_numbers[0] = bw_ns_channel_time(c->fluid);
   s->fluid_numbers[1] = bw_ns_channel_gradient(c->fluid);
   /* The solid: motion and ledger as its restart wants them, and which bonds hold. */
-  bw_pd_bond_get_restart(c->solid, s->rows, s->sums);
+  bw_solid_get_restart(c->solid, s->rows, s->sums);
   /* Work is kept as the sum of all ranks, which a restart may divide otherwise. */
   s->work[0] = c->work.given, s->work[1] = c->work.late;
-  bw_comm_sum(bw_pd_bond_comm(c->solid), 2, s->work);
-  bw_pd_bond_get_bits(c->solid, s->bits);
+  bw_comm_sum(bw_solid_comm(c->solid), 2, s->work);
+  bw_solid_get_bits(c->solid, s->bits);
   /* The relaxed load and the velocity before belong to the state: both act in the next step. */
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
@@ -75,43 +75,43 @@ bw_status bw_coupler_keep(bw_coupler *c)
 static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw_checkpoint *ck)
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
-  const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  const int64_t total = bw_solid_total(c->solid), *id = bw_solid_id(c->solid);
   /* Fields by global cells, particles by id: any number of ranks can read them. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_put_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
-  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
+  BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
   /* Everything of the particles, as rows. */
-  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
-                                 s->rows));
+  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_SOLID_RESTART_ROW,
+                                 BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
-                                 (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
+                                 (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
 
 static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkpoint *ck)
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
-  const int64_t total = bw_pd_bond_total(c->solid), *id = bw_pd_bond_id(c->solid);
+  const int64_t total = bw_solid_total(c->solid), *id = bw_solid_id(c->solid);
   /* The mirror image of write_state, in the same order. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
       BW_TRY(bw_checkpoint_get_field(ck, field_name[q], grid, q % 3, q < 3, s->field[q]));
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_PD_RESTART_SUMS, s->sums));
+  BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
   /* Rows find their particles by id. */
-  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_PD_RESTART_ROW, BW_CK_DOUBLE,
-                                 s->rows));
+  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_SOLID_RESTART_ROW,
+                                 BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
-                                 (int)bw_pd_bond_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
+                                 (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
 
 bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
@@ -128,8 +128,8 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   /* Nothing that was derived from the other state may be used. */
   c->p_mean_known = c->stepped = c->motion_known = false;
   /* The solid goes on to the same bits; the load that acts on it is part of what follows. */
-  BW_TRY(bw_pd_bond_set_bits(c->solid, s->bits));
-  BW_TRY(bw_pd_bond_set_restart(c->solid, s->rows, s->sums));
+  BW_TRY(bw_solid_set_bits(c->solid, s->bits));
+  BW_TRY(bw_solid_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   return BW_OK;

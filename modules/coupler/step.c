@@ -7,8 +7,7 @@
 int bw_coupler_substeps(const bw_coupler *c, double dt)
 {
   /* The squares of their frequencies add: a particle held by its bonds and pressed on all sides. */
-  const double rate =
-      hypot(1.0 / bw_pd_bond_dt_max(c->solid), 1.0 / bw_pd_bond_dt_contact(c->solid));
+  const double rate = hypot(1.0 / bw_solid_dt_max(c->solid), 1.0 / bw_solid_dt_contact(c->solid));
   return (int)fmax(1.0, ceil(dt * rate / c->config.solid_safety));
 }
 
@@ -84,7 +83,7 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
   /* Forces act on the surface, outside the centres: they bring a moment with them. */
-  bw_coupler__carry_force(c, probes ? 0.5 * bw_pd_bond_settings(c->solid)->ds
+  bw_coupler__carry_force(c, probes ? 0.5 * bw_solid_settings(c->solid)->ds
                                     : bw_coupler__marker_offset(c));
   /* F' <- (1 - w) F' + w F against the added mass (bw_coupler.h). */
   bw_coupler__relax_load(c, dt, relaxation);
@@ -101,9 +100,9 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
   bw_status st = BW_OK;
   bw_timer_start(c->timer, BW_PART_SOLID);
   /* The surface's acceleration over the step will be told from it. */
-  bw_pd_bond_get_velocity(c->solid, c->V_before);
+  bw_solid_get_velocity(c->solid, c->V_before);
   for (int q = 0; q < substeps; q++)
-    BW_THEN(st, bw_pd_bond_step(c->solid, dt / substeps));
+    BW_THEN(st, bw_solid_step(c->solid, dt / substeps));
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
   bw_timer_stop(c->timer, BW_PART_SOLID);
@@ -123,7 +122,7 @@ static void count_work(bw_coupler *c, double dt)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const double cells = 3.0 * g->m[0] * g->m[1] * g->m[2];
-  const bool rk3 = bw_pd_bond_settings(c->solid)->integrator == BW_PD_RK3;
+  const bool rk3 = bw_solid_settings(c->solid)->integrator == BW_SOLID_RK3;
   bw_timer_work(c->timer, BW_PART_MOMENTUM, cells);
   bw_timer_work(c->timer, BW_PART_POISSON, cells);
   /* Three sub-steps, each with all iterations over all markers. */

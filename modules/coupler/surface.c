@@ -20,7 +20,7 @@ static bool within_box(const bw_grid_view *g, const double x[3])
 /* How far outside the particles' centres markers sit (ERRATA 21). */
 double bw_coupler__marker_offset(const bw_coupler *c)
 {
-  return 0.5 * bw_pd_bond_settings(c->solid)->ds - c->config.retraction * c->h;
+  return 0.5 * bw_solid_settings(c->solid)->ds - c->config.retraction * c->h;
 }
 
 /* Velocity V of the points at a distance `out` from the surface particles, along their normals, and
@@ -30,7 +30,7 @@ void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
   /* Collective, and therefore once for each motion of the solid. */
   if (!c->motion_known) {
     bw_pd_interface_turn(c->interface, c->turn);
-    bw_pd_bond_get_velocity(c->solid, c->V);
+    bw_solid_get_velocity(c->solid, c->V);
     c->motion_known = true;
   }
   for (size_t q = 0; q < c->n_surface; q++) {
@@ -66,7 +66,7 @@ static void place(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_pd_surface s = bw_pd_interface_surface(c->interface);
-  const double out = 0.5 * bw_pd_bond_settings(c->solid)->ds, in = bw_coupler__marker_offset(c);
+  const double out = 0.5 * bw_solid_settings(c->solid)->ds, in = bw_coupler__marker_offset(c);
   size_t n = 0;
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
@@ -129,7 +129,7 @@ static bw_status mark_inside(bw_coupler *c)
   double *send = NULL, *receive = NULL;
   bw_exchange *plan = NULL;
   size_t n = 0;
-  bw_pd_bond_get_position(c->solid, c->X);
+  bw_solid_get_position(c->solid, c->X);
   bw_status st = BW_ALLOCATE(&owner, c->n);
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
   /* Every particle, not only the surface, to the rank that owns its cell. */
@@ -222,7 +222,7 @@ static void surface_motion(bw_coupler *c, double dt)
 {
   const double drive[3] = {bw_ns_channel_driving(c->fluid)};
   /* On the nominal surface, where probes begin. */
-  bw_coupler__surface_velocity(c, 0.5 * bw_pd_bond_settings(c->solid)->ds, c->root_V);
+  bw_coupler__surface_velocity(c, 0.5 * bw_solid_settings(c->solid)->ds, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (int d = 0; d < 3; d++) {
@@ -278,10 +278,10 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
 static double power(bw_coupler *c)
 {
   double *V = c->X, sum = 0.0; /* scratch */
-  bw_pd_bond_get_velocity(c->solid, V);
+  bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < 3 * c->n; i++)
     sum += c->F[i] * V[i];
-  return sum * bw_pd_bond_volume(c->solid);
+  return sum * bw_solid_volume(c->solid);
 }
 
 /* c->load: the surface points' forces, which act `out` outside the particles' centres, on the
@@ -309,7 +309,7 @@ void bw_coupler__carry_force(bw_coupler *c, double out)
  * F' <- (1 - w) F' + w F keeps F - F' = (1 - w)/w (F' - F' before) back, which is booked. */
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
 {
-  const double w = relaxation, volume = bw_pd_bond_volume(c->solid);
+  const double w = relaxation, volume = bw_solid_volume(c->solid);
   /* Power before and after give what of the new load is held back. */
   const double before = c->config.count_work ? power(c) : 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)

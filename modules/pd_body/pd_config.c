@@ -14,9 +14,9 @@ double bw_pd_body_natural_poisson(bw_pd_geometry geometry)
 /* Required positive numbers, by name. */
 static bw_status positive(const char *name, double value, bool infinite_allowed)
 {
-  BW_REQUIRE(!isnan(value), BW_EINPUT, "pd_bond: %s is not set; it is required", name);
+  BW_REQUIRE(!isnan(value), BW_EINPUT, "solid: %s is not set; it is required", name);
   BW_REQUIRE(value > 0 && (infinite_allowed || isfinite(value)), BW_EINPUT,
-             "pd_bond: %s = %g must be positive", name, value);
+             "solid: %s = %g must be positive", name, value);
   return BW_OK;
 }
 
@@ -24,7 +24,7 @@ static bw_status check_positive(const bw_pd_body_config *c)
 {
   BW_TRY(positive("ds", c->ds, false));
   BW_REQUIRE(c->n_group >= 1 && c->n_group <= BW_PD_GROUPS, BW_EINPUT,
-             "pd_bond: n_group = %d must be from 1 to %d", c->n_group, (int)BW_PD_GROUPS);
+             "solid: n_group = %d must be from 1 to %d", c->n_group, (int)BW_PD_GROUPS);
   for (int g = 0; g < c->n_group; g++) {
     BW_TRY(positive("rho", c->material[g].rho, false));
     BW_TRY(positive("E", c->material[g].E, false));
@@ -34,7 +34,7 @@ static bw_status check_positive(const bw_pd_body_config *c)
     BW_TRY(positive("G0", c->material[g].G0, true));
   BW_TRY(positive("horizon_ratio", c->horizon_ratio, false));
   BW_REQUIRE(c->horizon_ratio >= 1 && c->horizon_ratio <= 12, BW_EINPUT,
-             "pd_bond: horizon_ratio = %g is outside 1 .. 12; 3 is usual", c->horizon_ratio);
+             "solid: horizon_ratio = %g is outside 1 .. 12; 3 is usual", c->horizon_ratio);
   return BW_OK;
 }
 
@@ -42,23 +42,23 @@ static bw_status check_lattice(const bw_pd_body_config *c)
 {
   const bool planar = c->geometry != BW_PD_3D;
   for (int a = 0; a < 3; a++) {
-    BW_REQUIRE(isfinite(c->origin[a]), BW_EINPUT, "pd_bond: origin[%d] is not finite", a);
+    BW_REQUIRE(isfinite(c->origin[a]), BW_EINPUT, "solid: origin[%d] is not finite", a);
     for (int b = 0; b < 3; b++) {
       double dot = 0;
       for (int k = 0; k < 3; k++)
         dot += c->axes[a][k] * c->axes[b][k];
       BW_REQUIRE(fabs(dot - (a == b)) < 1e-12, BW_EINPUT,
-                 "pd_bond: axes rows %d and %d have the product %g; they must be unit vectors at "
+                 "solid: axes rows %d and %d have the product %g; they must be unit vectors at "
                  "right angles",
                  a, b, dot);
     }
     const double cells = c->period[a] / c->ds;
     BW_REQUIRE(c->period[a] >= 0 && fabs(cells - round(cells)) < 1e-6, BW_EINPUT,
-               "pd_bond: period[%d] = %g is %g ds; it must be a whole number of ds", a,
-               c->period[a], cells);
+               "solid: period[%d] = %g is %g ds; it must be a whole number of ds", a, c->period[a],
+               cells);
   }
   BW_REQUIRE(!planar || (c->axes[2][2] == 1 && c->period[2] == 0), BW_EINPUT,
-             "pd_bond: in 2D the third axis is (0,0,1) and not periodic; found axes[2][2] = %g, "
+             "solid: in 2D the third axis is (0,0,1) and not periodic; found axes[2][2] = %g, "
              "period[2] = %g",
              c->axes[2][2], c->period[2]);
   return BW_OK;
@@ -68,21 +68,21 @@ static bw_status check_lattice(const bw_pd_body_config *c)
 static bw_status check_fraction(const bw_pd_body_config *c)
 {
   BW_REQUIRE(c->disorder >= 0 && c->disorder <= MOST_DISORDER, BW_EINPUT,
-             "pd_bond: disorder = %g must be from 0 (a lattice) to %g spacings", c->disorder,
+             "solid: disorder = %g must be from 0 (a lattice) to %g spacings", c->disorder,
              MOST_DISORDER);
   BW_REQUIRE(c->disorder == 0 || 1 + 2 * c->disorder < bw_pd_body_family_reach(c), BW_EINPUT,
-             "pd_bond: disorder = %g moves neighbours %g spacings apart, out of the family's reach "
+             "solid: disorder = %g moves neighbours %g spacings apart, out of the family's reach "
              "of %g; use less of it or a larger horizon_ratio",
              c->disorder, 1 + 2 * c->disorder, bw_pd_body_family_reach(c));
   BW_REQUIRE(c->disorder == 0 || c->volume_fraction != BW_PD_FRACTION_EXACT, BW_EINPUT,
-             "pd_bond: volume_fraction = exact is of cells on a lattice; with disorder = %g use "
+             "solid: volume_fraction = exact is of cells on a lattice; with disorder = %g use "
              "linear (the default) or none",
              c->disorder);
   BW_REQUIRE((unsigned)c->volume_fraction <= BW_PD_FRACTION_DEFAULT &&
                  !(c->geometry == BW_PD_3D && c->disorder == 0 &&
                    c->volume_fraction == BW_PD_FRACTION_LINEAR),
              BW_EINPUT,
-             "pd_bond: volume_fraction = %d; on a lattice the linear one is of 2D only, use exact "
+             "solid: volume_fraction = %d; on a lattice the linear one is of 2D only, use exact "
              "or none in 3D",
              (int)c->volume_fraction);
   return BW_OK;
@@ -91,11 +91,11 @@ static bw_status check_fraction(const bw_pd_body_config *c)
 bw_status bw_pd_body_check(const bw_pd_body_config *c)
 {
   BW_TRY(check_positive(c));
-  BW_REQUIRE((unsigned)c->geometry <= BW_PD_PLANE_STRAIN, BW_EINPUT, "pd_bond: geometry = %d",
+  BW_REQUIRE((unsigned)c->geometry <= BW_PD_PLANE_STRAIN, BW_EINPUT, "solid: geometry = %d",
              (int)c->geometry);
   BW_TRY(check_fraction(c));
   BW_REQUIRE((unsigned)c->family_reach <= BW_PD_REACH_HORIZON, BW_EINPUT,
-             "pd_bond: family_reach = %d is unknown", (int)c->family_reach);
+             "solid: family_reach = %d is unknown", (int)c->family_reach);
   return check_lattice(c);
 }
 

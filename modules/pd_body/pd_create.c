@@ -23,7 +23,7 @@ void bw_pd_body_release_storage_array(bw_real **array)
 
 bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved, bw_real **value)
 {
-  BW_REQUIRE(pd->n_field < BW_PD_FIELDS, BW_EINPUT, "pd_body: the law %s wants more than %d fields",
+  BW_REQUIRE(pd->n_field < BW_PD_FIELDS, BW_EINPUT, "solid: the law %s wants more than %d fields",
              pd->law->name, (int)BW_PD_FIELDS);
   bw_pd_field *f = &pd->field[pd->n_field];
   BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &f->value));
@@ -80,13 +80,13 @@ static bw_status prescribed_list(bw_pd_body *pd)
 static bw_status check_sites(const bw_pd_body_config *c, const bw_pd_sites *s, int64_t first)
 {
   BW_REQUIRE(s->n >= 0 && s->n < INT32_MAX && (s->n == 0 || s->site != NULL), BW_EINPUT,
-             "pd_bond: %lld particles given by one rank; it takes 0 to 2^31", (long long)s->n);
+             "solid: %lld particles given by one rank; it takes 0 to 2^31", (long long)s->n);
   for (int64_t q = 0; q < s->n; q++) {
     const int kind = s->kind == NULL ? 0 : s->kind[q], group = s->group == NULL ? 0 : s->group[q];
     BW_REQUIRE(kind <= (BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE), BW_EINPUT,
-               "pd_bond: particle %lld has the unknown kind %d", (long long)(first + q), kind);
+               "solid: particle %lld has the unknown kind %d", (long long)(first + q), kind);
     BW_REQUIRE(group < c->n_group, BW_EINPUT,
-               "pd_bond: particle %lld is of group %d; there are materials for %d",
+               "solid: particle %lld is of group %d; there are materials for %d",
                (long long)(first + q), group, c->n_group);
   }
   return BW_OK;
@@ -131,7 +131,7 @@ bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config
   int64_t total = given->n;
   bw_comm_sum_int(comm, 1, &total);
   if (st == BW_OK && total <= 0)
-    st = BW_FAIL(BW_EINPUT, "pd_bond: no particles given (n = %lld)", (long long)total);
+    st = BW_FAIL(BW_EINPUT, "solid: no particles given (n = %lld)", (long long)total);
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     pd->comm = comm;

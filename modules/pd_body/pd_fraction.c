@@ -86,7 +86,7 @@ bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *
   if (far2 <= m * m || near2 >= m * m) return BW_OK;
 
   gsl_integration_cquad_workspace *work = gsl_integration_cquad_workspace_alloc(200);
-  BW_REQUIRE(work != NULL, BW_EMEM, "pd_bond: no memory for the volume fractions");
+  BW_REQUIRE(work != NULL, BW_EMEM, "solid: no memory for the volume fractions");
   ball b = {m, x, y};
   gsl_function f = {slice, &b};
   gsl_error_handler_t *old = gsl_set_error_handler_off();
@@ -95,7 +95,7 @@ bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *
   gsl_set_error_handler(old);
   gsl_integration_cquad_workspace_free(work);
   BW_REQUIRE(code == GSL_SUCCESS || code == GSL_EDIVERGE, BW_EDIVERGED,
-             "pd_bond: volume fraction of offset (%d,%d,%d) at horizon/ds = %g: %s", offset[0],
+             "solid: volume fraction of offset (%d,%d,%d) at horizon/ds = %g: %s", offset[0],
              offset[1], offset[2], m, gsl_strerror(code));
   *fraction = fmax(0, fmin(1, *fraction));
   return BW_OK;

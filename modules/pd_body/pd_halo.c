@@ -47,15 +47,15 @@ static bw_status extent_of_all(const bw_pd_body *pd, size_t n, const int32_t sit
     const double size = most[3 + k] + most[k] + 1;
     const int32_t period = (int32_t)lround(pd->config.period[k] / pd->level->ds);
     BW_REQUIRE(size < 1 << 20, BW_EINPUT,
-               "pd_bond: sites reach over %.0f steps in direction %d; the limit is 2^20", size, k);
+               "solid: sites reach over %.0f steps in direction %d; the limit is 2^20", size, k);
     BW_REQUIRE(period == 0 || size <= period, BW_EINPUT,
-               "pd_bond: sites reach over %.0f steps in direction %d, whose period has %d", size, k,
+               "solid: sites reach over %.0f steps in direction %d, whose period has %d", size, k,
                period);
     g->lower[k] = (int32_t)-most[k], g->upper[k] = (int32_t)most[3 + k];
     g->period[k] = period;
   }
   BW_REQUIRE(pd->dimension == 3 || (g->lower[2] == 0 && g->upper[2] == 0), BW_EINPUT,
-             "pd_bond: in 2D every site[2] must be 0; they lie in %d .. %d", g->lower[2],
+             "solid: in 2D every site[2] must be 0; they lie in %d .. %d", g->lower[2],
              g->upper[2]);
   return BW_OK;
 }
@@ -138,7 +138,7 @@ static bw_status near_own(const bw_pd_body *pd, size_t n, const passenger own[],
   for (size_t i = 0; i < n; i++) {
     int32_t found;
     BW_TRY(bw_particles_map_put(near, own[i].site, (int32_t)i, &found));
-    BW_REQUIRE(found < 0, BW_EINPUT, "pd_bond: particles %lld and %lld are both on site (%d,%d,%d)",
+    BW_REQUIRE(found < 0, BW_EINPUT, "solid: particles %lld and %lld are both on site (%d,%d,%d)",
                (long long)own[found].id, (long long)own[i].id, own[i].site[0], own[i].site[1],
                own[i].site[2]);
   }
@@ -274,8 +274,7 @@ static bw_status extended_arrays(bw_pd_body *pd, const passenger own[], const si
   bw_pd_points *p = &pd->points;
   const size_t n = pd->n, all = pd->n_extended = n + copies->n;
   BW_REQUIRE(all < INT32_MAX, BW_EINPUT,
-             "pd_bond: %zu particles and copies on one rank; the limit is 2^31, use more ranks",
-             all);
+             "solid: %zu particles and copies on one rank; the limit is 2^31, use more ranks", all);
   BW_TRY(BW_ALLOCATE(&p->site, 3 * all));
   BW_TRY(BW_ALLOCATE(&p->id, all));
   BW_TRY(BW_ALLOCATE(&p->kind, all));

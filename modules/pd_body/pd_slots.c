@@ -138,7 +138,7 @@ bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
   for (int pass = 0; pass < 2; pass++) {
     size_t q = 0;
     for (size_t b = 0; b < pd->bonds.n_block; b++) {
-      BW_REQUIRE(q < UINT32_MAX, BW_EINPUT, "pd_bond: too many bonds on one rank; use more ranks");
+      BW_REQUIRE(q < UINT32_MAX, BW_EINPUT, "solid: too many bonds on one rank; use more ranks");
       pd->bonds.block[b].slot = (uint32_t)q;
       for (int d = 0; d < pd->level->stencil.n; d++) {
         const int n = direction_slots(pd, near, &pd->bonds.block[b], d, some);

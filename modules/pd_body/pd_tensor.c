@@ -24,7 +24,7 @@ bw_status bw_pd_tensor_principal(size_t n, const double tensor[], double value[]
 {
   double m[9], v[3], axes[9];
   gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(3);
-  BW_REQUIRE(work != NULL, BW_EMEM, "pd_tensor: no memory for a 3 x 3 eigenvalue problem");
+  BW_REQUIRE(work != NULL, BW_EMEM, "solid: no memory for a 3 x 3 eigenvalue problem");
   for (size_t i = 0; i < n; i++) {
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++)

@@ -77,7 +77,7 @@ bw_status bw_pd_contact__wall_update(bw_pd_contact *c)
     const gap g = gap_of(pd, w, p->particle);
     if (p->held && changed) p->held = is_held(pd, w, c->link, p->particle);
     BW_REQUIRE(p->held || g.now > 0, BW_EDIVERGED,
-               "pd_bond: particle %lld at (%g, %g, %g) was thrown through the wall with the normal "
+               "solid: particle %lld at (%g, %g, %g) was thrown through the wall with the normal "
                "(%g, %g, %g); its speed or dt is too large",
                (long long)pd->points.id[p->particle], g.X[0], g.X[1], g.X[2], w->normal[0],
                w->normal[1], w->normal[2]);
@@ -117,7 +117,7 @@ static bw_status check_wall(const bw_pd_wall *w)
 {
   const double *n = w->normal, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   BW_REQUIRE(fabs(length - 1) < 1e-12 && isfinite(w->offset), BW_EINPUT,
-             "pd_bond: the normal (%g, %g, %g) of a wall must be a unit vector, its offset %g "
+             "solid: the normal (%g, %g, %g) of a wall must be a unit vector, its offset %g "
              "finite",
              n[0], n[1], n[2], w->offset);
   return BW_OK;
@@ -133,7 +133,7 @@ static bw_status check_room(const bw_pd_contact *c, const bw_pd_wall *w)
     if (pd->held.mobile[i] == 0 || fmin(g.now, g.first) > 0) continue;
     if (is_held(pd, w, c->link, (int32_t)i)) continue;
     st = BW_FAIL(BW_EINPUT,
-                 "pd_bond: particle %lld at (%g, %g, %g) is free and beyond the wall with the "
+                 "solid: particle %lld at (%g, %g, %g) is free and beyond the wall with the "
                  "normal (%g, %g, %g) by %g: move the body, or hold what stands under a wall",
                  (long long)pd->points.id[i], g.X[0], g.X[1], g.X[2], w->normal[0], w->normal[1],
                  w->normal[2], -fmin(g.now, g.first));
@@ -143,8 +143,7 @@ static bw_status check_room(const bw_pd_contact *c, const bw_pd_wall *w)
 
 bw_status bw_pd_contact_set_walls(bw_pd_contact *c, int n, const bw_pd_wall wall[])
 {
-  BW_REQUIRE(n >= 0 && n <= BW_PD_WALLS, BW_EINPUT, "pd_bond: %d walls; at most %d", n,
-             BW_PD_WALLS);
+  BW_REQUIRE(n >= 0 && n <= BW_PD_WALLS, BW_EINPUT, "solid: %d walls; at most %d", n, BW_PD_WALLS);
   c->n_wall = 0;
   for (int w = 0; w < n; w++) {
     BW_TRY(check_wall(&wall[w]));

@@ -24,7 +24,7 @@ typedef struct {
 } bw_pd_crack;
 
 /* The whole crack on every rank; free with bw_pd_crack_release. X0 (n,3) reference positions and
- * damage (n) of this rank's particles, as bw_pd_bond gives them. Collective. */
+ * damage (n) of this rank's particles, as bw_solid gives them. Collective. */
 bw_status bw_pd_crack_collect(const bw_comm *comm, const bw_pd_crack_config *config, size_t n,
                               const double X0[], const double damage[],
                               bw_pd_crack *out) BW_MUST_CHECK;

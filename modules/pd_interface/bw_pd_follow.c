@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
+bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   /* POROUS 3.42: mean present distance to broken partners, sector by sector. */
@@ -34,7 +34,7 @@ static void classify(bw_pd_interface *pi, size_t h)
 /* Particles whose bonds broke since the last look, and those that left a wall or met it again.
  * Where nothing broke nothing but the places at the walls is read. Returns whether there are any.
  */
-static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
+static bool follow_changes(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   bool changed = false;
   /* Those that lean on a wall: only their own displacement is read. */
@@ -47,9 +47,9 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
     changed = true;
   }
   /* A bond broke somewhere on this rank: who has more broken ones than before? */
-  if (bw_pd_bond_events(pi->pd) != pi->events) {
-    pi->events = bw_pd_bond_events(pi->pd);
-    bw_pd_bond_get_broken(pi->pd, pi->fresh);
+  if (bw_solid_events(pi->pd) != pi->events) {
+    pi->events = bw_solid_events(pi->pd);
+    bw_solid_get_broken(pi->pd, pi->fresh);
     for (size_t h = 0; h < pi->n; h++) {
       if (pi->fresh[h] == pi->broken[h]) continue;
       pi->broken[h] = pi->fresh[h];
@@ -66,7 +66,7 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_bond_motion *now)
 }
 
 /* Returns whether a gap has opened or closed far enough to show. */
-static bool follow_gaps(bw_pd_interface *pi, const bw_pd_bond_motion *now)
+static bool follow_gaps(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   bool changed = false;
   for (size_t q = 0; q < pi->n_gap; q++) {
@@ -147,13 +147,13 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
-  const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
+  const bw_pd_motion now = bw_solid_get_motion(pi->pd, false);
   /* What broke, then what opened: both may make or end a surface. */
   const bool broken = follow_changes(pi, &now), shown = follow_gaps(pi, &now);
   int64_t changed = pi->fresh_start || broken || shown;
   pi->fresh_start = false;
   /* Normals are fitted across ranks, so all renew or none. */
-  bw_comm_max_int(bw_pd_bond_comm(pi->pd), 1, &changed);
+  bw_comm_max_int(bw_solid_comm(pi->pd), 1, &changed);
   if (changed) {
     bw_pd_interface__renew(pi, false);
     bw_pd_interface__settle_normals(pi);

@@ -21,7 +21,7 @@ typedef struct {
 } cross_bond;
 
 typedef struct {
-  bw_pd_bond *pd;
+  bw_solid *pd;
   size_t n, n_all, n_cross;
   double period[3];
   int32_t *parent; /* (n) */
@@ -50,12 +50,12 @@ static int32_t root_of(int32_t parent[], int32_t h)
 /* Union of own particles; the root is the lowest index. Bonds to copies are listed. */
 static bw_status join_own(joiner *j)
 {
-  bw_pd_bond_link *link = NULL;
-  BW_TRY(BW_ALLOCATE(&link, (size_t)bw_pd_bond_max_family(j->pd)));
+  bw_pd_link *link = NULL;
+  BW_TRY(BW_ALLOCATE(&link, (size_t)bw_solid_max_family(j->pd)));
   for (int pass = 0; pass < 2; pass++) { /* count the bonds to copies, then list them */
     size_t found = 0;
     for (size_t h = 0; h < j->n; h++) {
-      const int family = bw_pd_bond_links(j->pd, h, link);
+      const int family = bw_solid_links(j->pd, h, link);
       for (int q = 0; q < family; q++) {
         if (!link[q].intact) continue;
         if ((size_t)link[q].neighbour >= j->n) {
@@ -84,7 +84,7 @@ static bw_status join_own(joiner *j)
 /* Images of the copies, from where they act and where their owners have them. Collective. */
 static void find_images(joiner *j, const bw_real *acting)
 {
-  bw_pd_bond_fill_extended(j->pd, 3 * sizeof(double), j->X, j->all_X);
+  bw_solid_fill_extended(j->pd, 3 * sizeof(double), j->X, j->all_X);
   for (size_t q = 0; q < j->n_cross; q++)
     for (size_t d = 0; d < 3; d++) {
       const size_t at = 3 * (size_t)j->cross[q].copy + d;
@@ -108,7 +108,7 @@ static void spread_labels(joiner *j, const int64_t id[])
     changed = 0;
     for (size_t h = 0; h < j->n; h++)
       j->own[h] = j->of_root[root_of(j->parent, (int32_t)h)];
-    bw_pd_bond_fill_extended(j->pd, sizeof(tag), j->own, j->all);
+    bw_solid_fill_extended(j->pd, sizeof(tag), j->own, j->all);
     for (size_t q = 0; q < j->n_cross; q++) {
       const cross_bond *c = &j->cross[q];
       tag *mine = &j->of_root[root_of(j->parent, c->own)];
@@ -119,7 +119,7 @@ static void spread_labels(joiner *j, const int64_t id[])
         mine->image[d] = theirs->image[d] - c->image[d];
       changed = 1;
     }
-    bw_comm_max_int(bw_pd_bond_comm(j->pd), 1, &changed);
+    bw_comm_max_int(bw_solid_comm(j->pd), 1, &changed);
   }
 }
 
@@ -270,8 +270,8 @@ static void solve_spin(const piece *p, double spin[3])
 
 static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fragment **out)
 {
-  const bw_comm *comm = bw_pd_bond_comm(j->pd);
-  const double mass = bw_pd_bond_settings(j->pd)->rho * bw_pd_bond_volume(j->pd);
+  const bw_comm *comm = bw_solid_comm(j->pd);
+  const double mass = bw_solid_settings(j->pd)->rho * bw_solid_volume(j->pd);
   size_t n_mean = 0, n_moment = 0;
   piece *mean = NULL, *moment = NULL;
   bw_status st = bw_comm_agree(comm, sum_pieces(j, V, &n_mean, &mean));
@@ -321,15 +321,15 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t
 {
   *n = 0;
   *fragment = NULL;
-  const bw_pd_bond_extended all = bw_pd_bond_get_extended(pi->pd);
+  const bw_pd_extended all = bw_solid_get_extended(pi->pd);
   joiner j = {.pd = pi->pd, .n = pi->n, .n_all = all.n};
-  memcpy(j.period, bw_pd_bond_settings(pi->pd)->period, sizeof j.period);
-  bw_status st = bw_comm_agree(bw_pd_bond_comm(pi->pd), prepare(&j));
+  memcpy(j.period, bw_solid_settings(pi->pd)->period, sizeof j.period);
+  bw_status st = bw_comm_agree(bw_solid_comm(pi->pd), prepare(&j));
   if (st == BW_OK) {
-    bw_pd_bond_get_position(pi->pd, j.X);
-    bw_pd_bond_get_velocity(pi->pd, j.V);
+    bw_solid_get_position(pi->pd, j.X);
+    bw_solid_get_velocity(pi->pd, j.V);
     find_images(&j, all.X);
-    spread_labels(&j, bw_pd_bond_id(pi->pd));
+    spread_labels(&j, bw_solid_id(pi->pd));
     for (size_t h = 0; label != NULL && h < j.n; h++)
       label[h] = j.own[h].label;
     st = measure(&j, j.V, n, fragment);

@@ -78,7 +78,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->steps, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
-  if (bw_pd_bond_settings(pi->pd)->disorder > 0)
+  if (bw_solid_settings(pi->pd)->disorder > 0)
     BW_THEN(st, BW_ALLOCATE(&pi->off_lattice, 9 * (n + ROWS)));
   /* Scratch of the particle that is resolved. */
   BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
@@ -112,7 +112,7 @@ static void place_walls(bw_pd_interface *pi)
  * restart finds the same. Collective. */
 static void measure_reference(bw_pd_interface *pi)
 {
-  const bw_pd_bond_config *c = bw_pd_bond_settings(pi->pd);
+  const bw_solid_config *c = bw_solid_settings(pi->pd);
   const double ds = c->ds;
   pi->area_new = pi->stencil.dims == 2 ? ds * c->thickness : ds * ds;
   const double least = 0.25 * pi->area_new; /* ridges of one particle still are markers */
@@ -138,7 +138,7 @@ static void measure_reference(bw_pd_interface *pi)
     total[1] += 1.0;
   }
   /* Area of the shape and number of its surface particles, on all ranks. */
-  bw_comm_sum(bw_pd_bond_comm(pi->pd), 2, total);
+  bw_comm_sum(bw_solid_comm(pi->pd), 2, total);
   pi->area_total = total[0];
   /* POROUS's choice: all alike. */
   for (size_t h = 0; pi->config.area == BW_PD_AREA_EQUAL && h < pi->n; h++)
@@ -148,32 +148,32 @@ static void measure_reference(bw_pd_interface *pi)
 static bw_status build(bw_pd_interface *pi)
 {
   BW_TRY(bw_pd_interface__stencil_create(pi->pd, &pi->stencil));
-  BW_TRY(check_config(&pi->config, pi->stencil.sectors, bw_pd_bond_settings(pi->pd)->disorder));
+  BW_TRY(check_config(&pi->config, pi->stencil.sectors, bw_solid_settings(pi->pd)->disorder));
   if (pi->config.n_empty == 0) pi->config.n_empty = pi->stencil.dims == 2 ? 2 : 1;
-  pi->opening = pi->config.threshold * bw_pd_bond_horizon(pi->pd);
+  pi->opening = pi->config.threshold * bw_solid_horizon(pi->pd);
   return allocate_arrays(pi);
 }
 
-bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *config,
+bw_status bw_pd_interface_create(bw_solid *pd, const bw_pd_interface_config *config,
                                  bw_pd_interface **out)
 {
   *out = NULL;
   bw_pd_interface *pi = NULL;
-  bw_status st = bw_comm_agree(bw_pd_bond_comm(pd), BW_ALLOCATE(&pi, 1));
+  bw_status st = bw_comm_agree(bw_solid_comm(pd), BW_ALLOCATE(&pi, 1));
   if (st == BW_OK) {
     pi->pd = pd;
     pi->config = *config;
-    pi->n = bw_pd_bond_count(pd);
-    pi->n_extended = bw_pd_bond_get_extended(pd).n;
+    pi->n = bw_solid_count(pd);
+    pi->n_extended = bw_solid_get_extended(pd).n;
     st = build(pi);
   }
   /* Collective from here on. */
-  st = bw_comm_agree(bw_pd_bond_comm(pd), st);
+  st = bw_comm_agree(bw_solid_comm(pd), st);
   if (st != BW_OK) {
     bw_pd_interface_destroy(&pi);
     return st;
   }
-  bw_pd_bond_get_reference(pd, pi->X0);
+  bw_solid_get_reference(pd, pi->X0);
   place_walls(pi);
   /* The reference shape first, as if nothing had broken ... */
   memset(pi->stale, true, pi->n * sizeof *pi->stale);

@@ -26,7 +26,7 @@
  * normals of its sites. MPI: results are of the rank's own particles. Updates cost only positions
  * and the turning of normals when no bond broke. */
 #pragma once
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 
 typedef struct bw_pd_interface bw_pd_interface;
 
@@ -44,7 +44,7 @@ typedef struct {
 bw_pd_interface_config bw_pd_interface_config_default(void);
 
 /* `pd` is borrowed until destroy. Finds the first surface. Collective. */
-bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *config,
+bw_status bw_pd_interface_create(bw_solid *pd, const bw_pd_interface_config *config,
                                  bw_pd_interface **out) BW_MUST_CHECK;
 void bw_pd_interface_destroy(bw_pd_interface **pi); /* NULL is fine. Collective. */
 

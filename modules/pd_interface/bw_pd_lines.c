@@ -127,8 +127,8 @@ static inline void dot(lanes a[3], lanes b[3], lanes out)
 
 /* Present elements a, their products c_r = a_{r+1} x a_{r+2} and det = a_r.c_r; b (NULL: not asked
  * for) the rates of the elements. */
-static void present(const bw_pd_interface *pi, size_t block, const bw_pd_bond_motion *now,
-                    lanes a[3][3], lanes (*b)[3], lanes c[3][3], lanes det)
+static void present(const bw_pd_interface *pi, size_t block, const bw_pd_motion *now, lanes a[3][3],
+                    lanes (*b)[3], lanes c[3][3], lanes det)
 {
   const bw_pd_interface__lines *l = &pi->lines[block];
   /* a_r = reference element + difference of displacements; b_r that of velocities. */
@@ -149,15 +149,15 @@ static void note_cloud(bw_pd_interface *pi, size_t row, size_t h)
   double *more = &pi->off_lattice[9 * ROWS * (row / ROWS) + row % ROWS];
   for (size_t r = 0; r < 3; r++) {
     double to[3], from[3];
-    bw_pd_bond_get_place(pi->pd, (size_t)pi->anchor[6 * h + 2 * r], to);
-    bw_pd_bond_get_place(pi->pd, (size_t)pi->anchor[6 * h + 2 * r + 1], from);
+    bw_solid_get_place(pi->pd, (size_t)pi->anchor[6 * h + 2 * r], to);
+    bw_solid_get_place(pi->pd, (size_t)pi->anchor[6 * h + 2 * r + 1], from);
     for (size_t d = 0; d < 3; d++)
       if (pi->anchor[6 * h + 2 * r] != pi->anchor[6 * h + 2 * r + 1])
         more[(3 * r + d) * ROWS] = to[d] - from[d] - s->ds * s->axes[r][d] * pi->steps[3 * h + r];
   }
 }
 
-void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *now)
+void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   const size_t blocks = (pi->n_list + ROWS - 1) / ROWS;
   if (blocks > 0) memset(pi->lines, 0, blocks * sizeof *pi->lines);
@@ -206,7 +206,7 @@ static void tell_block(const bw_pd_interface *pi, size_t block, lanes n[3])
   }
 }
 
-void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion *now)
+void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
     const bw_pd_interface__lines *l = &pi->lines[block];
@@ -238,7 +238,7 @@ static void half_inverse(lanes a[3][3], lanes det)
 
 void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
 {
-  const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, true);
+  const bw_pd_motion now = bw_solid_get_motion(pi->pd, true);
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
     lanes a[3][3], b[3][3] = {{{0}}}, c[3][3] = {{{0}}}, w[3] = {{0}}, half;
     present(pi, block, &now, a, b, c, half);
@@ -286,7 +286,7 @@ static void add_forces(const bw_pd_interface *pi, size_t block, lanes g[3][3], d
 
 void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double force[])
 {
-  const bw_pd_bond_motion now = bw_pd_bond_get_motion(pi->pd, false);
+  const bw_pd_motion now = bw_solid_get_motion(pi->pd, false);
   double *all = pi->borne;
   memset(all, 0, 3 * pi->n_extended * sizeof *all);
   for (size_t block = 0; block * ROWS < pi->n_list; block++) {
@@ -309,7 +309,7 @@ void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double fo
     add_forces(pi, block, g, all);
   }
   /* Ends on copies push their owners. */
-  bw_pd_bond_sum_extended(pi->pd, all);
+  bw_solid_sum_extended(pi->pd, all);
   for (size_t i = 0; i < 3 * pi->n; i++)
     force[i] += all[i];
 }

@@ -155,7 +155,7 @@ static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
 static void spread_change(bw_pd_interface *pi)
 {
   /* Changes on other ranks reach h through its copies. */
-  bw_pd_bond_fill_extended(pi->pd, sizeof *pi->changed, pi->changed, pi->changed);
+  bw_solid_fill_extended(pi->pd, sizeof *pi->changed, pi->changed, pi->changed);
   memcpy(pi->touched, pi->changed, pi->n * sizeof *pi->touched);
   for (size_t h = 0; h < pi->n; h++) {
     const bw_pd_interface__near *near = &pi->pool[pi->row[h]];
@@ -176,7 +176,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
 {
   const double none[3] = {0.0, 0.0, 0.0};
   /* Normals of copies, and who has to be told anew. */
-  bw_pd_bond_fill_extended(pi->pd, 3 * sizeof *from, from, from);
+  bw_solid_fill_extended(pi->pd, 3 * sizeof *from, from, from);
   spread_change(pi);
   for (size_t h = 0; h < pi->n; h++) {
     const bool there = dot(&from[3 * h], &from[3 * h]) > 0.0;

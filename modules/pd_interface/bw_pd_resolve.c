@@ -61,7 +61,7 @@ static void fill_images(bw_pd_interface *pi, size_t h)
   }
 }
 
-bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
+bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
   const bw_pd_interface_config *c = &pi->config;
   bool off = false;
@@ -79,9 +79,9 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
   const bw_pd_interface__stencil *s = &pi->stencil;
   /* Nobody is there, but for those that the solid lists. */
   memset(pi->state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
-  const int family = bw_pd_bond_links(pi->pd, h, pi->link);
+  const int family = bw_solid_links(pi->pd, h, pi->link);
   for (int q = 0; q < family; q++) {
-    const bw_pd_bond_link *l = &pi->link[q];
+    const bw_pd_link *l = &pi->link[q];
     const bool intact = l->intact || reference;
     pi->state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
     pi->near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
@@ -91,7 +91,7 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 }
 
 /* Place of a partner relative to h: at rest, and what both moved since (images the other way). */
-static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now,
+static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now,
                        const bw_pd_interface__near *near, double x[3])
 {
   memcpy(x, &pi->stencil.xi[3 * near->slot], 3 * sizeof *x);
@@ -99,7 +99,7 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_bond_mot
   const size_t l = (size_t)near->partner;
   /* In a cloud partners are not where the stencil has them. */
   if (pi->off_lattice != NULL) {
-    bw_pd_bond_get_place(pi->pd, l, x);
+    bw_solid_get_place(pi->pd, l, x);
     for (size_t d = 0; d < 3; d++)
       x[d] -= pi->X0[3 * h + d];
   }
@@ -111,7 +111,7 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_bond_mot
   }
 }
 
-void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now)
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
   for (int q = 0; q < pi->stencil.slots; q++)
     if (pi->state[q] != BW_PD_INTERFACE__ABSENT)

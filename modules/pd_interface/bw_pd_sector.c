@@ -103,15 +103,15 @@ int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[
   return s->slot_at[slot_index(s, o)];
 }
 
-bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface__stencil *s)
+bw_status bw_pd_interface__stencil_create(const bw_solid *pd, bw_pd_interface__stencil *s)
 {
-  const bw_pd_bond_config *c = bw_pd_bond_settings(pd);
+  const bw_solid_config *c = bw_solid_settings(pd);
   memset(s, 0, sizeof *s);
   s->dims = c->geometry == BW_PD_3D ? 3 : 2;
   s->ds = c->ds;
   s->family = c->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
-  s->slots = bw_pd_bond_max_family(pd);
+  s->slots = bw_solid_max_family(pd);
   /* A cloud's partners may stand in sites beyond the horizon, by twice the disorder. */
   s->reach = (int)floor(c->horizon_ratio + 0.5 + 2.0 * c->disorder);
   const size_t n = (size_t)s->slots, w = (size_t)(2 * s->reach + 1);
@@ -126,8 +126,8 @@ bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface_
   /* Every direction of the solid's stencil finds its sectors, once. */
   for (int q = 0; q < s->slots; q++) {
     int o[3];
-    memcpy(&s->xi[3 * q], bw_pd_bond_stencil_offset(pd, q), 3 * sizeof(double));
-    s->fraction[q] = bw_pd_bond_stencil_fraction(pd, q);
+    memcpy(&s->xi[3 * q], bw_solid_stencil_offset(pd, q), 3 * sizeof(double));
+    s->fraction[q] = bw_solid_stencil_fraction(pd, q);
     const bool on = lattice_offset(s, &s->xi[3 * q], o);
     BW_ASSERT(on);
     (void)on;

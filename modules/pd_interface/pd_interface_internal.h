@@ -18,7 +18,7 @@ typedef struct {
   double direction[BW_PD_INTERFACE__SECTORS][3]; /* middle of the sector, unit */
 } bw_pd_interface__stencil;
 
-bw_status bw_pd_interface__stencil_create(const bw_pd_bond *pd, bw_pd_interface__stencil *s);
+bw_status bw_pd_interface__stencil_create(const bw_solid *pd, bw_pd_interface__stencil *s);
 void bw_pd_interface__stencil_release(bw_pd_interface__stencil *s);
 
 /* Slot of the direction xi [L]; -1: none, -2: xi is no lattice offset (within ds/4). Local. */
@@ -50,7 +50,7 @@ typedef struct {
 enum { BW_PD_INTERFACE__PASSES = 4 };
 
 struct bw_pd_interface {
-  bw_pd_bond *pd; /* borrowed */
+  bw_solid *pd; /* borrowed */
   bw_pd_interface_config config;
   bw_pd_interface__stencil stencil;
   size_t n, n_extended; /* own particles; own and copies */
@@ -80,7 +80,7 @@ struct bw_pd_interface {
   int32_t *gap;     /* (n_gap) those that are */
   size_t n_gap;
 
-  bw_pd_bond_link *link;       /* (slots) scratch, of the particle resolved last, as are: */
+  bw_pd_link *link;            /* (slots) scratch, of the particle resolved last, as are: */
   uint8_t *state;              /* (slots) enum below */
   bw_pd_interface__near *near; /* (slots) who is there, where state is not ABSENT */
   double *place;               /* (slots,3) relative to the particle */
@@ -113,7 +113,7 @@ enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN
 void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference);
 
 /* Fills place of the particle resolved last, h; now NULL: in the reference shape. */
-void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
+void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *now);
 
 /* Of the particle resolved last: bits of the sectors where nothing intact is, and of those where
  * nothing ever was; located too: bits of its empty sectors (3.42). Local. */
@@ -132,7 +132,7 @@ double bw_pd_interface__open_area(const bw_pd_interface *pi);
 double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]);
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
-bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
+bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now);
 
 /* bw_pd_normal.c. Of h, resolved last: its normal 3.45 (where partners balance that of the
  * reference shape, if there is none that of its empty sectors). */
@@ -143,11 +143,11 @@ void bw_pd_interface__settle_normals(bw_pd_interface *pi);
 /* bw_pd_lines.c. Of h, resolved last: where its line elements end. */
 void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);
 /* The lines of the listed surface and what they hold of own_normal. */
-void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_bond_motion *now);
+void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_motion *now);
 /* list_normal: own_normal turned with the body. */
-void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_bond_motion *now);
+void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_motion *now);
 
 /* bw_pd_follow.c: is h, resolved last, surface? now NULL: in the reference shape. */
-bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_bond_motion *now);
+bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *now);
 /* The list of surface particles, its areas, and rows, normals 3.45, anchors of the stale ones. */
 void bw_pd_interface__renew(bw_pd_interface *pi, bool reference);

@@ -1,4 +1,4 @@
-/* bw_pd_bond.h -- bond-based peridynamic solid: particles, bonds, damage, explicit dynamics.
+/* bw_solid.h -- bond-based peridynamic solid: particles, bonds, damage, explicit dynamics.
  *
  *   rho X'' = L + F + C + D,   L_h = sum_l c0 alpha_hl lambda_hl s_hl e_hl Gamma_hl dV_l
  * with stretch s = (|xi+eta|-|xi|)/|xi| and e the present bond direction (POROUS 3.29-3.51, read
@@ -6,7 +6,7 @@
  * Verlet that of the half-step velocity.
  * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
  * With `disorder` it is a cloud instead: X0 is off that place in a random direction, by disorder
- * ds and then less where neighbours nearer than 0.9 ds push each other apart (pd_bond_cloud.c); the
+ * ds and then less where neighbours nearer than 0.9 ds push each other apart (pd_cloud.c); the
  * same for the same site, seed and axes, whatever else there is. All particles keep the volume of
  * a cell; families and xi are those of the true places.
  * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
@@ -23,14 +23,10 @@
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
 
-typedef struct bw_pd_bond bw_pd_bond;
-/* Names of the front before they move to the body. */
-typedef bw_pd_link bw_pd_bond_link;
-typedef bw_pd_extended bw_pd_bond_extended;
-typedef bw_pd_motion bw_pd_bond_motion;
+typedef struct bw_solid bw_solid;
 
 /* Time integrator. */
-typedef enum { BW_PD_VERLET, BW_PD_RK3 } bw_pd_integrator;
+typedef enum { BW_SOLID_VERLET, BW_SOLID_RK3 } bw_solid_integrator;
 
 typedef struct {
   bw_pd_geometry geometry; /*                                      default 3D */
@@ -54,40 +50,40 @@ typedef struct {
   double disorder;       /* particles start up to this many ds off their sites, 0.4 at most; then
                             volume_fraction is linear or none, 2D and 3D     default 0 */
   int32_t disorder_seed; /* another number, another cloud                    default 0 */
-  bw_pd_integrator integrator; /* default Verlet */
-  double damping_pair;         /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
-  double damping_mean;         /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
-  double damping_absolute;     /* -k V (settling) [M/(L^3 T)]          default 0 */
-  bool contact;                /* repulsion of particles nearer than ds that no intact bond joins
+  bw_solid_integrator integrator; /* default Verlet */
+  double damping_pair;            /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
+  double damping_mean;            /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
+  double damping_absolute;        /* -k V (settling) [M/(L^3 T)]          default 0 */
+  bool contact;                   /* repulsion of particles nearer than ds that no intact bond joins
                                   (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
-  double origin[3];            /* of the lattice [L]                   default 0 */
-  double axes[3][3];           /* rows: lattice directions             default identity */
+  double origin[3];               /* of the lattice [L]                   default 0 */
+  double axes[3][3];              /* rows: lattice directions             default identity */
   double period[3]; /* periodic length per direction [L], 0: not periodic. Must be a whole
                        number of ds along that axis         default 0 */
-} bw_pd_bond_config;
+} bw_solid_config;
 
-bw_pd_bond_config bw_pd_bond_config_default(void);
+bw_solid_config bw_solid_config_default(void);
 
 /* Build particles, families and bonds of the lattice sites that the ranks give, each its part (see
  * bw_pd_sites). BW_EINPUT names the field; two particles on one site are an error; BW_EMEM.
  * `comm` is borrowed until destroy. *out is the caller's, NULL after a failure. Collective. */
-bw_status bw_solid_create(const bw_comm *comm, const bw_pd_bond_config *config,
-                          const bw_pd_sites *given, bw_pd_bond **out) BW_MUST_CHECK;
+bw_status bw_solid_create(const bw_comm *comm, const bw_solid_config *config,
+                          const bw_pd_sites *given, bw_solid **out) BW_MUST_CHECK;
 /* The same for a small body that every rank has the whole list of: site (n,3), kind (n) or NULL, the
  * same on all ranks; each takes its share. Collective. */
-bw_status bw_solid_create_same(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
+bw_status bw_solid_create_same(const bw_comm *comm, const bw_solid_config *config, int64_t n,
                                const int32_t site[], const uint8_t kind[],
-                               bw_pd_bond **out) BW_MUST_CHECK;
-void bw_pd_bond_destroy(bw_pd_bond **pd); /* NULL is fine. Collective. */
+                               bw_solid **out) BW_MUST_CHECK;
+void bw_solid_destroy(bw_solid **pd); /* NULL is fine. Collective. */
 
 /* Break the bonds that cross a segment (2D: from a to b; ends included) or a parallelogram with
  * corner a and edges b-a, c-a (3D; pass c = NULL in 2D). Unbreakable ones too. Collective. */
-bw_status bw_pd_bond_precrack(bw_pd_bond *pd, const double a[3], const double b[3],
-                              const double c[3]) BW_MUST_CHECK;
+bw_status bw_solid_precrack(bw_solid *pd, const double a[3], const double b[3],
+                            const double c[3]) BW_MUST_CHECK;
 
-void bw_pd_bond_enable_breakage(bw_pd_bond *pd, bool on); /* default on. Local. */
-void bw_pd_bond_set_damping(bw_pd_bond *pd, double pair, double mean, double absolute); /* Local */
-void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0); /* new s0. Local. */
+void bw_solid_enable_breakage(bw_solid *pd, bool on); /* default on. Local. */
+void bw_solid_set_damping(bw_solid *pd, double pair, double mean, double absolute); /* Local */
+void bw_solid_set_G0(bw_solid *pd, double G0); /* new s0. Local. */
 
 /* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
  * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by
@@ -97,110 +93,110 @@ void bw_pd_bond_set_G0(bw_pd_bond *pd, double G0); /* new s0. Local. */
  * foundation). BW_EINPUT without contact, when n > BW_PD_WALLS, a normal is no unit vector, or a
  * free particle is beyond the wall. BW_EDIVERGED of a step when one was thrown through.
  * Collective. */
-bw_status bw_pd_bond_set_walls(bw_pd_bond *pd, int n, const bw_pd_wall wall[]) BW_MUST_CHECK;
+bw_status bw_solid_set_walls(bw_solid *pd, int n, const bw_pd_wall wall[]) BW_MUST_CHECK;
 
 /* Take own particles (those with gone[i], n) out of the mechanics for good, whole pieces of them:
  * they keep their velocity, no force acts on them or comes from them, and what they stored is
  * booked. Their bonds and damage stay as they are. They carry BW_PD_RETIRED in
- * bw_pd_bond_kind. Collective. */
-bw_status bw_pd_bond_retire(bw_pd_bond *pd, const bool gone[]) BW_MUST_CHECK;
+ * bw_solid_kind. Collective. */
+bw_status bw_solid_retire(bw_solid *pd, const bool gone[]) BW_MUST_CHECK;
 
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
-void bw_pd_bond_set_force(bw_pd_bond *pd, const double F[]);
+void bw_solid_set_force(bw_solid *pd, const double F[]);
 /* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored), from the next step
  * on; copied. set_state and set_restart give them the velocity of their rows. Local. */
-void bw_pd_bond_set_prescribed(bw_pd_bond *pd, const double V[]);
+void bw_solid_set_prescribed(bw_solid *pd, const double V[]);
 
 /* One step of dt [T]. BW_ECFL when dt > dt_max; BW_EDIVERGED when a particle is not finite or
  * moves more than one horizon in the step (RK3: in a sub-step); names the particle, its place.
  * Collective. */
-bw_status bw_pd_bond_step(bw_pd_bond *pd, double dt) BW_MUST_CHECK;
+bw_status bw_solid_step(bw_solid *pd, double dt) BW_MUST_CHECK;
 
 /* Largest stable step of the intact network with its damping at small strain [T]: a bound below
  * that of ERRATA 6 by its square root of three (two in the plane), see pd_bond_bounds.c; contact
  * not counted; the same on all ranks. Local. */
-double bw_pd_bond_dt_max(const bw_pd_bond *pd);
+double bw_solid_dt_max(const bw_solid *pd);
 /* Step that resolves a collision of two particles [T], 1/w of their oscillation: they part with
  * 0.9 to 1.1 of their speed and keep their energy to 1 % in the mean; at 1.6/w they gain two thirds
  * of it. Twelve touching neighbours are stable to this step, and with bonds as well to
  * (1/dt_max^2 + 1/dt_contact^2)^(-1/2). INFINITY without contact. Local. */
-double bw_pd_bond_dt_contact(const bw_pd_bond *pd);
+double bw_solid_dt_contact(const bw_solid *pd);
 
 /* Forces at the present motion: what a step begins with when something was set. BW_EDIVERGED when a
  * particle is beyond a wall. Collective. */
-bw_status bw_pd_bond_evaluate(bw_pd_bond *pd) BW_MUST_CHECK;
+bw_status bw_solid_evaluate(bw_solid *pd) BW_MUST_CHECK;
 
 /* Views, borrowed until the next step, restart or destroy. Local. */
-size_t bw_pd_bond_count(const bw_pd_bond *pd);        /* particles of this rank */
-int64_t bw_pd_bond_total(const bw_pd_bond *pd);       /* of all ranks */
-const int64_t *bw_pd_bond_id(const bw_pd_bond *pd);   /* (n) global ids */
-const uint8_t *bw_pd_bond_kind(const bw_pd_bond *pd); /* (n) */
-const bw_pd_bond_config *bw_pd_bond_settings(const bw_pd_bond *pd);
-const bw_comm *bw_pd_bond_comm(const bw_pd_bond *pd); /* of create, borrowed */
-double bw_pd_bond_horizon(const bw_pd_bond *pd);
-double bw_pd_bond_micromodulus(const bw_pd_bond *pd);     /* c0 [M/(L^7 T^2)] */
-double bw_pd_bond_critical_stretch(const bw_pd_bond *pd); /* s0 [-] */
-double bw_pd_bond_volume(const bw_pd_bond *pd);           /* of one particle [L^3] */
-bw_pd_body *bw_pd_bond_body(const bw_pd_bond *pd);        /* for laws and tools, borrowed */
+size_t bw_solid_count(const bw_solid *pd);        /* particles of this rank */
+int64_t bw_solid_total(const bw_solid *pd);       /* of all ranks */
+const int64_t *bw_solid_id(const bw_solid *pd);   /* (n) global ids */
+const uint8_t *bw_solid_kind(const bw_solid *pd); /* (n) */
+const bw_solid_config *bw_solid_settings(const bw_solid *pd);
+const bw_comm *bw_solid_comm(const bw_solid *pd); /* of create, borrowed */
+double bw_solid_horizon(const bw_solid *pd);
+double bw_solid_micromodulus(const bw_solid *pd);     /* c0 [M/(L^7 T^2)] */
+double bw_solid_critical_stretch(const bw_solid *pd); /* s0 [-] */
+double bw_solid_volume(const bw_solid *pd);           /* of one particle [L^3] */
+bw_pd_body *bw_solid_body(const bw_solid *pd);        /* for laws and tools, borrowed */
 
 /* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
  * Local. */
-void bw_pd_bond_get_reference(const bw_pd_bond *pd, double X0[]);
-void bw_pd_bond_get_position(const bw_pd_bond *pd, double X[]);
-void bw_pd_bond_get_velocity(const bw_pd_bond *pd, double V[]);
-void bw_pd_bond_get_acceleration(const bw_pd_bond *pd, double A[]); /* of the last step */
-void bw_pd_bond_get_damage(const bw_pd_bond *pd, double damage[]);  /* 3.28: 0 .. 1, by volume */
-void bw_pd_bond_set_state(bw_pd_bond *pd, const double X[], const double V[]); /* Collective */
+void bw_solid_get_reference(const bw_solid *pd, double X0[]);
+void bw_solid_get_position(const bw_solid *pd, double X[]);
+void bw_solid_get_velocity(const bw_solid *pd, double V[]);
+void bw_solid_get_acceleration(const bw_solid *pd, double A[]); /* of the last step */
+void bw_solid_get_damage(const bw_solid *pd, double damage[]);  /* 3.28: 0 .. 1, by volume */
+void bw_solid_set_state(bw_solid *pd, const double X[], const double V[]); /* Collective */
 
 /* The bonds of particle h (0 <= h < n), for those who need them one by one (surface detection,
- * fragments): writes up to bw_pd_bond_max_family rows and returns how many. `neighbour` is an
+ * fragments): writes up to bw_solid_max_family rows and returns how many. `neighbour` is an
  * index into the extended arrays of get_extended (own particles first, then copies of other
  * ranks' particles and periodic images), `slot` the number of the bond's direction in the stencil
  * (the same for the same lattice offset everywhere), `intact` whether it still holds. Local. */
-int bw_pd_bond_max_family(const bw_pd_bond *pd);
-int bw_pd_bond_links(const bw_pd_bond *pd, size_t h, bw_pd_link link[]);
-const double *bw_pd_bond_stencil_offset(const bw_pd_bond *pd, int slot); /* xi [L], [3] */
-double bw_pd_bond_stencil_fraction(const bw_pd_bond *pd, int slot);      /* Gamma [-] */
+int bw_solid_max_family(const bw_solid *pd);
+int bw_solid_links(const bw_solid *pd, size_t h, bw_pd_link link[]);
+const double *bw_solid_stencil_offset(const bw_solid *pd, int slot); /* xi [L], [3] */
+double bw_solid_stencil_fraction(const bw_solid *pd, int slot);      /* Gamma [-] */
 
 /* Own particles and copies. id: global id; X: present position, copies shifted to where they act.
  * n_extended >= count; borrowed until the next step. Collective (updates the copies). */
-bw_pd_extended bw_pd_bond_get_extended(bw_pd_bond *pd);
+bw_pd_extended bw_solid_get_extended(bw_solid *pd);
 /* Reference place of one of them, copies where they act [L]. Local. */
-void bw_pd_bond_get_place(const bw_pd_bond *pd, size_t extended, double X0[3]);
+void bw_solid_get_place(const bw_solid *pd, size_t extended, double X0[3]);
 
 /* The motion of own particles and copies, to be read where the solid keeps it: that of the extended
  * particle e at place[e]. u: displacement [L]; v: velocity [L/T], only if asked for (an exchange).
  * Borrowed until the next step. Collective (updates the copies). */
-bw_pd_motion bw_pd_bond_get_motion(bw_pd_bond *pd, bool velocity);
+bw_pd_motion bw_solid_get_motion(bw_solid *pd, bool velocity);
 
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
  * Collective. */
-void bw_pd_bond_fill_extended(bw_pd_bond *pd, size_t bytes, const void *own, void *all);
+void bw_solid_fill_extended(bw_solid *pd, size_t bytes, const void *own, void *all);
 /* The way back: adds the copies' vectors of all (n_extended,3) to those of their owners, which come
  * first. Collective. */
-void bw_pd_bond_sum_extended(bw_pd_bond *pd, double *all);
+void bw_solid_sum_extended(bw_solid *pd, double *all);
 
 /* Bytes of this rank's bond lists (slots and blocks). Local. */
-size_t bw_pd_bond_list_bytes(const bw_pd_bond *pd);
+size_t bw_solid_list_bytes(const bw_solid *pd);
 
 /* Raised when particles were retired or changed: whoever keeps lists of particles makes them anew.
  * The same on all ranks. Local. */
-int64_t bw_pd_bond_revision(const bw_pd_bond *pd);
+int64_t bw_solid_revision(const bw_solid *pd);
 
 /* Counts bond-breaking events of this rank so far (pre-cracks and set_bits too, which may also
  * mend): unchanged means nothing to update. Local. */
-int64_t bw_pd_bond_events(const bw_pd_bond *pd);
+int64_t bw_solid_events(const bw_solid *pd);
 
 /* broken[count] <- broken bonds of each own particle (never falls, but by set_bits). Local. */
-void bw_pd_bond_get_broken(const bw_pd_bond *pd, uint16_t broken[]);
+void bw_solid_get_broken(const bw_solid *pd, uint16_t broken[]);
 
-#define BW_PD_TOO_CLOSE 0.6
+#define BW_SOLID_TOO_CLOSE 0.6
 
 typedef struct {
   double kinetic, elastic;        /* [M L^2/T^2] present */
   double contact;                 /* elastic energy of contact, with walls too, present */
   double closest;                 /* least distance of a pair in contact so far, over ds; INFINITY:
-                                     none. Below BW_PD_TOO_CLOSE a particle may have passed
+                                     none. Below BW_SOLID_TOO_CLOSE a particle may have passed
                                      between others: the impact is too violent for this ds. */
   double retired;                 /* elastic energy of bonds when their particles were retired */
   double damping, fracture;       /* dissipated since the start (or restart's stored value) */
@@ -210,22 +206,22 @@ typedef struct {
   double wall[3];                 /* impulse given to the walls since the start [M L/T] */
   int64_t bonds, broken;          /* undirected bonds: at the start without those a pre-crack cut;
                                      broken by stretch since */
-} bw_pd_bond_ledger;
+} bw_solid_ledger;
 /* Evaluates the forces first where the state was changed since. BW_EDIVERGED when a particle is
  * beyond a wall, BW_EMEM; *out is then left as it was. Collective. */
-bw_status bw_pd_bond_account(bw_pd_bond *pd, bw_pd_bond_ledger *out) BW_MUST_CHECK;
+bw_status bw_solid_account(bw_solid *pd, bw_solid_ledger *out) BW_MUST_CHECK;
 
 /* State for a checkpoint: rows of `bytes` per particle holding its bonds' bits in stencil order
  * (the same on any number of ranks). Collective on loading. */
-size_t bw_pd_bond_bits_bytes(const bw_pd_bond *pd);
-void bw_pd_bond_get_bits(const bw_pd_bond *pd, uint8_t bits[]);
-bw_status bw_pd_bond_set_bits(bw_pd_bond *pd, const uint8_t bits[]) BW_MUST_CHECK;
-enum { BW_PD_RESTART_ROW = 13, BW_PD_RESTART_SUMS = 11 };
+size_t bw_solid_bits_bytes(const bw_solid *pd);
+void bw_solid_get_bits(const bw_solid *pd, uint8_t bits[]);
+bw_status bw_solid_set_bits(bw_solid *pd, const uint8_t bits[]) BW_MUST_CHECK;
+enum { BW_SOLID_RESTART_ROW = 13, BW_SOLID_RESTART_SUMS = 11 };
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
  * part, 1 when retired (n,13), and the ledger's running sums of all ranks (11: damping, fracture,
  * external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them). Set bits
  * and rows, in any order, then force and prescribed velocities: the run goes on to the same bits.
  * Both collective. */
-void bw_pd_bond_get_restart(const bw_pd_bond *pd, double rows[], double sums[]);
-bw_status bw_pd_bond_set_restart(bw_pd_bond *pd, const double rows[],
-                                 const double sums[]) BW_MUST_CHECK;
+void bw_solid_get_restart(const bw_solid *pd, double rows[], double sums[]);
+bw_status bw_solid_set_restart(bw_solid *pd, const double rows[],
+                               const double sums[]) BW_MUST_CHECK;

@@ -21,12 +21,12 @@ static void motion(const bw_pd_body *pd, double book[7])
   }
 }
 
-bw_status bw_pd_bond_account(bw_pd_bond *s, bw_pd_bond_ledger *out)
+bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
 {
   bw_pd_body *pd = s->body;
   double book[17] = {0};
   int64_t count[3] = {pd->bonds.directed, 0, s->book.precracked};
-  if (!pd->current) BW_TRY(bw_pd_bond_evaluate(s));
+  if (!pd->current) BW_TRY(bw_solid_evaluate(s));
   if (s->contact != NULL) BW_TRY(bw_comm_agree(pd->comm, bw_pd_contact_update(s->contact)));
   motion(pd, book);
   book[7] = bw_pd_body_elastic(pd);
@@ -44,19 +44,19 @@ bw_status bw_pd_bond_account(bw_pd_bond *s, bw_pd_bond_ledger *out)
   bw_comm_min(pd->comm, 1, &closest);
   bw_comm_sum(pd->comm, 17, book);
   bw_comm_sum_int(pd->comm, 3, count);
-  *out = (bw_pd_bond_ledger){.kinetic = book[0],
-                             .momentum = {book[1], book[2], book[3]},
-                             .angular = {book[4], book[5], book[6]},
-                             .elastic = book[7],
-                             .contact = book[8],
-                             .closest = closest,
-                             .damping = book[9],
-                             .fracture = book[10],
-                             .external = book[11],
-                             .retired = book[12],
-                             .plastic = book[16],
-                             .wall = {book[13], book[14], book[15]},
-                             .bonds = (count[0] - count[2]) / 2,
-                             .broken = (count[1] - count[2]) / 2};
+  *out = (bw_solid_ledger){.kinetic = book[0],
+                           .momentum = {book[1], book[2], book[3]},
+                           .angular = {book[4], book[5], book[6]},
+                           .elastic = book[7],
+                           .contact = book[8],
+                           .closest = closest,
+                           .damping = book[9],
+                           .fracture = book[10],
+                           .external = book[11],
+                           .retired = book[12],
+                           .plastic = book[16],
+                           .wall = {book[13], book[14], book[15]},
+                           .bonds = (count[0] - count[2]) / 2,
+                           .broken = (count[1] - count[2]) / 2};
   return BW_OK;
 }

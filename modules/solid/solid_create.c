@@ -5,44 +5,44 @@
 #include <math.h>
 #include <string.h>
 
-bw_pd_bond_config bw_pd_bond_config_default(void)
+bw_solid_config bw_solid_config_default(void)
 {
-  bw_pd_bond_config c = {.geometry = BW_PD_3D,
-                         .ds = NAN,
-                         .thickness = 1,
-                         .horizon_ratio = 3,
-                         .rho = NAN,
-                         .E = NAN,
-                         .nu = NAN,
-                         .G0 = INFINITY,
-                         .volume_fraction = BW_PD_FRACTION_DEFAULT,
-                         .surface_correction = BW_PD_SURFACE_VOLUME,
-                         .integrator = BW_PD_VERLET,
-                         .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  bw_solid_config c = {.geometry = BW_PD_3D,
+                       .ds = NAN,
+                       .thickness = 1,
+                       .horizon_ratio = 3,
+                       .rho = NAN,
+                       .E = NAN,
+                       .nu = NAN,
+                       .G0 = INFINITY,
+                       .volume_fraction = BW_PD_FRACTION_DEFAULT,
+                       .surface_correction = BW_PD_SURFACE_VOLUME,
+                       .integrator = BW_SOLID_VERLET,
+                       .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (int g = 0; g < BW_PD_GROUPS; g++)
     for (int h = 0; h < BW_PD_GROUPS; h++)
       c.joint_G0[g][h] = NAN;
   return c;
 }
 
-static bw_status check_config(const bw_pd_bond_config *c)
+static bw_status check_config(const bw_solid_config *c)
 {
   const double value[] = {c->damping_pair, c->damping_mean, c->damping_absolute};
   const char *name[] = {"damping_pair", "damping_mean", "damping_absolute"};
-  BW_REQUIRE((unsigned)c->integrator <= BW_PD_RK3, BW_EINPUT, "pd_bond: integrator = %d is unknown",
-             (int)c->integrator);
+  BW_REQUIRE((unsigned)c->integrator <= BW_SOLID_RK3, BW_EINPUT,
+             "solid: integrator = %d is unknown", (int)c->integrator);
   BW_REQUIRE(c->n_more >= 0 && c->n_more < BW_PD_GROUPS, BW_EINPUT,
-             "pd_bond: n_more = %d must be from 0 to %d", c->n_more, BW_PD_GROUPS - 1);
+             "solid: n_more = %d must be from 0 to %d", c->n_more, BW_PD_GROUPS - 1);
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
-               "pd_bond: %s = %g must be zero or positive", name[q], value[q]);
+               "solid: %s = %g must be zero or positive", name[q], value[q]);
   for (int a = 0; a < 3; a++)
     BW_REQUIRE(c->period[a] == 0 || !c->contact || c->period[a] / c->ds > 3.5, BW_EINPUT,
-               "pd_bond: period[%d] = %g with contact needs at least 4 ds", a, c->period[a]);
+               "solid: period[%d] = %g with contact needs at least 4 ds", a, c->period[a]);
   return BW_OK;
 }
 
-static bw_pd_body_config body_config(const bw_pd_bond_config *c)
+static bw_pd_body_config body_config(const bw_solid_config *c)
 {
   bw_pd_body_config b = {.geometry = c->geometry,
                          .ds = c->ds,
@@ -63,21 +63,21 @@ static bw_pd_body_config body_config(const bw_pd_bond_config *c)
   return b;
 }
 
-static bw_status own_arrays(bw_pd_bond *s)
+static bw_status own_arrays(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   BW_TRY(BW_ALLOCATE(&s->retired, pd->n));
   if (s->config.contact) BW_TRY(bw_pd_contact_create(pd, &s->contact));
-  for (int k = 0; k < 3 && s->config.integrator == BW_PD_RK3; k++) {
+  for (int k = 0; k < 3 && s->config.integrator == BW_SOLID_RK3; k++) {
     BW_TRY(BW_ALLOCATE(&s->v_before[k], pd->n));
     BW_TRY(BW_ALLOCATE(&s->a_before[k], pd->n));
   }
   return BW_OK;
 }
 
-static bw_status build(bw_pd_bond *s, const bw_comm *comm, const bw_pd_sites *given)
+static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *given)
 {
-  bw_pd_bond_config *c = &s->config;
+  bw_solid_config *c = &s->config;
   const bw_pd_body_config body = body_config(c);
   const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
   const bool own = c->law != NULL && c->law != &bw_pd_bond_law;
@@ -89,10 +89,10 @@ static bw_status build(bw_pd_bond *s, const bw_comm *comm, const bw_pd_sites *gi
   return bw_comm_agree(comm, own_arrays(s));
 }
 
-bw_status bw_solid_create(const bw_comm *comm, const bw_pd_bond_config *config,
-                          const bw_pd_sites *given, bw_pd_bond **out)
+bw_status bw_solid_create(const bw_comm *comm, const bw_solid_config *config,
+                          const bw_pd_sites *given, bw_solid **out)
 {
-  bw_pd_bond *s = NULL;
+  bw_solid *s = NULL;
   *out = NULL;
   bw_status st = BW_ALLOCATE(&s, 1);
   BW_THEN(st, check_config(config));
@@ -101,13 +101,13 @@ bw_status bw_solid_create(const bw_comm *comm, const bw_pd_bond_config *config,
     s->config = *config;
     st = build(s, comm, given);
   }
-  if (st != BW_OK) bw_pd_bond_destroy(&s);
+  if (st != BW_OK) bw_solid_destroy(&s);
   *out = s;
   return st;
 }
 
-bw_status bw_solid_create_same(const bw_comm *comm, const bw_pd_bond_config *config, int64_t n,
-                               const int32_t site[], const uint8_t kind[], bw_pd_bond **out)
+bw_status bw_solid_create_same(const bw_comm *comm, const bw_solid_config *config, int64_t n,
+                               const int32_t site[], const uint8_t kind[], bw_solid **out)
 {
   const int64_t rank = bw_comm_rank(comm), size = bw_comm_size(comm);
   const int64_t all = n > 0 && site != NULL ? n : 0;
@@ -119,9 +119,9 @@ bw_status bw_solid_create_same(const bw_comm *comm, const bw_pd_bond_config *con
   return bw_solid_create(comm, config, &part, out);
 }
 
-void bw_pd_bond_destroy(bw_pd_bond **solid)
+void bw_solid_destroy(bw_solid **solid)
 {
-  bw_pd_bond *s = *solid;
+  bw_solid *s = *solid;
   if (s == NULL) return;
   bw_pd_contact_destroy(&s->contact);
   bw_pd_body_destroy(&s->body);

@@ -12,8 +12,8 @@ typedef struct {
   int64_t precracked; /* bonds cut by pre-cracks, from both ends */
 } bw_solid_book;
 
-struct bw_pd_bond {
-  bw_pd_bond_config config; /* as it was asked for, defaults resolved */
+struct bw_solid {
+  bw_solid_config config; /* as it was asked for, defaults resolved */
   bw_pd_body *body;
   bw_pd_contact *contact;             /* NULL: none */
   bw_real *v_before[3], *a_before[3]; /* (n) RK3's previous stage */
@@ -26,13 +26,13 @@ struct bw_pd_bond {
 
 /* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. leap: BW_EDIVERGED when
  * a particle moved more than a horizon. */
-bw_status bw_solid__begin(bw_pd_bond *s) BW_MUST_CHECK;
-bw_status bw_solid__leap(bw_pd_bond *s, double dt) BW_MUST_CHECK;
-void bw_solid__land(bw_pd_bond *s, double dt);
-void bw_solid__end(bw_pd_bond *s);
+bw_status bw_solid__begin(bw_solid *s) BW_MUST_CHECK;
+bw_status bw_solid__leap(bw_solid *s, double dt) BW_MUST_CHECK;
+void bw_solid__land(bw_solid *s, double dt);
+void bw_solid__end(bw_solid *s);
 /* Forces at the present u (and v for damping). Collective. */
-bw_status bw_solid__evaluate(bw_pd_bond *s, bool check) BW_MUST_CHECK;
+bw_status bw_solid__evaluate(bw_solid *s, bool check) BW_MUST_CHECK;
 
 /* solid_retire.c */
-void bw_solid__retire_rows(bw_pd_bond *s, const double rows[]); /* of a restart; Collective */
-void bw_solid__still_retired(bw_pd_bond *s);                    /* no force on them */
+void bw_solid__retire_rows(bw_solid *s, const double rows[]); /* of a restart; Collective */
+void bw_solid__still_retired(bw_solid *s);                    /* no force on them */

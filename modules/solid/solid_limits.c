@@ -5,7 +5,7 @@
 
 /* Verlet with lagged damping is stable for w^2 dt^2 + 2 g dt < 4; the stability region of RK3 holds
  * the triangle i sqrt(3), -2.51. */
-double bw_pd_bond_dt_max(const bw_pd_bond *s)
+double bw_solid_dt_max(const bw_solid *s)
 {
   const bw_pd_body *pd = s->body;
   const bw_pd_dampings *d = &pd->damping;
@@ -15,11 +15,11 @@ double bw_pd_bond_dt_max(const bw_pd_bond *s)
     rho = fmin(rho, pd->config.material[g].rho);
   const double w = sqrt(pd->frequency2);
   const double g = (2 * d->pair * d->most_weight + 2 * d->mean + d->absolute) / rho;
-  if (s->config.integrator == BW_PD_RK3) return 1 / (w / sqrt(3.0) + g / 2.51);
+  if (s->config.integrator == BW_SOLID_RK3) return 1 / (w / sqrt(3.0) + g / 2.51);
   return 4 / (g + sqrt(g * g + 4 * w * w));
 }
 
-double bw_pd_bond_dt_contact(const bw_pd_bond *s)
+double bw_solid_dt_contact(const bw_solid *s)
 {
   return s->contact == NULL ? INFINITY : bw_pd_contact_time(s->contact);
 }

@@ -28,7 +28,7 @@ static bw_status make_cut(const bw_pd_body *pd, const double a[3], const double 
 {
   const bool planar = pd->dimension == 2;
   BW_REQUIRE(planar || c != NULL, BW_EINPUT,
-             "pd_bond_precrack: in 3D a crack is a parallelogram; give its third corner c");
+             "solid_precrack: in 3D a crack is a parallelogram; give its third corner c");
   for (int k = 0; k < 3; k++) {
     out->a[k] = a[k];
     out->e1[k] = planar && k == 2 ? 0 : b[k] - a[k];
@@ -37,7 +37,7 @@ static bw_status make_cut(const bw_pd_body *pd, const double a[3], const double 
   cross(out->e1, out->e2, out->normal);
   const double area = sqrt(dot(out->normal, out->normal)), ds = pd->level->ds;
   BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT,
-             "pd_bond_precrack: the crack at (%g, %g, %g) has no extent", a[0], a[1], a[2]);
+             "solid_precrack: the crack at (%g, %g, %g) has no extent", a[0], a[1], a[2]);
   for (int k = 0; k < 3; k++)
     out->normal[k] /= area;
   out->planar = planar;
@@ -96,7 +96,7 @@ static bool crosses_image(const bw_pd_body *pd, const cut *c, const double p[3],
   return false;
 }
 
-static void cut_block(bw_pd_bond *s, bw_pd_block *block, const cut *c)
+static void cut_block(bw_solid *s, bw_pd_block *block, const cut *c)
 {
   bw_pd_body *pd = s->body;
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
@@ -112,8 +112,7 @@ static void cut_block(bw_pd_bond *s, bw_pd_block *block, const cut *c)
   }
 }
 
-bw_status bw_pd_bond_precrack(bw_pd_bond *s, const double a[3], const double b[3],
-                              const double c[3])
+bw_status bw_solid_precrack(bw_solid *s, const double a[3], const double b[3], const double c[3])
 {
   bw_pd_body *pd = s->body;
   cut crack;

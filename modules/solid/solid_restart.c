@@ -3,15 +3,15 @@
 
 #include <string.h>
 
-size_t bw_pd_bond_bits_bytes(const bw_pd_bond *s)
+size_t bw_solid_bits_bytes(const bw_solid *s)
 {
   return ((size_t)s->body->level->stencil.n + 7) / 8;
 }
 
-void bw_pd_bond_get_bits(const bw_pd_bond *s, uint8_t bits[])
+void bw_solid_get_bits(const bw_solid *s, uint8_t bits[])
 {
   const bw_pd_body *pd = s->body;
-  const size_t bytes = bw_pd_bond_bits_bytes(s);
+  const size_t bytes = bw_solid_bits_bytes(s);
   memset(bits, 0, pd->n * bytes);
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++)
@@ -23,10 +23,10 @@ void bw_pd_bond_get_bits(const bw_pd_bond *s, uint8_t bits[])
         }
 }
 
-bw_status bw_pd_bond_set_bits(bw_pd_bond *s, const uint8_t bits[])
+bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
 {
   bw_pd_body *pd = s->body;
-  const size_t bytes = bw_pd_bond_bits_bytes(s);
+  const size_t bytes = bw_solid_bits_bytes(s);
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     pd->bonds.block[b].broken = false;
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
@@ -47,32 +47,32 @@ bw_status bw_pd_bond_set_bits(bw_pd_bond *s, const uint8_t bits[])
   return BW_OK;
 }
 
-void bw_pd_bond_get_restart(const bw_pd_bond *s, double rows[], double sums[])
+void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
   for (size_t i = 0; i < pd->n; i++) {
-    double *row = rows + BW_PD_RESTART_ROW * i;
+    double *row = rows + BW_SOLID_RESTART_ROW * i;
     for (size_t k = 0; k < 3; k++) {
       row[k] = (double)pd->u[k][pd->points.place[i]];
       row[3 + k] = (double)pd->v[k][i];
       row[6 + k] = (double)(pd->a[k][i] + pd->load.extra[k][i]);
       row[9 + k] = (double)pd->load.damp[k][i];
     }
-    row[BW_PD_RESTART_ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
+    row[BW_SOLID_RESTART_ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
   }
   const bw_solid_book *book = &s->book;
   const double none[3] = {0};
   const double *on_walls = s->contact != NULL ? bw_pd_contact_wall_force(s->contact) : none;
-  const double mine[BW_PD_RESTART_SUMS] = {
+  const double mine[BW_SOLID_RESTART_SUMS] = {
       book->damping, pd->bonds.released, book->external, (double)book->precracked,
       book->retired, book->wall[0],      book->wall[1],  book->wall[2],
       on_walls[0],   on_walls[1],        on_walls[2]};
   memcpy(sums, mine, sizeof mine);
-  bw_comm_sum(pd->comm, BW_PD_RESTART_SUMS, sums);
+  bw_comm_sum(pd->comm, BW_SOLID_RESTART_SUMS, sums);
 }
 
 /* The sums of all ranks are the first one's. */
-static void set_sums(bw_pd_bond *s, const double sums[])
+static void set_sums(bw_solid *s, const double sums[])
 {
   bw_pd_body *pd = s->body;
   const double own = bw_comm_rank(pd->comm) == 0;
@@ -87,12 +87,12 @@ static void set_sums(bw_pd_bond *s, const double sums[])
   }
 }
 
-bw_status bw_pd_bond_set_restart(bw_pd_bond *s, const double rows[], const double sums[])
+bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double sums[])
 {
   bw_pd_body *pd = s->body;
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++) {
-      const double *row = rows + BW_PD_RESTART_ROW * i + k;
+      const double *row = rows + BW_SOLID_RESTART_ROW * i + k;
       pd->u[k][pd->points.place[i]] = (bw_real)row[0];
       pd->v[k][i] = (bw_real)row[3];
       pd->a[k][i] = (bw_real)row[6];

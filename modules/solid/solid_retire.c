@@ -3,7 +3,7 @@
 #include "solid_internal.h"
 
 /* Everything that follows from the kinds of the own particles. */
-static void renew(bw_pd_bond *s)
+static void renew(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   s->n_retired = 0;
@@ -23,7 +23,7 @@ static void renew(bw_pd_bond *s)
   if (s->contact != NULL) bw_pd_contact_forget(s->contact);
 }
 
-void bw_solid__still_retired(bw_pd_bond *s)
+void bw_solid__still_retired(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   for (int k = 0; k < pd->dimension; k++)
@@ -45,7 +45,7 @@ static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool 
   return fresh == 0 ? 0 : pd->law->energy(pd, block, fresh);
 }
 
-bw_status bw_pd_bond_retire(bw_pd_bond *s, const bool gone[])
+bw_status bw_solid_retire(bw_solid *s, const bool gone[])
 {
   bw_pd_body *pd = s->body;
   if (!pd->current) bw_pd_body_refresh(pd, false);
@@ -57,12 +57,12 @@ bw_status bw_pd_bond_retire(bw_pd_bond *s, const bool gone[])
   return bw_comm_agree(pd->comm, bw_solid__evaluate(s, false));
 }
 
-void bw_solid__retire_rows(bw_pd_bond *s, const double rows[])
+void bw_solid__retire_rows(bw_solid *s, const double rows[])
 {
   bw_pd_body *pd = s->body;
   int64_t changed = 0;
   for (size_t i = 0; i < pd->n; i++) {
-    const bool gone = rows[BW_PD_RESTART_ROW * i + BW_PD_RESTART_ROW - 1] != 0;
+    const bool gone = rows[BW_SOLID_RESTART_ROW * i + BW_SOLID_RESTART_ROW - 1] != 0;
     const uint8_t kind =
         (uint8_t)((pd->points.kind[i] & ~BW_PD_RETIRED) | (gone ? BW_PD_RETIRED : 0));
     changed |= kind != pd->points.kind[i];

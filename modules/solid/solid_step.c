@@ -17,7 +17,7 @@ static double weight_of(const bw_pd_body *pd, size_t i)
 }
 
 /* Prescribed particles have their velocity; the book takes the energy of the jump. */
-static void impose(bw_pd_bond *s)
+static void impose(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   double change = 0;
@@ -45,7 +45,7 @@ static void internal_forces(bw_pd_body *pd, bool check)
     bw_pd_body_damp(pd, 0, NULL);
 }
 
-bw_status bw_solid__evaluate(bw_pd_bond *s, bool check)
+bw_status bw_solid__evaluate(bw_solid *s, bool check)
 {
   bw_pd_body *pd = s->body;
   const bool damped = bw_pd_body_damped(pd), contact = s->contact != NULL;
@@ -66,7 +66,7 @@ bw_status bw_solid__evaluate(bw_pd_bond *s, bool check)
 }
 
 /* Break bonds and renew the damping of the blocks that lost some. */
-static void break_bonds(bw_pd_bond *s)
+static void break_bonds(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   if (!bw_pd_body_break_hits(pd) || !bw_pd_body_damped(pd)) return;
@@ -86,20 +86,20 @@ static void break_bonds(bw_pd_bond *s)
 }
 
 /* The walls' share of the momentum, with the integrator's weight h. */
-static void push_walls(bw_pd_bond *s, double h, const double force[3])
+static void push_walls(bw_solid *s, double h, const double force[3])
 {
   for (int k = 0; k < 3; k++)
     s->book.wall[k] += h * force[k];
 }
 
-static void wall_force(bw_pd_bond *s, double force[3])
+static void wall_force(bw_solid *s, double force[3])
 {
   memset(force, 0, 3 * sizeof *force);
   if (s->contact != NULL) memcpy(force, bw_pd_contact_wall_force(s->contact), 3 * sizeof *force);
 }
 
 /* The prescribed particles' share of the book over a time dt with the present forces. */
-static void prescribed_work(bw_pd_bond *s, double dt)
+static void prescribed_work(bw_solid *s, double dt)
 {
   const bw_pd_body *pd = s->body;
   double power = 0;
@@ -138,7 +138,7 @@ static inline __attribute__((always_inline)) void kick_all(bw_pd_body *pd, bw_re
 
 /* The work of a force in a kick is its product with the mean of the velocities before and after:
  * the kinetic energy changes by exactly their sum. */
-static void kick(bw_pd_bond *s, double h)
+static void kick(bw_solid *s, double h)
 {
   bw_pd_body *pd = s->body;
   double work[2], on_walls[3];
@@ -195,26 +195,26 @@ static bw_status diverged(const bw_pd_body *pd, double dt)
     if (sqrt(v2) * dt <= 0.5 * horizon) continue;
     bw_pd_body_reference(pd, i, X0);
     return BW_FAIL(BW_EDIVERGED,
-                   "pd_bond_step: particle %lld (at first at %g, %g, %g) moves at %g, more than a "
+                   "solid_step: particle %lld (at first at %g, %g, %g) moves at %g, more than a "
                    "horizon %g in dt = %g; the force on it or dt is too large",
                    (long long)pd->points.id[i], X0[0], X0[1], X0[2], sqrt(v2), horizon, dt);
   }
-  return BW_FAIL(BW_EDIVERGED, "pd_bond_step: a particle moved more than a horizon %g in dt = %g",
+  return BW_FAIL(BW_EDIVERGED, "solid_step: a particle moved more than a horizon %g in dt = %g",
                  horizon, dt);
 }
 
-bw_status bw_solid__leap(bw_pd_bond *s, double dt)
+bw_status bw_solid__leap(bw_solid *s, double dt)
 {
   kick(s, 0.5 * dt);
   return drift(s->body, dt, 0, s->body->v) ? BW_OK : diverged(s->body, dt);
 }
 
-void bw_solid__land(bw_pd_bond *s, double dt)
+void bw_solid__land(bw_solid *s, double dt)
 {
   kick(s, 0.5 * dt);
 }
 
-static bw_status step_verlet(bw_pd_bond *s, double dt)
+static bw_status step_verlet(bw_solid *s, double dt)
 {
   const bw_status moved = bw_solid__leap(s, dt);
   /* Everybody evaluates, also a rank that has diverged: the exchanges are collective. */
@@ -244,7 +244,7 @@ static void power(const bw_pd_body *pd, double rate[2])
   rate[1] = damped ? damping * pd->config.material[0].rho * pd->level->dv : 0;
 }
 
-static void stage_velocity(bw_pd_bond *s, double alpha, double beta)
+static void stage_velocity(bw_solid *s, double alpha, double beta)
 {
   bw_pd_body *pd = s->body;
   const bw_real al = (bw_real)alpha, be = (bw_real)beta;
@@ -262,7 +262,7 @@ static void stage_velocity(bw_pd_bond *s, double alpha, double beta)
   }
 }
 
-static bw_status step_rk3(bw_pd_bond *s, double dt)
+static bw_status step_rk3(bw_solid *s, double dt)
 {
   static const double alpha[] = {8.0 / 15, 5.0 / 12, 3.0 / 4}, beta[] = {0, -17.0 / 60, -5.0 / 12};
   bw_pd_body *pd = s->body;
@@ -287,25 +287,25 @@ static bw_status step_rk3(bw_pd_bond *s, double dt)
   return st;
 }
 
-bw_status bw_solid__begin(bw_pd_bond *s)
+bw_status bw_solid__begin(bw_solid *s)
 {
   impose(s);
   return s->body->current ? BW_OK : bw_solid__evaluate(s, false);
 }
 
-void bw_solid__end(bw_pd_bond *s)
+void bw_solid__end(bw_solid *s)
 {
   break_bonds(s);
 }
 
-bw_status bw_pd_bond_step(bw_pd_bond *s, double dt)
+bw_status bw_solid_step(bw_solid *s, double dt)
 {
-  const double limit = bw_pd_bond_dt_max(s);
+  const double limit = bw_solid_dt_max(s);
   BW_REQUIRE(dt > 0 && dt <= limit * (1 + 1e-12), BW_ECFL,
-             "pd_bond_step: dt = %g must be positive and at most %g; take smaller sub-steps", dt,
+             "solid_step: dt = %g must be positive and at most %g; take smaller sub-steps", dt,
              limit);
   bw_status st = bw_solid__begin(s);
-  if (st == BW_OK) st = s->config.integrator == BW_PD_RK3 ? step_rk3(s, dt) : step_verlet(s, dt);
+  if (st == BW_OK) st = s->config.integrator == BW_SOLID_RK3 ? step_rk3(s, dt) : step_verlet(s, dt);
   if (st == BW_OK) bw_solid__end(s);
   s->restored = false;
   return bw_comm_agree(s->body->comm, st);

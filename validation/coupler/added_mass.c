@@ -95,7 +95,7 @@ static bw_status watch(const bw_comm *comm, const block_set_up *b, outcome *o)
     o->iterations += (double)r.iterations / STEPS;
     o->unconverged = (double)r.unconverged;
     double mean = 0.0;
-    bw_pd_bond_get_velocity(s.solid, s.V);
+    bw_solid_get_velocity(s.solid, s.V);
     for (size_t i = 0; i < s.n; i++)
       mean += s.V[3 * i] * H * H * H / s.mass;
     bw_comm_sum(comm, 1, &mean);

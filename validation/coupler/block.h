@@ -33,7 +33,7 @@ typedef struct {
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
   size_t n;
   double mass; /* of the fluid that the body displaces */
@@ -43,7 +43,7 @@ typedef struct {
 static inline void block_destroy(block_scene *s)
 {
   bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
+  bw_solid_destroy(&s->solid);
   bw_ns_channel_destroy(&s->fluid);
   bw_grid_destroy(&s->grid);
   bw_release(&s->X);
@@ -77,7 +77,7 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   const double speed_of_sound = (b->body == A_PLATE ? H : 4.0 * size) / b->dt;
   bw_shape shape[2];
   const int shapes = block_shapes(b, shape);
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = BW_PD_PLANE_STRAIN;
   c.ds = c.thickness = H;
   c.rho = b->ratio;
@@ -100,10 +100,10 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   bw_release(&site);
   bw_release(&kind);
   if (st != BW_OK) return st;
-  s->n = bw_pd_bond_count(s->solid);
+  s->n = bw_solid_count(s->solid);
   st = BW_ALLOCATE(&s->X, 3 * s->n);
   BW_THEN(st, BW_ALLOCATE(&s->V, 3 * s->n));
-  if (st == BW_OK) bw_pd_bond_get_position(s->solid, s->X);
+  if (st == BW_OK) bw_solid_get_position(s->solid, s->X);
   return bw_comm_agree(comm, st);
 }
 
@@ -139,8 +139,8 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   for (size_t i = 0; i < s->n; i++)
     s->V[3 * i] = s->X[3 * i + 1] > 0.0 ? b->speed : 0.0;
   if (b->moved)
-    bw_pd_bond_set_prescribed(s->solid, s->V);
+    bw_solid_set_prescribed(s->solid, s->V);
   else
-    bw_pd_bond_set_state(s->solid, s->X, s->V);
+    bw_solid_set_state(s->solid, s->X, s->V);
   return BW_OK;
 }

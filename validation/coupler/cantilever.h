@@ -26,11 +26,11 @@ static inline bw_status cantilever_bend(const bw_comm *comm, const bending_plate
   BW_THEN(st, BW_ALLOCATE(&F, 3 * f.n));
   for (size_t i = 0; st == BW_OK && i < f.n; i++)
     F[3 * i] = f.X0[3 * i + 1] > 0.0 ? q / b : 0.0;
-  if (st == BW_OK) bw_pd_bond_set_force(f.solid, F);
+  if (st == BW_OK) bw_solid_set_force(f.solid, F);
   /* exp(-14)(1 + 14) = 1e-5 of the deflection is left */
-  const double dt = st == BW_OK ? 0.9 * bw_pd_bond_dt_max(f.solid) : 1.0;
+  const double dt = st == BW_OK ? 0.9 * bw_solid_dt_max(f.solid) : 1.0;
   for (double t = 0.0; st == BW_OK && t < 14.0 / omega; t += dt)
-    st = bw_pd_bond_step(f.solid, dt);
+    st = bw_solid_step(f.solid, dt);
   if (st == BW_OK) {
     bending_tip(&f, tip);
     out->tip = tip[0] / L;

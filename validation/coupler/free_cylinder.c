@@ -44,7 +44,7 @@ typedef struct {
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
   double h, dt;
 } scene;
@@ -52,7 +52,7 @@ typedef struct {
 static void scene_destroy(scene *s)
 {
   bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
+  bw_solid_destroy(&s->solid);
   bw_ns_channel_destroy(&s->fluid);
   bw_grid_destroy(&s->grid);
 }
@@ -107,7 +107,7 @@ static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s
                              .centre = {0.5 * g->length[0], 0.5 * g->length[1], 0.0},
                              .radius = 0.5,
                              .axis = 2};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
@@ -135,7 +135,7 @@ static bw_status make_scene(const bw_comm *comm, const scene_set_up *b, scene *s
   c.rho = c.nu = 1.0;
   c.load = b->load;
   if (b->motion == FALL) { /* its own volume bears it, that of its particles */
-    const double volume = (double)bw_pd_bond_total(s->solid) * s->h * s->h;
+    const double volume = (double)bw_solid_total(s->solid) * s->h * s->h;
     c.gravity[0] = RE / (b->speed * volume); /* (2 - 1) g volume = force, speed per force given */
   }
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
@@ -154,7 +154,7 @@ static bw_status measure(const bw_comm *comm, const scene_set_up *b, double *out
   const double end = 4.0 * HEIGHTS * HEIGHTS / (4.0 * acos(-1.0) * acos(-1.0));
   for (double t = 0.0; st == BW_OK && t < end; t += s.dt)
     st = bw_coupler_step(s.coupler, s.dt);
-  if (st == BW_OK) *wide = 2.0 * s.h * sqrt((double)bw_pd_bond_total(s.solid) / acos(-1.0));
+  if (st == BW_OK) *wide = 2.0 * s.h * sqrt((double)bw_solid_total(s.solid) / acos(-1.0));
   BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(s.coupler), NULL, &n, &piece));
   if (st == BW_OK && n != 1) st = BW_FAIL(BW_EDIVERGED, "the cylinder fell into %zu pieces", n);
   if (st == BW_OK) *out = b->motion == COUETTE ? -piece->spin[2] / RE : piece->velocity[0] / RE;

@@ -131,11 +131,11 @@ static bw_status coarse_runs(bw_validation *v, porous_run *p, const char *path)
   BW_TRY(bw_coupler_save(p->coupler, ck));
   BW_TRY(bw_checkpoint_close(&ck));
   const double ds = q->domain.length[1] / q->domain.cells[1];
-  o.particles = (double)bw_pd_bond_total(p->solid) - (double)q->medium.clamped_layers *
-                                                         round(q->medium.length / ds) *
-                                                         q->domain.cells[2];
+  o.particles = (double)bw_solid_total(p->solid) - (double)q->medium.clamped_layers *
+                                                       round(q->medium.length / ds) *
+                                                       q->domain.cells[2];
   for (int s = 0; s < 3; s++) {
-    bw_pd_bond_set_G0(p->solid, to_coarse * G0_S[s]);
+    bw_solid_set_G0(p->solid, to_coarse * G0_S[s]);
     BW_TRY(advance(p, PHASE_BREAKAGE, 3e-3));
     BW_TRY(porous_measure(p, o.last));
     rows(v, run_name[s], q, &o);

@@ -37,7 +37,7 @@ static bw_status brake(const bw_comm *comm, bw_coupler_load_kind load, double dt
   const int start = (int)lround(20.0 * DT / dt), end = 6 * start;
   block_scene s;
   bw_coupler_report r, r0 = {.work_given = NAN};
-  bw_pd_bond_ledger e = {.external = NAN}, e0 = e;
+  bw_solid_ledger e = {.external = NAN}, e0 = e;
   *a = (account){0};
   bw_status st = block_create(
       comm, &(block_set_up){.ratio = 20.0, .w = w, .dt = DT, .load = load, .speed = 1.0}, &s);
@@ -48,10 +48,10 @@ static bw_status brake(const bw_comm *comm, bw_coupler_load_kind load, double dt
     if (st != BW_OK) break;
     if (n > start) a->impulse += dt * r.force_reaction[0];
     if (n != start) continue;
-    st = bw_pd_bond_account(s.solid, &e0);
+    st = bw_solid_account(s.solid, &e0);
     r0 = r;
   }
-  BW_THEN(st, bw_pd_bond_account(s.solid, &e));
+  BW_THEN(st, bw_solid_account(s.solid, &e));
   if (st == BW_OK) {
     a->momentum = e.momentum[0] - e0.momentum[0];
     a->received = e.external - e0.external;

@@ -43,14 +43,14 @@ static double place(const double velocity[], int n, double level)
 }
 
 /* Velocity along the bar of all ranks. */
-static bw_status profile(const bw_pd_bond *pd, body_rows *r, double velocity[LONG])
+static bw_status profile(const bw_solid *pd, body_rows *r, double velocity[LONG])
 {
   for (int q = 0; q < LONG; q++)
     velocity[q] = 0;
-  bw_pd_bond_get_velocity(pd, r->V);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
-    velocity[bw_pd_bond_id(pd)[i]] = r->V[3 * i];
-  bw_comm_sum(bw_pd_bond_comm(pd), LONG, velocity);
+  bw_solid_get_velocity(pd, r->V);
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
+    velocity[bw_solid_id(pd)[i]] = r->V[3 * i];
+  bw_comm_sum(bw_solid_comm(pd), LONG, velocity);
   return BW_OK;
 }
 
@@ -96,25 +96,25 @@ static void claim(bw_validation *v, const char *what, const char *name, double m
 static bw_status measure(bw_validation *v, int which, double m)
 {
   const bw_pd_geometry g = settings[which].geometry;
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   c.geometry = g, c.horizon_ratio = m, c.calibration = BW_PD_CALIBRATION_LATTICE;
   c.ds = 1, c.rho = RHO, c.E = E;
   c.period[1] = 1, c.period[2] = g == BW_PD_3D ? 1 : 0;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){LONG, 1, 1}, NULL, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
-  BW_TRY(bw_pd_load_traction(pd, (double[3]){0, -9, -9}, (double[3]){1, 9, 9}, 1,
-                             (double[3]){TRACTION, 0, 0}, r.F));
-  bw_pd_bond_set_force(pd, r.F);
+  BW_TRY(bw_solid_load_traction(pd, (double[3]){0, -9, -9}, (double[3]){1, 9, 9}, 1,
+                                (double[3]){TRACTION, 0, 0}, r.F));
+  bw_solid_set_force(pd, r.F);
 
   const double speed = sqrt(settings[which].modulus * E / RHO), behind = TRACTION / (RHO * speed);
   double velocity[LONG], at[2], ahead = 0, tail = 0, mean = 0;
-  const double dt = 0.5 * bw_pd_bond_dt_max(pd);
+  const double dt = 0.5 * bw_solid_dt_max(pd);
   const int steps = (int)(0.4 * LONG / speed / dt);
   for (int half = 0; half < 2; half++) {
     for (int q = 0; q < steps; q++)
-      BW_TRY(bw_pd_bond_step(pd, dt));
+      BW_TRY(bw_solid_step(pd, dt));
     BW_TRY(profile(pd, &r, velocity));
     at[half] = place(velocity, LONG, 0.5 * behind);
     tail = place(velocity, LONG, 0.9 * behind), ahead = place(velocity, LONG, 0.1 * behind);
@@ -128,7 +128,7 @@ static bw_status measure(bw_validation *v, int which, double m)
   claim(v, "velocity_behind", name, m, mean, behind, 0.5 * error + 0.01);
   claim(v, "width_over_horizon", name, m, (ahead - tail) / m, 0, 6);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

@@ -37,10 +37,10 @@ static void towards(const double X0[3], double V[3], const void *data)
   V[1] = V[2] = 0;
 }
 
-static double bar_velocity(const bw_pd_bond *pd, body_rows *r, int bar, double middle)
+static double bar_velocity(const bw_solid *pd, body_rows *r, int bar, double middle)
 {
   const double far = 1e9;
-  bw_pd_bond_get_velocity(pd, r->V);
+  bw_solid_get_velocity(pd, r->V);
   return body_mean(pd, r->X0, (double[3]){bar == 0 ? -far : middle, -far, -far},
                    (double[3]){bar == 0 ? middle : far, far, far}, r->V, 3);
 }
@@ -60,8 +60,8 @@ static void claim(bw_validation *v, const char *quantity, const char *extra, dou
 
 static bw_status measure(bw_validation *v, int length, double mach, double *loss)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1, c.rho = RHO, c.E = E;
   c.calibration = BW_PD_CALIBRATION_LATTICE, c.contact = true;
@@ -71,15 +71,15 @@ static bw_status measure(bw_validation *v, int length, double mach, double *loss
   BW_TRY(body_rows_make(pd, &r));
   const double speed = sqrt(1.125 * E / RHO), given = mach * speed, delta = 3;
   const approach start = {length + 0.5 * GAP, given};
-  BW_TRY(bw_pd_load_velocity(pd, towards, &start));
-  const double dt = 0.3 * bw_pd_bond_dt_max(pd);
+  BW_TRY(bw_solid_load_velocity(pd, towards, &start));
+  const double dt = 0.3 * bw_solid_dt_max(pd);
   double first = 0, last = 0, time = 0;
   const double end = GAP / (2 * given) + 4 * length / speed;
   while (time < end) {
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
     time += dt;
-    bw_pd_bond_ledger e;
-    BW_TRY(bw_pd_bond_account(pd, &e));
+    bw_solid_ledger e;
+    BW_TRY(bw_solid_account(pd, &e));
     if (e.contact <= 0) continue;
     last = time;
     if (first == 0) first = time;
@@ -96,7 +96,7 @@ static bw_status measure(bw_validation *v, int length, double mach, double *loss
         BW_ANALYTIC);
   *loss = 1 - b / given;
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

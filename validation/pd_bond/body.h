@@ -2,10 +2,10 @@
  */
 #pragma once
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
-#include "bw_pd_load.h"
-#include "bw_pd_static.h"
-#include "bw_pd_stress.h"
+#include "bw_solid.h"
+#include "bw_solid_load.h"
+#include "bw_solid_static.h"
+#include "bw_solid_stress.h"
 #include "bw_validation.h"
 
 #include <math.h>
@@ -14,9 +14,8 @@
 /* kind of a site, or a negative number: none there. */
 typedef int (*body_choice)(const int32_t site[3], const void *data);
 
-static inline bw_status body_make(const bw_comm *comm, const bw_pd_bond_config *c,
-                                  const int size[3], body_choice choice, const void *data,
-                                  bw_pd_bond **pd)
+static inline bw_status body_make(const bw_comm *comm, const bw_solid_config *c, const int size[3],
+                                  body_choice choice, const void *data, bw_solid **pd)
 {
   const size_t cells = (size_t)size[0] * (size_t)size[1] * (size_t)size[2];
   int32_t *site = NULL;
@@ -39,17 +38,17 @@ static inline bw_status body_make(const bw_comm *comm, const bw_pd_bond_config *
 }
 
 /* Mean of value[stride i] over the particles with lower <= X0 < upper; NaN when there is none. */
-static inline double body_mean(const bw_pd_bond *pd, const double X0[], const double lower[3],
+static inline double body_mean(const bw_solid *pd, const double X0[], const double lower[3],
                                const double upper[3], const double value[], size_t stride)
 {
   double sum[2] = {0};
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     bool in = true;
     for (size_t k = 0; k < 3; k++)
       in = in && X0[3 * i + k] >= lower[k] && X0[3 * i + k] < upper[k];
     if (in) sum[0] += value[stride * i], sum[1]++;
   }
-  bw_comm_sum(bw_pd_bond_comm(pd), 2, sum);
+  bw_comm_sum(bw_solid_comm(pd), 2, sum);
   return sum[1] > 0 ? sum[0] / sum[1] : NAN;
 }
 
@@ -58,9 +57,9 @@ typedef struct {
   double *X0, *X, *V, *F, *gradient, *stress;
 } body_rows;
 
-static inline bw_status body_rows_make(const bw_pd_bond *pd, body_rows *r)
+static inline bw_status body_rows_make(const bw_solid *pd, body_rows *r)
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   *r = (body_rows){0};
   BW_TRY(BW_ALLOCATE(&r->X0, 3 * n));
   BW_TRY(BW_ALLOCATE(&r->X, 3 * n));
@@ -68,7 +67,7 @@ static inline bw_status body_rows_make(const bw_pd_bond *pd, body_rows *r)
   BW_TRY(BW_ALLOCATE(&r->F, 3 * n));
   BW_TRY(BW_ALLOCATE(&r->gradient, 9 * n));
   BW_TRY(BW_ALLOCATE(&r->stress, 6 * n));
-  bw_pd_bond_get_reference(pd, r->X0);
+  bw_solid_get_reference(pd, r->X0);
   return BW_OK;
 }
 
@@ -84,16 +83,16 @@ static inline void body_rows_release(body_rows *r)
 
 /* r->X holds the displacement of the prescribed particles on entry; on exit r->stress is that of
  * the body at rest with it (linear solve). */
-static inline bw_status body_at_rest(bw_pd_bond *pd, body_rows *r)
+static inline bw_status body_at_rest(bw_solid *pd, body_rows *r)
 {
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   config.tolerance = 1e-6;
-  BW_TRY(bw_pd_static_linear(pd, &config, r->X, &report));
-  for (size_t k = 0; k < 3 * bw_pd_bond_count(pd); k++)
+  BW_TRY(bw_solid_static_linear(pd, &config, r->X, &report));
+  for (size_t k = 0; k < 3 * bw_solid_count(pd); k++)
     r->X[k] += r->X0[k];
-  bw_pd_bond_set_state(pd, r->X, r->V);
-  bw_pd_stress_compute(pd, NULL, r->stress);
+  bw_solid_set_state(pd, r->X, r->V);
+  bw_solid_stress_compute(pd, NULL, r->stress);
   return BW_OK;
 }
 

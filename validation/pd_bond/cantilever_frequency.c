@@ -97,30 +97,30 @@ static void shape(const double X0[3], double V[3], const void *data)
 }
 
 /* Part of the velocity that has the shape of the first mode: ripples do not cross zero with it. */
-static double modal(const bw_pd_bond *pd, const beam *b, const body_rows *r)
+static double modal(const bw_solid *pd, const beam *b, const body_rows *r)
 {
   double sum = 0, first[3];
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     shape(r->X0 + 3 * i, first, b);
     sum += first[1] * r->V[3 * i + 1];
   }
-  bw_comm_sum(bw_pd_bond_comm(pd), 1, &sum);
+  bw_comm_sum(bw_solid_comm(pd), 1, &sum);
   return sum;
 }
 
-static bw_status swing(bw_pd_bond *pd, const beam *b, double *omega)
+static bw_status swing(bw_solid *pd, const beam *b, double *omega)
 {
   body_rows r;
   double zero[2], before = 1;
   int found = 0;
   BW_TRY(body_rows_make(pd, &r));
-  BW_TRY(bw_pd_load_velocity(pd, shape, b));
-  const double dt = 0.8 * bw_pd_bond_dt_max(pd);
+  BW_TRY(bw_solid_load_velocity(pd, shape, b));
+  const double dt = 0.8 * bw_solid_dt_max(pd);
   bw_status st = BW_OK;
   for (int64_t step = 0; found < 2 && st == BW_OK; step++) {
-    st = bw_pd_bond_step(pd, dt);
+    st = bw_solid_step(pd, dt);
     if (step % 8 != 0) continue; /* some thousand steps a period */
-    bw_pd_bond_get_velocity(pd, r.V);
+    bw_solid_get_velocity(pd, r.V);
     const double now = modal(pd, b, &r);
     if (step > 0 && before * now <= 0)
       zero[found++] = dt * ((double)step + 1 - 8 * now / (now - before));
@@ -165,8 +165,8 @@ static bw_status measure(bw_validation *v, int h, bw_pd_surface_correction surfa
                          double *scaled)
 {
   static const char *const correction[] = {"none", "volume", "energy", "tensor"};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   const double m = 3;
   const bool tensor = surface == BW_PD_SURFACE_TENSOR;
   const int grip = 3, slender = tensor ? 16 : 8;
@@ -179,7 +179,7 @@ static bw_status measure(bw_validation *v, int h, bw_pd_surface_correction surfa
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){grip + slender * h, h, 1}, gripped, &grip,
                    &pd));
   BW_TRY(swing(pd, &b, &omega));
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   snprintf(extra, sizeof extra,
            "\"surface_correction\": \"%s\", \"calibration\": \"%s\", \"height_over_horizon\": %g, "
            "\"length_over_height\": %d",

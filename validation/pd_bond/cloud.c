@@ -28,9 +28,9 @@
 
 static const double E = 5, STRAIN = 1e-6, S0 = 1e-3;
 
-static bw_pd_bond_config glass(double m, double disorder, int seed)
+static bw_solid_config glass(double m, double disorder, int seed)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = BW_PD_PLANE_STRESS;
   c.ds = c.rho = 1;
   c.E = E;
@@ -61,12 +61,12 @@ static void claim(bw_validation *v, const char *what, const char *quantity, doub
 }
 
 /* Mean stress of the middle half under the strain e (xx, yy, xy), over E. */
-static bw_status strained(bw_pd_bond *pd, const body_framed *q, const double e[3], double stress[3])
+static bw_status strained(bw_solid *pd, const body_framed *q, const double e[3], double stress[3])
 {
   body_rows r;
   const double low = 0.25 * q->side, high = 0.75 * q->side;
   BW_TRY(body_rows_make(pd, &r));
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     const double x = r.X0[3 * i], y = r.X0[3 * i + 1];
     r.X[3 * i] = STRAIN * (e[0] * x + e[2] * y);
     r.X[3 * i + 1] = STRAIN * (e[2] * x + e[1] * y);
@@ -82,12 +82,12 @@ static bw_status strained(bw_pd_bond *pd, const body_framed *q, const double e[3
 }
 
 /* Adds the stiffness over E, Voigt's order xx, yy, xy. */
-static bw_status stiffness(const bw_comm *comm, const bw_pd_bond_config *c, double C[3][3])
+static bw_status stiffness(const bw_comm *comm, const bw_solid_config *c, double C[3][3])
 {
   static const double strains[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}};
   const int edge = (int)(c->horizon_ratio + 2);
   const body_framed q = {2, 40 + 2 * edge, edge};
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(body_make(comm, c, (int[3]){q.side, q.side, 1}, body_frame, &q, &pd));
   for (int k = 0; k < 3; k++) {
     double stress[3];
@@ -95,7 +95,7 @@ static bw_status stiffness(const bw_comm *comm, const bw_pd_bond_config *c, doub
     for (int i = 0; i < 3; i++)
       C[i][k] += stress[i];
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -149,7 +149,7 @@ static bw_status elastic(bw_validation *v, double m, double disorder, int clouds
 {
   double C[3][3] = {{0}};
   for (int seed = 0; seed < clouds; seed++) {
-    const bw_pd_bond_config c = glass(m, disorder, seed);
+    const bw_solid_config c = glass(m, disorder, seed);
     BW_TRY(stiffness(bw_validation_comm(v), &c, C));
   }
   for (int i = 0; i < 3; i++)
@@ -191,8 +191,7 @@ static bool in_strip(const strip *p, const int32_t site[3])
   return fabs(p->c * x - p->s * y) < 0.5 * p->length && fabs(p->s * x + p->c * y) < p->half;
 }
 
-static bw_status strip_make(const bw_comm *comm, const strip *p, bw_pd_bond_config c,
-                            bw_pd_bond **pd)
+static bw_status strip_make(const bw_comm *comm, const strip *p, bw_solid_config c, bw_solid **pd)
 {
   const int reach = (int)(0.5 * p->length + p->half) + 2, side = 2 * reach;
   int32_t *site = NULL;
@@ -215,23 +214,23 @@ static bw_status strip_make(const bw_comm *comm, const strip *p, bw_pd_bond_conf
 
 /* In steps of 0.2 % of the opening, until also bonds nearly along the cut are beyond s0: those of
  * any direction are at an opening of sqrt(2 s0 + s0^2) |xi|. */
-static bw_status draw_apart(bw_pd_bond *pd, double m, double *energy)
+static bw_status draw_apart(bw_solid *pd, double m, double *energy)
 {
-  const double dt = 0.5 * bw_pd_bond_dt_max(pd), growth = 2e-3;
-  const size_t n = bw_pd_bond_count(pd);
+  const double dt = 0.5 * bw_solid_dt_max(pd), growth = 2e-3;
+  const size_t n = bw_solid_count(pd);
   double *X0 = NULL, *V = NULL;
   BW_TRY(BW_ALLOCATE(&X0, 3 * n));
   BW_TRY(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(pd, X0);
+  bw_solid_get_reference(pd, X0);
   for (double before = 0, w = 0.1 * S0; before < 1.1 * sqrt(2 * S0) * (m + 0.5);
        before = w, w *= 1 + growth) {
     for (size_t i = 0; i < n; i++)
       V[3 * i + 1] = (X0[3 * i + 1] < 0 ? -0.5 : 0.5) * (w - before) / dt;
-    bw_pd_bond_set_prescribed(pd, V);
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    bw_solid_set_prescribed(pd, V);
+    BW_TRY(bw_solid_step(pd, dt));
   }
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   *energy = e.fracture;
   bw_release(&X0);
   bw_release(&V);
@@ -244,14 +243,14 @@ static bw_status cut(const bw_comm *comm, double m, double disorder, int seed, d
 {
   const double length[2] = {40, 200}, turn = angle * LATTICE_PI / 180;
   double energy[2];
-  bw_pd_bond_config c = glass(m, disorder, seed);
+  bw_solid_config c = glass(m, disorder, seed);
   c.G0 = 2.25 / LATTICE_PI * E * S0 * S0 * m; /* 3.27: s0 is S0 but for the calibration */
   for (int k = 0; k < 2; k++) {
     const strip p = {length[k], m + 2, cos(turn), sin(turn)};
-    bw_pd_bond *pd = NULL;
+    bw_solid *pd = NULL;
     BW_TRY(strip_make(comm, &p, c, &pd));
     BW_TRY(draw_apart(pd, m, &energy[k]));
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
   }
   *over_G0 = (energy[1] - energy[0]) / (length[1] - length[0]) / c.G0;
   return BW_OK;

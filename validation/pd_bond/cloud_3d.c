@@ -25,11 +25,11 @@ static const double E = 5, STRAIN = 1e-6;
 
 /* Mean stress (xx, yy, zz, yz, xz, xy), over E and the strain, of the inner cube: stretched along
  * x, or sheared in xy by the engineer's strain. */
-static bw_status strained(bw_pd_bond *pd, const body_framed *q, bool shear, double stress[6])
+static bw_status strained(bw_solid *pd, const body_framed *q, bool shear, double stress[6])
 {
   body_rows r;
   const double low = q->edge + 2, high = q->side - q->edge - 2;
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   BW_TRY(body_rows_make(pd, &r));
   for (size_t p = 0; p < n; p++)
     r.X[3 * p] = STRAIN * r.X0[3 * p + shear];
@@ -49,7 +49,7 @@ typedef struct {
 
 static bw_status add_stiffness(const bw_comm *comm, double disorder, int seed, cubic *C)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.ds = c.rho = 1;
   c.E = E;
   c.horizon_ratio = 3;
@@ -58,14 +58,14 @@ static bw_status add_stiffness(const bw_comm *comm, double disorder, int seed, c
   c.surface_correction = BW_PD_SURFACE_NONE;
   const body_framed q = {3, 27, 5};
   double stretched[6], sheared[6];
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(body_make(comm, &c, (int[3]){q.side, q.side, q.side}, body_frame, &q, &pd));
   BW_TRY(strained(pd, &q, false, stretched));
   BW_TRY(strained(pd, &q, true, sheared));
   C->c11 += stretched[0];
   C->c12 += 0.5 * (stretched[1] + stretched[2]);
   C->c44 += sheared[5];
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

@@ -11,16 +11,16 @@
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1,2 */
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 #include "bw_validation.h"
 
 #include <math.h>
 #include <stdio.h>
 
-static bw_status make(const bw_comm *comm, double G0, double damping, bw_pd_bond **pd)
+static bw_status make(const bw_comm *comm, double G0, double damping, bw_solid **pd)
 {
   enum { NX = 20, NY = 10, NZ = 8 };
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.ds = 1e-3;
   c.rho = 1200;
   c.E = 1e8;
@@ -38,44 +38,44 @@ static bw_status make(const bw_comm *comm, double G0, double damping, bw_pd_bond
   bw_release(&site);
 
   double *X = NULL, *V = NULL;
-  const size_t n = bw_pd_bond_count(*pd);
+  const size_t n = bw_solid_count(*pd);
   BW_TRY(BW_ALLOCATE(&X, 3 * n));
   BW_TRY(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(*pd, X);
+  bw_solid_get_reference(*pd, X);
   for (size_t i = 0; i < n; i++) {
     const double *x = X + 3 * i;
     V[3 * i] = 5 + 20 * sin(600 * x[0] + 200 * x[1]);
     V[3 * i + 1] = 15 * cos(500 * x[0]) * sin(300 * x[2]);
     V[3 * i + 2] = 10 * sin(400 * x[1] + 100 * x[0]);
   }
-  bw_pd_bond_set_state(*pd, X, V);
+  bw_solid_set_state(*pd, X, V);
   bw_release(&X);
   bw_release(&V);
   return BW_OK;
 }
 
-static double total(const bw_pd_bond_ledger *l)
+static double total(const bw_solid_ledger *l)
 {
   return l->kinetic + l->elastic + l->contact + l->damping + l->fracture;
 }
 
 static bw_status span(const bw_comm *comm, double G0, double damping, double fraction, double time,
-                      bw_pd_bond_ledger *first, bw_pd_bond_ledger *last)
+                      bw_solid_ledger *first, bw_solid_ledger *last)
 {
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(make(comm, G0, damping, &pd));
-  const double dt = fraction * bw_pd_bond_dt_max(pd);
-  bw_status st = bw_pd_bond_account(pd, first);
+  const double dt = fraction * bw_solid_dt_max(pd);
+  bw_status st = bw_solid_account(pd, first);
   for (int q = 0; q < (int)lround(time / dt) && st == BW_OK; q++)
-    st = bw_pd_bond_step(pd, dt);
-  BW_THEN(st, bw_pd_bond_account(pd, last));
-  bw_pd_bond_destroy(&pd);
+    st = bw_solid_step(pd, dt);
+  BW_THEN(st, bw_solid_account(pd, last));
+  bw_solid_destroy(&pd);
   return st;
 }
 
 static bw_status cracking(bw_validation *v)
 {
-  bw_pd_bond_ledger a, b;
+  bw_solid_ledger a, b;
   char extra[80];
   BW_TRY(span(bw_validation_comm(v), 20, 5e13, 0.1, 3e-4, &a, &b));
   const double mass = 1200 * 1600e-9, size = sqrt(2 * mass * a.kinetic);
@@ -108,7 +108,7 @@ static bw_status whole(bw_validation *v)
 {
   double error[2];
   for (int q = 0; q < 2; q++) {
-    bw_pd_bond_ledger a, b;
+    bw_solid_ledger a, b;
     BW_TRY(span(bw_validation_comm(v), INFINITY, 5e13, 0.1 / (1 << q), 5e-5, &a, &b));
     error[q] = fabs(total(&b) - total(&a)) / total(&a);
   }

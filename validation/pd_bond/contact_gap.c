@@ -7,7 +7,7 @@
  *            Bodies that meet with their rows between each other's, the weakest way for contact
  *            of points, part again at up to 0.8 (squares) and 0.2 (cubes) of the wave speed each;
  *            at 1.0 and 0.3 they get locked into each other, and the account says so: `closest` is
- *            below BW_PD_TOO_CLOSE.
+ *            below BW_SOLID_TOO_CLOSE.
  *            Bodies that burst at half the wave speed make no energy, although their debris flies
  *            through what was buried in the other.
  * Reference  contact force 15 c0 (1 - d/ds) dV on a volume ds^3, POROUS 3.40 with ERRATA 3: a
@@ -45,12 +45,12 @@ static void towards(const double X0[3], double V[3], const void *data)
   V[1] = V[2] = 0;
 }
 
-static double least_distance(const bw_pd_bond *pd, body_rows *r)
+static double least_distance(const bw_solid *pd, body_rows *r)
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   const double middle = EDGE + 0.5 * GAP;
   double least = 1e9;
-  bw_pd_bond_get_position(pd, r->X);
+  bw_solid_get_position(pd, r->X);
   for (size_t a = 0; a < n; a++) {
     if (r->X0[3 * a] > middle) continue;
     for (size_t b = 0; b < n; b++) {
@@ -62,15 +62,15 @@ static double least_distance(const bw_pd_bond *pd, body_rows *r)
   return sqrt(least);
 }
 
-static double energy_of(const bw_pd_bond_ledger *e)
+static double energy_of(const bw_solid_ledger *e)
 {
   return e->kinetic + e->elastic + e->contact + e->fracture;
 }
 
 static bw_status measure(bw_validation *v, double mach)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1, c.rho = RHO, c.E = E, c.contact = true;
   c.G0 = E * 3 * 1e-4; /* s0 near 1.2 % */
@@ -78,17 +78,17 @@ static bw_status measure(bw_validation *v, double mach)
                    &pd));
   BW_TRY(body_rows_make(pd, &r));
   const double speed = sqrt(1.125 * E / RHO), given = mach * speed;
-  BW_TRY(bw_pd_load_velocity(pd, towards, &given));
-  const double dt = 0.5 * bw_pd_bond_dt_contact(pd), end = GAP / given + 4 * EDGE / speed;
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  BW_TRY(bw_solid_load_velocity(pd, towards, &given));
+  const double dt = 0.5 * bw_solid_dt_contact(pd), end = GAP / given + 4 * EDGE / speed;
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   const double start = energy_of(&e);
   double least = 1e9, mean[2];
   for (int64_t step = 1; (double)step * dt < end; step++) {
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
     if (step % 4 == 0) least = fmin(least, least_distance(pd, &r));
   }
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  BW_TRY(bw_solid_account(pd, &e));
   const double middle = EDGE + 0.5 * GAP, far = 1e9;
   mean[0] =
       body_mean(pd, r.X0, (double[3]){-far, -far, -far}, (double[3]){middle, far, far}, r.X, 3);
@@ -117,7 +117,7 @@ static bw_status measure(bw_validation *v, double mach)
   claim.source = "conservation of energy";
   bw_validation_row(v, &claim);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -128,10 +128,10 @@ static int two_cubes(const int32_t site[3], const void *data)
 }
 
 /* The right body is moved by half a spacing across, both are thrown. */
-static void set_up_between_rows(bw_pd_bond *pd, body_rows *r, double middle, double speed)
+static void set_up_between_rows(bw_solid *pd, body_rows *r, double middle, double speed)
 {
-  const bool space = bw_pd_bond_settings(pd)->geometry == BW_PD_3D;
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  const bool space = bw_solid_settings(pd)->geometry == BW_PD_3D;
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     const bool right = r->X0[3 * i] > middle;
     r->X[3 * i] = r->X0[3 * i];
     r->X[3 * i + 1] = r->X0[3 * i + 1] + (right ? 0.5 : 0);
@@ -139,14 +139,14 @@ static void set_up_between_rows(bw_pd_bond *pd, body_rows *r, double middle, dou
     r->V[3 * i] = right ? -speed : speed;
     r->V[3 * i + 1] = r->V[3 * i + 2] = 0;
   }
-  bw_pd_bond_set_state(pd, r->X, r->V);
+  bw_solid_set_state(pd, r->X, r->V);
 }
 
-static int64_t in_wrong_order(const bw_pd_bond *pd, body_rows *r, double middle)
+static int64_t in_wrong_order(const bw_solid *pd, body_rows *r, double middle)
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   int64_t pairs = 0;
-  bw_pd_bond_get_position(pd, r->X);
+  bw_solid_get_position(pd, r->X);
   for (size_t a = 0; a < n; a++)
     for (size_t b = 0; b < n && r->X0[3 * a] < middle; b++)
       pairs += r->X0[3 * b] > middle && r->X[3 * a] > r->X[3 * b] &&
@@ -160,34 +160,34 @@ static bw_status between_rows(bw_validation *v, bw_pd_geometry geometry, double 
   const bool space = geometry == BW_PD_3D;
   const int edge = space ? CUBE : EDGE;
   const double middle = edge + 0.5 * GAP, speed = sqrt((space ? 1.2 : 1.125) * E / RHO);
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   c.geometry = geometry, c.ds = 1, c.rho = RHO, c.E = E, c.contact = true;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){2 * edge + GAP, edge, space ? edge : 1},
                    space ? two_cubes : two_squares, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
   set_up_between_rows(pd, &r, middle, mach * speed);
-  const double dt = 0.2 * bw_pd_bond_dt_contact(pd), end = GAP / (mach * speed) + 8 * edge / speed;
+  const double dt = 0.2 * bw_solid_dt_contact(pd), end = GAP / (mach * speed) + 8 * edge / speed;
   for (int64_t step = 1; (double)step * dt < end; step++)
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
   const int64_t pairs = in_wrong_order(pd, &r, middle);
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   const double closest = e.closest;
   char extra[100];
   snprintf(extra, sizeof extra, "\"speed_over_c\": %g, \"dimensions\": %d, \"closest\": %.3f", mach,
            space ? 3 : 2, closest);
   bw_claim claim = {.claim = "bodies that meet between their rows part again, or it is told",
                     .quantity = holds ? "pairs_in_wrong_order" : "told",
-                    .measured = holds ? (double)pairs : closest < BW_PD_TOO_CLOSE,
+                    .measured = holds ? (double)pairs : closest < BW_SOLID_TOO_CLOSE,
                     .reference = holds ? 0 : pairs > 0,
                     .kind = BW_ANALYTIC,
                     .source = "pressure of the contact law between rows against rho c v",
                     .extra = extra};
   bw_validation_row(v, &claim);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -195,8 +195,8 @@ static bw_status between_rows(bw_validation *v, bw_pd_geometry geometry, double 
 static bw_status debris(bw_validation *v, bool between)
 {
   const double middle = EDGE + 0.5 * GAP, speed = sqrt(1.125 * E / RHO), given = 0.5 * speed;
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1, c.rho = RHO, c.E = E, c.contact = true;
   c.G0 = E * 3 * 1e-4;
@@ -206,15 +206,15 @@ static bw_status debris(bw_validation *v, bool between)
   if (between)
     set_up_between_rows(pd, &r, middle, given);
   else
-    BW_TRY(bw_pd_load_velocity(pd, towards, &given));
-  const double dt = 0.2 * bw_pd_bond_dt_contact(pd), end = 3 * (GAP / given + 4 * EDGE / speed);
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+    BW_TRY(bw_solid_load_velocity(pd, towards, &given));
+  const double dt = 0.2 * bw_solid_dt_contact(pd), end = 3 * (GAP / given + 4 * EDGE / speed);
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   const double start = energy_of(&e);
   double most = 1, stored = 0;
   for (int64_t step = 1; (double)step * dt < end; step++) {
-    BW_TRY(bw_pd_bond_step(pd, dt));
-    BW_TRY(bw_pd_bond_account(pd, &e));
+    BW_TRY(bw_solid_step(pd, dt));
+    BW_TRY(bw_solid_account(pd, &e));
     stored = fmax(stored, e.contact / start);
     most = fmax(most, energy_of(&e) / start);
   }
@@ -226,7 +226,7 @@ static bw_status debris(bw_validation *v, bool between)
                                    most - 1, 0, e.fracture / start + 0.005 * stored,
                                    BW_CONSERVATION, "conservation of energy", extra});
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

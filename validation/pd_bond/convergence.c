@@ -51,33 +51,33 @@ static int gripped(const int32_t site[3], const void *data)
 }
 
 /* Mean displacement of the section's particles nearest to x. */
-static double moved(const bw_pd_bond *pd, const body_rows *r, double x, size_t k)
+static double moved(const bw_solid *pd, const body_rows *r, double x, size_t k)
 {
   return body_mean(pd, r->X0, (double[3]){x - 0.5, -FAR, -FAR}, (double[3]){x + 0.5, FAR, FAR},
                    r->X + k, 3);
 }
 
-static bw_status solve(bw_pd_bond *pd, body_rows *r, double grip, double length, double h,
+static bw_status solve(bw_solid *pd, body_rows *r, double grip, double length, double h,
                        double layer, size_t direction)
 {
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   double traction[3] = {0};
   traction[direction] = 1e-6;
-  for (size_t q = 0; q < 3 * bw_pd_bond_count(pd); q++)
+  for (size_t q = 0; q < 3 * bw_solid_count(pd); q++)
     r->F[q] = r->X[q] = 0;
-  BW_TRY(bw_pd_load_traction(pd, (double[3]){grip + length - layer, -FAR, -FAR},
-                             (double[3]){FAR, FAR, FAR}, h, traction, r->F));
-  bw_pd_bond_set_force(pd, r->F);
+  BW_TRY(bw_solid_load_traction(pd, (double[3]){grip + length - layer, -FAR, -FAR},
+                                (double[3]){FAR, FAR, FAR}, h, traction, r->F));
+  bw_solid_set_force(pd, r->F);
   config.tolerance = 1e-6;
-  return bw_pd_static_linear(pd, &config, r->X, &report);
+  return bw_solid_static_linear(pd, &config, r->X, &report);
 }
 
 /* h lattice steps high, horizon m steps. */
 static bw_status measure(const bw_comm *comm, int h, double m, result *out)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   body_rows r;
   const int grip = (int)(m + 0.5), length = SLENDER * h, layer = (int)m;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = c.rho = 1, c.E = E, c.horizon_ratio = m;
@@ -95,7 +95,7 @@ static bw_status measure(const bw_comm *comm, int h, double m, result *out)
   const double shear = p * h * a / (5.0 / 6 * E / (2 * (1 + 1.0 / 3)) * h);
   out->deflection = tip / (bending + shear);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

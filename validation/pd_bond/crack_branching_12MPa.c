@@ -51,7 +51,7 @@ static bw_status vary(bw_validation *v)
   specimen_config other[OTHERS];
   for (int q = 0; q < OTHERS; q++)
     BW_TRY(glass(bw_validation_comm(v), 200, 12e6, &other[q]));
-  other[0].solid.integrator = BW_PD_RK3;
+  other[0].solid.integrator = BW_SOLID_RK3;
   other[1].time.step = 25e-9;
   other[2].time.step = 10e-9;
   other[3].solid.surface_correction = BW_PD_SURFACE_NONE;

@@ -74,25 +74,25 @@ static double family(const wave *w, double m, double k)
 }
 
 /* rho w^2 from the acceleration of the displaced body. */
-static bw_status operator_of(bw_pd_bond *pd, const wave *w, double k, double *out)
+static bw_status operator_of(bw_solid *pd, const wave *w, double k, double *out)
 {
   body_rows r;
   double sum[2] = {0};
   BW_TRY(body_rows_make(pd, &r));
-  const size_t n = bw_pd_bond_count(pd), d = (size_t)w->direction;
-  bw_pd_bond_get_reference(pd, r.X);
+  const size_t n = bw_solid_count(pd), d = (size_t)w->direction;
+  bw_solid_get_reference(pd, r.X);
   for (size_t i = 0; i < n; i++)
     r.X[3 * i + d] += AMPLITUDE * sin(k * r.X0[3 * i]);
-  bw_pd_bond_set_state(pd, r.X, r.V);
-  bw_pd_bond_ledger e; /* not wanted: making it evaluates the force */
-  BW_TRY(bw_pd_bond_account(pd, &e));
-  bw_pd_bond_get_acceleration(pd, r.F);
+  bw_solid_set_state(pd, r.X, r.V);
+  bw_solid_ledger e; /* not wanted: making it evaluates the force */
+  BW_TRY(bw_solid_account(pd, &e));
+  bw_solid_get_acceleration(pd, r.F);
   for (size_t i = 0; i < n; i++) {
     const double phase = sin(k * r.X0[3 * i]);
     sum[0] -= RHO * r.F[3 * i + d] * phase;
     sum[1] += AMPLITUDE * phase * phase;
   }
-  bw_comm_sum(bw_pd_bond_comm(pd), 2, sum);
+  bw_comm_sum(bw_solid_comm(pd), 2, sum);
   *out = sum[0] / sum[1];
   body_rows_release(&r);
   return BW_OK;
@@ -100,8 +100,8 @@ static bw_status operator_of(bw_pd_bond *pd, const wave *w, double k, double *ou
 
 static bw_status measure(bw_validation *v, const wave *w, double m, int length)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   c.geometry = w->geometry, c.horizon_ratio = m;
   c.ds = 1, c.rho = RHO, c.E = E;
   c.period[0] = length, c.period[1] = 1, c.period[2] = w->geometry == BW_PD_3D ? 1 : 0;
@@ -134,7 +134,7 @@ static bw_status measure(bw_validation *v, const wave *w, double m, int length)
                        .source = "Silling 2000, by quadrature",
                        .extra = extra});
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

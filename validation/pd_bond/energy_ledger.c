@@ -38,35 +38,35 @@ static void claim(bw_validation *v, const char *quantity, double measured, doubl
 
 static bw_status snap(bw_validation *v)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default(); /* SI */
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default(); /* SI */
+  bw_solid *pd = NULL;
   body_rows r;
   double worst = 0, time = 0;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1e-3, c.rho = 1200, c.E = 3e9, c.G0 = 300;
   c.damping_pair = 1e14, c.contact = true;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){60, 20, 1}, notched, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
-  BW_TRY(bw_pd_load_traction(pd, (double[3]){0, 0.017, -1}, (double[3]){0.02, FAR, 1}, 0.016,
-                             (double[3]){0, 1e5, 0}, r.F));
-  bw_pd_load_gravity(pd, (double[3]){0, -9.81, 0}, r.F);
-  bw_pd_bond_set_force(pd, r.F);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+  BW_TRY(bw_solid_load_traction(pd, (double[3]){0, 0.017, -1}, (double[3]){0.02, FAR, 1}, 0.016,
+                                (double[3]){0, 1e5, 0}, r.F));
+  bw_solid_load_gravity(pd, (double[3]){0, -9.81, 0}, r.F);
+  bw_solid_set_force(pd, r.F);
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
     r.V[3 * i] = r.X0[3 * i] > 0.03 ? 2 : 0;
-  const double dt = 0.2 * bw_pd_bond_dt_max(pd);
-  const bw_pd_ramp ramp = {BW_PD_RAMP_SMOOTH, 0, 400 * dt};
-  bw_pd_bond_ledger e = {0};
+  const double dt = 0.2 * bw_solid_dt_max(pd);
+  const bw_solid_ramp ramp = {BW_SOLID_RAMP_SMOOTH, 0, 400 * dt};
+  bw_solid_ledger e = {0};
   for (int step = 1; step <= 3000; step++, time += dt) {
-    bw_pd_load_move(pd, &ramp, time, dt, r.V);
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    bw_solid_load_move(pd, &ramp, time, dt, r.V);
+    BW_TRY(bw_solid_step(pd, dt));
     if (step % 50 != 0) continue;
-    BW_TRY(bw_pd_bond_account(pd, &e));
+    BW_TRY(bw_solid_account(pd, &e));
     const double found = e.kinetic + e.elastic + e.contact + e.damping + e.fracture;
     if (step >= 500) worst = fmax(worst, fabs(found / e.external - 1));
   }
   claim(v, "ledger_gap", worst, 0, 1e-3);
   claim(v, "snapped", e.broken > 80 && e.fracture > 0.05 * e.external, 1, 0);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -78,21 +78,21 @@ static void shake(const double X0[3], double V[3], const void *data)
 
 static bw_status swing(bw_validation *v)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   c.geometry = BW_PD_PLANE_STRAIN, c.ds = 1, c.rho = 2, c.E = 5;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){9, 9, 1}, NULL, NULL, &pd));
-  BW_TRY(bw_pd_load_velocity(pd, shake, NULL));
+  BW_TRY(bw_solid_load_velocity(pd, shake, NULL));
   const int steps = bw_validation_full(v) ? 1000000 : 100000, every = 20;
-  const double dt = 0.5 * bw_pd_bond_dt_max(pd);
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  const double dt = 0.5 * bw_solid_dt_max(pd);
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   const double start = e.kinetic;
   double worst = 0, first = 0, last = 0;
   for (int step = 1; step <= steps; step++) {
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
     if (step % every != 0) continue;
-    BW_TRY(bw_pd_bond_account(pd, &e));
+    BW_TRY(bw_solid_account(pd, &e));
     const double total = (e.kinetic + e.elastic) / start, share = 10.0 * every / steps;
     worst = fmax(worst, fabs(total - 1));
     if (step <= steps / 10) first += share * total;
@@ -100,7 +100,7 @@ static bw_status swing(bw_validation *v)
   }
   claim(v, "largest_excursion", worst, 0, 0.125);
   claim(v, "trend", last - first, 0, 1e-3);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

@@ -18,7 +18,7 @@
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 #include "bw_validation.h"
 #include "lattice_sum.h"
 
@@ -49,9 +49,9 @@ static double crossing(const double xi[3], const void *data)
 
 /* The column lies along direction 1; half its particles move up, half down. */
 static bw_status column(const bw_comm *comm, const setting *s, double m, int height,
-                        bool calibrated, bw_pd_bond **pd)
+                        bool calibrated, bw_solid **pd)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = s->geometry;
   c.ds = c.rho = 1;
   c.E = E;
@@ -74,24 +74,24 @@ static bw_status column(const bw_comm *comm, const setting *s, double m, int hei
   return st;
 }
 
-static bw_status open(bw_pd_bond *pd, int height, int64_t crossing_bonds)
+static bw_status open(bw_solid *pd, int height, int64_t crossing_bonds)
 {
-  const size_t n = bw_pd_bond_count(pd);
-  const double dt = 0.5 * bw_pd_bond_dt_max(pd), speed = 1e-3 * S0 / dt;
+  const size_t n = bw_solid_count(pd);
+  const double dt = 0.5 * bw_solid_dt_max(pd), speed = 1e-3 * S0 / dt;
   double *V = NULL;
   BW_TRY(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(pd, V);
+  bw_solid_get_reference(pd, V);
   for (size_t i = 0; i < n; i++) {
     V[3 * i] = V[3 * i + 2] = 0;
     V[3 * i + 1] = V[3 * i + 1] < 0.5 * height ? -speed : speed;
   }
-  bw_pd_bond_set_prescribed(pd, V);
+  bw_solid_set_prescribed(pd, V);
   bw_release(&V);
   for (int step = 0; step < 400000; step++) {
-    BW_TRY(bw_pd_bond_step(pd, dt));
+    BW_TRY(bw_solid_step(pd, dt));
     if (step % 500 != 0) continue;
-    bw_pd_bond_ledger e;
-    BW_TRY(bw_pd_bond_account(pd, &e));
+    bw_solid_ledger e;
+    BW_TRY(bw_solid_account(pd, &e));
     if (e.broken >= crossing_bonds) return BW_OK;
   }
   return BW_FAIL(BW_EDIVERGED, "fracture_energy: the column did not come apart");
@@ -144,13 +144,13 @@ static bw_status along(bw_validation *v, const setting *s, double m, bool calibr
 {
   const bool planar = s->geometry != BW_PD_3D;
   const int height = 6 * (int)(m + 0.5);
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   BW_TRY(column(bw_validation_comm(v), s, m, height, calibrated, &pd));
   BW_TRY(open(pd, height, count_crossing(m, planar)));
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   const double G = e.fracture; /* area 1 */
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   const double G0 = s->G0 * E * S0 * S0 * m;
   if (calibrated) {
     claim(v, s, "calibrated", m, G, G0, 4e-3, BY_G0);
@@ -178,8 +178,8 @@ static bw_status band(const bw_comm *comm, const setting *s, double m, int lengt
 {
   const int wide = 2 * (int)(m + 1); /* sites with -wide <= x + y < wide: above a family */
   const int64_t n = (int64_t)length * 2 * wide;
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   double *V = NULL;
@@ -197,23 +197,23 @@ static bw_status band(const bw_comm *comm, const setting *s, double m, int lengt
     kind[q] = BW_PD_PRESCRIBED;
   }
   BW_TRY(bw_solid_create_same(comm, &c, n, site, kind, &pd));
-  BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(pd)));
-  const double dt = 0.5 * bw_pd_bond_dt_max(pd), speed = 1e-3 * S0 / dt;
-  bw_pd_bond_get_reference(pd, V);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  BW_TRY(BW_ALLOCATE(&V, 3 * bw_solid_count(pd)));
+  const double dt = 0.5 * bw_solid_dt_max(pd), speed = 1e-3 * S0 / dt;
+  bw_solid_get_reference(pd, V);
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     const double side = V[3 * i] + V[3 * i + 1] < 0.5 ? -1 : 1; /* centres are at +1/2 each */
     V[3 * i] = V[3 * i + 1] = side * speed * sqrt(0.5), V[3 * i + 2] = 0;
   }
-  bw_pd_bond_set_prescribed(pd, V);
+  bw_solid_set_prescribed(pd, V);
   /* the last bond has |xi| = m + 1/2 and one diagonal step across: opening s0 |xi|^2 sqrt(2) */
   const int steps = (int)(1.2 * sqrt(2) * (m + 0.5) * (m + 0.5) / 2e-3);
   bw_status st = BW_OK;
   for (int q = 0; q < steps && st == BW_OK; q++)
-    st = bw_pd_bond_step(pd, dt);
-  bw_pd_bond_ledger e = {.fracture = NAN};
-  BW_THEN(st, bw_pd_bond_account(pd, &e));
+    st = bw_solid_step(pd, dt);
+  bw_solid_ledger e = {.fracture = NAN};
+  BW_THEN(st, bw_solid_account(pd, &e));
   *energy = e.fracture;
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   bw_release(&V);
   bw_release(&site);
   bw_release(&kind);

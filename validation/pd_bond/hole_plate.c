@@ -44,7 +44,7 @@ static bw_status measure(specimen *p, const specimen_hole *hole, outcome *o)
     o->to_hole =
         fmin(o->to_hole,
              hypot(crack.s[q] - hole->centre[0], crack.t[q] - hole->centre[1]) - hole->radius);
-  o->pass = height_at(&crack, hole->centre[0], bw_pd_bond_horizon(p->solid));
+  o->pass = height_at(&crack, hole->centre[0], bw_solid_horizon(p->solid));
   bw_pd_crack_release(&crack);
   return BW_OK;
 }

@@ -38,30 +38,30 @@ static double kirsch(double a, double r)
   return 0.5 * (2 + q + 3 * q * q);
 }
 
-static bw_status relaxed(const bw_comm *comm, int a, double m, bw_pd_bond **pd, body_rows *r)
+static bw_status relaxed(const bw_comm *comm, int a, double m, bw_solid **pd, body_rows *r)
 {
   const int wide = 10 * a, high = 20 * a;
   const hole h = {{0.5 * wide, 0.5 * high}, a};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = c.rho = 1, c.E = E, c.horizon_ratio = m;
   c.surface_correction = BW_PD_SURFACE_ENERGY, c.calibration = BW_PD_CALIBRATION_LATTICE;
   BW_TRY(body_make(comm, &c, (int[3]){wide, high, 1}, drilled, &h, pd));
   BW_TRY(body_rows_make(*pd, r));
   for (int end = 0; end < 2; end++)
-    BW_TRY(bw_pd_load_traction(*pd, (double[3]){-FAR, end == 0 ? 0 : high - m, -FAR},
-                               (double[3]){FAR, end == 0 ? m : high, FAR}, wide,
-                               (double[3]){0, end == 0 ? -LOAD : LOAD, 0}, r->F));
-  bw_pd_bond_set_force(*pd, r->F);
+    BW_TRY(bw_solid_load_traction(*pd, (double[3]){-FAR, end == 0 ? 0 : high - m, -FAR},
+                                  (double[3]){FAR, end == 0 ? m : high, FAR}, wide,
+                                  (double[3]){0, end == 0 ? -LOAD : LOAD, 0}, r->F));
+  bw_solid_set_force(*pd, r->F);
   config.tolerance = 1e-4;
-  BW_TRY(bw_pd_static_relax(*pd, &config, &report));
-  bw_pd_stress_compute(*pd, NULL, r->stress);
+  BW_TRY(bw_solid_static_relax(*pd, &config, &report));
+  bw_solid_stress_compute(*pd, NULL, r->stress);
   return BW_OK;
 }
 
 /* sigma_yy/t at the distance r = q + 1/2 from the middle, both sides and both rows next to it. */
-static double ligament(const bw_pd_bond *pd, const body_rows *r, int a, int q)
+static double ligament(const bw_solid *pd, const body_rows *r, int a, int q)
 {
   const double middle = 5.0 * a, up = 10.0 * a;
   double sum = 0;
@@ -88,7 +88,7 @@ static void claim(bw_validation *v, const char *quantity, const char *extra, dou
 
 static bw_status measure(bw_validation *v, int a, double m, double *peak)
 {
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   body_rows r;
   char extra[80];
   const double hole_share = 0.2;
@@ -110,7 +110,7 @@ static bw_status measure(bw_validation *v, int a, double m, double *peak)
   claim(v, "peak_extrapolated", extra, 3 * first / kirsch(a, from + 0.5), howland, tolerance);
   claim(v, "peak_of_particles", extra, *peak, howland, INFINITY);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

@@ -41,9 +41,9 @@ static void claim(bw_validation *v, const char *quantity, int surface, int layer
                                 BW_ANALYTIC, source, extra});
 }
 
-static bw_pd_bond_config material(bw_pd_geometry geometry, int surface)
+static bw_solid_config material(bw_pd_geometry geometry, int surface)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = geometry;
   c.ds = c.rho = 1;
   c.E = E;
@@ -53,18 +53,18 @@ static bw_pd_bond_config material(bw_pd_geometry geometry, int surface)
   return c;
 }
 
-static bw_status rest(bw_pd_bond *pd, body_rows *r)
+static bw_status rest(bw_solid *pd, body_rows *r)
 {
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   config.tolerance = 1e-5;
-  memset(r->X, 0, 3 * bw_pd_bond_count(pd) * sizeof *r->X);
-  bw_pd_bond_set_force(pd, r->F);
-  return bw_pd_static_linear(pd, &config, r->X, &report);
+  memset(r->X, 0, 3 * bw_solid_count(pd) * sizeof *r->X);
+  bw_solid_set_force(pd, r->F);
+  return bw_solid_static_linear(pd, &config, r->X, &report);
 }
 
 /* Mean of displacement k over the middle third's section of one layer at `at` along direction d. */
-static double section(const bw_pd_bond *pd, const body_rows *r, size_t d, double at, size_t k)
+static double section(const bw_solid *pd, const body_rows *r, size_t d, double at, size_t k)
 {
   double lower[3] = {SIDE / 3, SIDE / 3, -FAR}, upper[3] = {2 * SIDE / 3, 2 * SIDE / 3, FAR};
   lower[d] = at, upper[d] = at + 1;
@@ -72,7 +72,7 @@ static double section(const bw_pd_bond *pd, const body_rows *r, size_t d, double
 }
 
 /* Strain du_k/dx_d of the middle; across the plate from face to face. */
-static double slope(const bw_pd_bond *pd, const body_rows *r, size_t d, int layers, size_t k)
+static double slope(const bw_solid *pd, const body_rows *r, size_t d, int layers, size_t k)
 {
   const double a = d == 2 ? 0 : SIDE / 3, b = d == 2 ? layers - 1 : 2 * SIDE / 3 - 1;
   return (section(pd, r, d, b, k) - section(pd, r, d, a, k)) / (b - a);
@@ -80,9 +80,9 @@ static double slope(const bw_pd_bond *pd, const body_rows *r, size_t d, int laye
 
 /* Tractions E STRAIN times stress[d] on the outermost layers of the narrow sides normal to d. A
  * shear is balanced by the sides it meets, whose layers are SIDE - 1 apart: no stress beyond. */
-static bw_status pull(bw_pd_bond *pd, body_rows *r, int layers, const double stress[2][2])
+static bw_status pull(bw_solid *pd, body_rows *r, int layers, const double stress[2][2])
 {
-  memset(r->F, 0, 3 * bw_pd_bond_count(pd) * sizeof *r->F);
+  memset(r->F, 0, 3 * bw_solid_count(pd) * sizeof *r->F);
   for (int d = 0; d < 2; d++)
     for (int end = -1; end <= 1; end += 2) {
       double lower[3] = {-FAR, -FAR, -FAR}, upper[3] = {FAR, FAR, FAR}, t[3] = {0};
@@ -90,7 +90,7 @@ static bw_status pull(bw_pd_bond *pd, body_rows *r, int layers, const double str
       if (end > 0) lower[d] = SIDE - 1;
       for (int k = 0; k < 2; k++)
         t[k] = end * E * STRAIN * stress[d][k] * (k == d ? SIDE : SIDE - 1);
-      BW_TRY(bw_pd_load_traction(pd, lower, upper, layers, t, r->F));
+      BW_TRY(bw_solid_load_traction(pd, lower, upper, layers, t, r->F));
     }
   return rest(pd, r);
 }
@@ -101,8 +101,8 @@ static bw_status plate(bw_validation *v, int surface, int layers)
   static const double shear[2][2] = {{0, 1}, {1, 0}};
   const char source[] = "isotropic elasticity, nu = 1/4";
   const double tolerance = layers == 8 ? 0.02 : INFINITY;
-  const bw_pd_bond_config c = material(BW_PD_3D, surface);
-  bw_pd_bond *pd = NULL;
+  const bw_solid_config c = material(BW_PD_3D, surface);
+  bw_solid *pd = NULL;
   body_rows r;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){SIDE, SIDE, layers}, NULL, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
@@ -121,7 +121,7 @@ static bw_status plate(bw_validation *v, int surface, int layers)
         STRAIN / (slope(pd, &r, 0, layers, 1) + slope(pd, &r, 1, layers, 0)), 0.5 / (1 + NU),
         tolerance, source);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -133,17 +133,17 @@ static int gripped(const int32_t site[3], const void *data)
 
 static bw_status cantilever(bw_validation *v, int surface, int h)
 {
-  const bw_pd_bond_config c = material(BW_PD_PLANE_STRAIN, surface);
+  const bw_solid_config c = material(BW_PD_PLANE_STRAIN, surface);
   const int L = 16 * h;
   const double q = 1e-9, at = L - 0.5; /* force density; middle of the last column */
   const double bend = E / (1 - NU * NU) * h * h / 12.0, slide = 5.0 / 6 * E / (2 * (1 + NU));
   const double theory = q * at * at * (6.0 * L * L - 4 * L * at + at * at) / (24 * bend) +
                         q * (L * at - at * at / 2) / slide;
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   body_rows r;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){(int)M + L, h, 1}, gripped, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
     r.F[3 * i + 1] = q;
   BW_TRY(rest(pd, &r));
   const double tip = body_mean(pd, r.X0, (double[3]){M + L - 1, -FAR, -FAR},
@@ -151,7 +151,7 @@ static bw_status cantilever(bw_validation *v, int surface, int h)
   claim(v, "cantilever_tip", surface, h, tip / theory, 1, 0.5 * M * M / (h * h) + 2 * M / L,
         "Timoshenko beam");
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -159,24 +159,23 @@ static bw_status cantilever(bw_validation *v, int surface, int h)
 static bw_status cut(bw_validation *v, int surface, int h)
 {
   const double s0 = 1e-3;
-  bw_pd_bond_config c = material(BW_PD_PLANE_STRESS, surface);
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = material(BW_PD_PLANE_STRESS, surface);
+  bw_solid *pd = NULL;
   body_rows r;
   c.G0 = 1;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){24, h, 1}, NULL, NULL, &pd));
-  bw_pd_bond_set_G0(pd,
-                    s0 * s0 / (bw_pd_bond_critical_stretch(pd) * bw_pd_bond_critical_stretch(pd)));
+  bw_solid_set_G0(pd, s0 * s0 / (bw_solid_critical_stretch(pd) * bw_solid_critical_stretch(pd)));
   BW_TRY(body_rows_make(pd, &r));
-  for (size_t i = 0; i < 3 * bw_pd_bond_count(pd); i++)
+  for (size_t i = 0; i < 3 * bw_solid_count(pd); i++)
     r.X[i] = r.X0[i] * (1 + s0);
-  bw_pd_bond_set_state(pd, r.X, r.V);
-  BW_TRY(bw_pd_bond_precrack(pd, (double[3]){12, 0, 0}, (double[3]){12, h, 0}, NULL));
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
-  claim(v, "cut_energy", surface, h, e.fracture / (bw_pd_bond_settings(pd)->G0 * h), 1, INFINITY,
+  bw_solid_set_state(pd, r.X, r.V);
+  BW_TRY(bw_solid_precrack(pd, (double[3]){12, 0, 0}, (double[3]){12, h, 0}, NULL));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
+  claim(v, "cut_energy", surface, h, e.fracture / (bw_solid_settings(pd)->G0 * h), 1, INFINITY,
         "G0");
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

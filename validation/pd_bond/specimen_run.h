@@ -22,8 +22,8 @@ static bw_status specimen_read(const bw_comm *comm, const char *name, int n,
 /* Energy not found again, over the work. Collective. */
 static bw_status specimen_residual(specimen *p, double *residual)
 {
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(p->solid, &e));
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(p->solid, &e));
   *residual = (e.external - e.kinetic - e.elastic - e.fracture - e.damping) / e.external;
   return BW_OK;
 }

@@ -83,16 +83,16 @@ static void claim(bw_validation *v, const char *what, const material *g, const c
 }
 
 /* Stress of the particle in the middle under du_0/dx_direction = STRAIN. */
-static bw_status middle_stress(bw_pd_bond *pd, int edge, size_t direction, double stress[6])
+static bw_status middle_stress(bw_solid *pd, int edge, size_t direction, double stress[6])
 {
   body_rows r;
   BW_TRY(body_rows_make(pd, &r));
-  bw_pd_bond_get_reference(pd, r.X);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+  bw_solid_get_reference(pd, r.X);
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
     r.X[3 * i] += STRAIN * r.X0[3 * i + direction];
-  bw_pd_bond_set_state(pd, r.X, r.V);
-  bw_pd_stress_compute(pd, NULL, r.stress);
-  const double at = edge / 2, z = bw_pd_bond_settings(pd)->geometry == BW_PD_3D ? at : -1;
+  bw_solid_set_state(pd, r.X, r.V);
+  bw_solid_stress_compute(pd, NULL, r.stress);
+  const double at = edge / 2, z = bw_solid_settings(pd)->geometry == BW_PD_3D ? at : -1;
   for (size_t k = 0; k < 6; k++)
     stress[k] = body_mean(pd, r.X0, (double[3]){at, at, z}, (double[3]){at + 1, at + 1, z + 2},
                           r.stress + k, 6);
@@ -108,8 +108,8 @@ static bw_status bulk(bw_validation *v, const material *g, double m,
   const bool planar = g->geometry != BW_PD_3D;
   const bool tensor = surface == BW_PD_SURFACE_TENSOR;
   const int edge = 4 * (int)(m + 0.5) + 3;
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid *pd = NULL;
   double pulled[6], sheared[6];
   char extra[120];
   c.geometry = g->geometry, c.ds = c.rho = 1, c.E = E, c.horizon_ratio = m;
@@ -121,7 +121,7 @@ static bw_status bulk(bw_validation *v, const material *g, double m,
                    &pd));
   BW_TRY(middle_stress(pd, edge, 0, pulled));
   BW_TRY(middle_stress(pd, edge, 1, sheared));
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   const double unit = E * STRAIN;
   const moduli got = moduli_of(pulled[0] / unit, pulled[1] / unit, sheared[5] / unit, planar);
   const moduli sum = family_moduli(g, m, calibrated);
@@ -143,7 +143,7 @@ static bw_status bulk(bw_validation *v, const material *g, double m,
 }
 
 /* Mean displacement `k` of the section between a and b along `direction`. */
-static double section(const bw_pd_bond *pd, const body_rows *r, int direction, double a, double b,
+static double section(const bw_solid *pd, const body_rows *r, int direction, double a, double b,
                       double from, double to, size_t k)
 {
   double lower[3] = {-FAR, -FAR, -FAR}, upper[3] = {FAR, FAR, FAR};
@@ -159,10 +159,10 @@ static bw_status bar(bw_validation *v, const material *g, bw_pd_surface_correcti
   const bool planar = g->geometry != BW_PD_3D;
   const int w = planar ? 30 : 14, l = planar ? 90 : 42;
   const double m = 3;
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
-  bw_pd_bond *pd = NULL;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
+  bw_solid *pd = NULL;
   body_rows r;
   char extra[160];
   c.geometry = g->geometry, c.ds = c.rho = 1, c.E = E, c.surface_correction = surface;
@@ -171,13 +171,13 @@ static bw_status bar(bw_validation *v, const material *g, bw_pd_surface_correcti
   BW_TRY(body_make(bw_validation_comm(v), &c, size, NULL, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
   for (int end = 0; end < 2; end++)
-    BW_TRY(bw_pd_load_traction(pd, (double[3]){end == 0 ? 0 : l - m, -FAR, -FAR},
-                               (double[3]){end == 0 ? m : l, FAR, FAR}, w * size[2],
-                               (double[3]){(end == 0 ? -1 : 1) * E * STRAIN, 0, 0}, r.F));
-  bw_pd_bond_set_force(pd, r.F);
+    BW_TRY(bw_solid_load_traction(pd, (double[3]){end == 0 ? 0 : l - m, -FAR, -FAR},
+                                  (double[3]){end == 0 ? m : l, FAR, FAR}, w * size[2],
+                                  (double[3]){(end == 0 ? -1 : 1) * E * STRAIN, 0, 0}, r.F));
+  bw_solid_set_force(pd, r.F);
   config.tolerance = 1e-5;
-  BW_TRY(bw_pd_static_relax(pd, &config, &report));
-  bw_pd_bond_get_position(pd, r.X);
+  BW_TRY(bw_solid_static_relax(pd, &config, &report));
+  bw_solid_get_position(pd, r.X);
   const double a = l / 3, b = 2 * l / 3;
   const double along =
       (section(pd, &r, 0, b, b + 1, -FAR, FAR, 0) - section(pd, &r, 0, a, a + 1, -FAR, FAR, 0)) /
@@ -196,7 +196,7 @@ static bw_status bar(bw_validation *v, const material *g, bw_pd_surface_correcti
   claim(v, "bar_nu", g, extra, -across / along, want.nu,
         tensor ? exact : fabs(sum.nu / want.nu - 1) + 1e-3 + skin);
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

@@ -16,7 +16,7 @@
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 #include "bw_validation.h"
 #include "lattice_sum.h"
 
@@ -82,14 +82,14 @@ static double family_sum(const material *g, double m, const strain *s)
 static bw_status block_energy(const bw_comm *comm, const material *g, double m, const strain *s,
                               const int size[3], double *energy)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = g->geometry;
   c.ds = c.rho = 1;
   c.E = E;
   c.horizon_ratio = m;
   const int64_t n = (int64_t)size[0] * size[1] * size[2];
   int32_t *site = NULL;
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   double *X = NULL, *V = NULL;
   BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)n));
   for (int64_t q = 0; q < n; q++) {
@@ -98,21 +98,21 @@ static bw_status block_energy(const bw_comm *comm, const material *g, double m, 
     site[3 * q + 2] = (int32_t)(q / size[0] / size[1]);
   }
   BW_TRY(bw_solid_create_same(comm, &c, n, site, NULL, &pd));
-  const size_t mine = bw_pd_bond_count(pd);
+  const size_t mine = bw_solid_count(pd);
   BW_TRY(BW_ALLOCATE(&X, 3 * mine));
   BW_TRY(BW_ALLOCATE(&V, 3 * mine));
-  bw_pd_bond_get_reference(pd, X);
+  bw_solid_get_reference(pd, X);
   for (size_t i = 0; i < mine; i++) {
     const double x[3] = {X[3 * i], X[3 * i + 1], X[3 * i + 2]};
     for (size_t k = 0; k < 3; k++)
       for (int j = 0; j < 3; j++)
         X[3 * i + k] += STRAIN * s->eps[k][j] * x[j];
   }
-  bw_pd_bond_set_state(pd, X, V);
-  bw_pd_bond_ledger e;
-  BW_TRY(bw_pd_bond_account(pd, &e));
+  bw_solid_set_state(pd, X, V);
+  bw_solid_ledger e;
+  BW_TRY(bw_solid_account(pd, &e));
   *energy = e.elastic / (STRAIN * STRAIN);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   bw_release(&site);
   bw_release(&X);
   bw_release(&V);

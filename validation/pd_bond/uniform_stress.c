@@ -26,13 +26,13 @@ static const char *const corrections[] = {"none", "volume", "energy"};
 
 /* The bar at rest with its stress in r. */
 static bw_status pull(const bw_comm *comm, bw_pd_geometry geometry,
-                      bw_pd_surface_correction surface, bool held, bw_pd_bond **pd, body_rows *r)
+                      bw_pd_surface_correction surface, bool held, bw_solid **pd, body_rows *r)
 {
   const bool solid = geometry == BW_PD_3D;
   const int w = solid ? WIDE_3D : WIDE_2D, size[3] = {LONG, w, solid ? w : 1};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_config c = bw_solid_config_default();
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   c.geometry = geometry, c.surface_correction = surface;
   c.ds = c.rho = 1, c.E = E;
   if (held) c.period[1] = w, c.period[2] = solid ? w : 0;
@@ -40,13 +40,13 @@ static bw_status pull(const bw_comm *comm, bw_pd_geometry geometry,
   BW_TRY(body_rows_make(*pd, r));
   const double layer = 3;
   for (int end = 0; end < 2; end++)
-    BW_TRY(bw_pd_load_traction(*pd, (double[3]){end == 0 ? 0 : LONG - layer, -FAR, -FAR},
-                               (double[3]){end == 0 ? layer : LONG, FAR, FAR}, w * size[2],
-                               (double[3]){end == 0 ? -TRACTION : TRACTION, 0, 0}, r->F));
-  bw_pd_bond_set_force(*pd, r->F);
+    BW_TRY(bw_solid_load_traction(*pd, (double[3]){end == 0 ? 0 : LONG - layer, -FAR, -FAR},
+                                  (double[3]){end == 0 ? layer : LONG, FAR, FAR}, w * size[2],
+                                  (double[3]){end == 0 ? -TRACTION : TRACTION, 0, 0}, r->F));
+  bw_solid_set_force(*pd, r->F);
   config.tolerance = 1e-5;
-  BW_TRY(bw_pd_static_relax(*pd, &config, &report));
-  bw_pd_stress_compute(*pd, NULL, r->stress);
+  BW_TRY(bw_solid_static_relax(*pd, &config, &report));
+  bw_solid_stress_compute(*pd, NULL, r->stress);
   return BW_OK;
 }
 
@@ -66,7 +66,7 @@ static bw_status bulk(bw_validation *v, bw_pd_geometry geometry, bw_pd_surface_c
   const bool planar = geometry != BW_PD_3D;
   const double ratio =
       lattice_sum(3, planar, planar, fourth, &y) / lattice_sum(3, planar, planar, fourth, &x);
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   body_rows r;
   char quantity[80], extra[80];
   BW_TRY(pull(bw_validation_comm(v), geometry, surface, true, &pd, &r));
@@ -85,7 +85,7 @@ static bw_status bulk(bw_validation *v, bw_pd_geometry geometry, bw_pd_surface_c
                                      .extra = extra});
   }
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 
@@ -93,7 +93,7 @@ static bw_status section(bw_validation *v, bw_pd_geometry geometry,
                          bw_pd_surface_correction surface)
 {
   const double w = geometry == BW_PD_3D ? WIDE_3D : WIDE_2D;
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   body_rows r;
   char quantity[80], extra[80];
   BW_TRY(pull(bw_validation_comm(v), geometry, surface, false, &pd, &r));
@@ -116,7 +116,7 @@ static bw_status section(bw_validation *v, bw_pd_geometry geometry,
                                   .extra = extra});
   }
   body_rows_release(&r);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   return BW_OK;
 }
 

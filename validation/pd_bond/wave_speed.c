@@ -14,7 +14,7 @@
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 #include "bw_validation.h"
 #include "lattice_sum.h"
 
@@ -35,9 +35,9 @@ static const wave waves[] = {{"p_3d", BW_PD_3D, 0, 1.2, 10.0 / 252},
                              {"p_plane_stress", BW_PD_PLANE_STRESS, 0, 1.125, 1.0 / 24},
                              {"p_plane_strain", BW_PD_PLANE_STRAIN, 0, 1.2, 1.0 / 24}};
 
-static bw_status make(const bw_comm *comm, const wave *w, double m, int length, bw_pd_bond **pd)
+static bw_status make(const bw_comm *comm, const wave *w, double m, int length, bw_solid **pd)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = w->geometry;
   c.ds = 1;
   c.rho = RHO;
@@ -56,34 +56,33 @@ static bw_status make(const bw_comm *comm, const wave *w, double m, int length, 
 }
 
 /* Projection of the velocity on the wave; sets the state when `start`. X0, V: (n,3). */
-static double projection(bw_pd_bond *pd, const wave *w, double k, bool start, double X0[],
-                         double V[])
+static double projection(bw_solid *pd, const wave *w, double k, bool start, double X0[], double V[])
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   double sum = 0;
-  bw_pd_bond_get_reference(pd, X0);
-  if (!start) bw_pd_bond_get_velocity(pd, V);
+  bw_solid_get_reference(pd, X0);
+  if (!start) bw_solid_get_velocity(pd, V);
   for (size_t i = 0; i < n; i++) {
     double *v = &V[3 * i + (size_t)w->direction];
     if (start) *v = 1e-6 * sin(k * X0[3 * i]);
     sum += *v * sin(k * X0[3 * i]);
   }
-  if (start) bw_pd_bond_set_state(pd, X0, V);
-  bw_comm_sum(bw_pd_bond_comm(pd), 1, &sum);
+  if (start) bw_solid_set_state(pd, X0, V);
+  bw_comm_sum(bw_solid_comm(pd), 1, &sum);
   return sum;
 }
 
 /* Frequency from the first and the fifth zero: two periods. */
-static bw_status frequency(bw_pd_bond *pd, const wave *w, double k, double *omega)
+static bw_status frequency(bw_solid *pd, const wave *w, double k, double *omega)
 {
   double *X0 = NULL, *V = NULL, zero[5] = {0};
-  BW_TRY(BW_ALLOCATE(&X0, 3 * bw_pd_bond_count(pd)));
-  BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(pd)));
+  BW_TRY(BW_ALLOCATE(&X0, 3 * bw_solid_count(pd)));
+  BW_TRY(BW_ALLOCATE(&V, 3 * bw_solid_count(pd)));
   double before = projection(pd, w, k, true, X0, V);
-  const double dt = 0.25 * bw_pd_bond_dt_max(pd);
+  const double dt = 0.25 * bw_solid_dt_max(pd);
   bw_status st = BW_OK;
   for (int64_t step = 0, found = 0; found < 5 && st == BW_OK; step++) {
-    st = bw_pd_bond_step(pd, dt);
+    st = bw_solid_step(pd, dt);
     const double now = projection(pd, w, k, false, X0, V);
     if (before * now <= 0) zero[found++] = dt * ((double)step + before / (before - now));
     before = now;
@@ -119,13 +118,13 @@ static double family_modulus(const wave *w, double m)
 
 static bw_status measure(bw_validation *v, const wave *w, double m, int length)
 {
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   double omega;
   char quantity[80], extra[80];
   const double k = 2 * LATTICE_PI / length, kd = k * m;
   BW_TRY(make(bw_validation_comm(v), w, m, length, &pd));
   BW_TRY(frequency(pd, w, k, &omega));
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   const double modulus = fabs(family_modulus(w, m) / w->modulus - 1);
   snprintf(quantity, sizeof quantity, "speed_%s", w->name);
   snprintf(extra, sizeof extra, "\"m\": %g, \"spacings_per_wave\": %d", m, length);

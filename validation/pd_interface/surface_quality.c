@@ -106,20 +106,20 @@ static void add_angle(const body *b, const double X[3], const double N[3], tally
 }
 
 /* Cut the body and move what is beyond the cut away, by more than the horizon. */
-static bw_status open_crack(const body *b, bw_pd_bond *pd, bw_pd_interface *pi)
+static bw_status open_crack(const body *b, bw_solid *pd, bw_pd_interface *pi)
 {
   const double far = 1e3, x = b->crack;
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   double *X = NULL, *V = NULL;
-  bw_status st = bw_pd_bond_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
-                                     (double[3]){x, -far, far});
+  bw_status st = bw_solid_precrack(pd, (double[3]){x, -far, -far}, (double[3]){x, far, -far},
+                                   (double[3]){x, -far, far});
   BW_THEN(st, BW_ALLOCATE(&X, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
   if (st == BW_OK) {
-    bw_pd_bond_get_reference(pd, X);
+    bw_solid_get_reference(pd, X);
     for (size_t h = 0; h < n; h++)
       X[3 * h] += X[3 * h] > x ? 4.0 : 0.0;
-    bw_pd_bond_set_state(pd, X, V);
+    bw_solid_set_state(pd, X, V);
     st = bw_pd_interface_update(pi);
   }
   bw_release(&X);
@@ -137,8 +137,8 @@ static double middle_x(int64_t n, const int32_t site[])
   return 0.5 * (low + high + 1);
 }
 
-static void look(const bw_comm *comm, const body *b, const bw_pd_bond *pd,
-                 const bw_pd_interface *pi, const double X0[], double middle, tally *t)
+static void look(const bw_comm *comm, const body *b, const bw_solid *pd, const bw_pd_interface *pi,
+                 const double X0[], double middle, tally *t)
 {
   const bw_pd_surface s = bw_pd_interface_surface(pi);
   for (size_t q = 0; q < s.n; q++) {
@@ -160,14 +160,14 @@ static void look(const bw_comm *comm, const body *b, const bw_pd_bond *pd,
                .worst_near = t->worst_near,
                .gauss = sums[3],
                .magnitude = sums[6],
-               .volume = (double)bw_pd_bond_total(pd)};
+               .volume = (double)bw_solid_total(pd)};
 }
 
 static bw_status measure(const bw_comm *comm, const body *b, bw_pd_area area, tally *t)
 {
   enum { SIDE = 80 }; /* all bodies lie in 0 .. 80 */
   const int size[3] = {SIDE, SIDE, b->planar ? 1 : SIDE};
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = b->planar ? BW_PD_PLANE_STRESS : BW_PD_3D;
   c.ds = c.rho = c.E = 1.0;
   c.period[2] = b->period_z;
@@ -178,7 +178,7 @@ static bw_status measure(const bw_comm *comm, const body *b, bw_pd_area area, ta
   uint8_t *kind = NULL;
   bool *solid = NULL;
   double *X0 = NULL;
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   bw_pd_interface *pi = NULL;
   memset(t, 0, sizeof *t);
   const bw_shape_lattice lattice = bw_shape_lattice_straight(1.0, c.origin, b->planar);
@@ -186,22 +186,22 @@ static bw_status measure(const bw_comm *comm, const body *b, bw_pd_area area, ta
   BW_THEN(st, BW_ALLOCATE(&solid, (size_t)SIDE * SIDE * SIDE));
   BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &pd));
   BW_THEN(st, bw_pd_interface_create(pd, &ic, &pi));
-  BW_THEN(st, BW_ALLOCATE(&X0, 3 * bw_pd_bond_count(pd)));
+  BW_THEN(st, BW_ALLOCATE(&X0, 3 * bw_solid_count(pd)));
   if (st == BW_OK) {
     for (int64_t q = 0; q < n; q++)
       solid[((size_t)site[3 * q + 2] * SIDE + (size_t)site[3 * q + 1]) * SIDE +
             (size_t)site[3 * q]] = true;
     const bool *found = bw_pd_interface_is_surface(pi);
-    for (size_t h = 0; h < bw_pd_bond_count(pd); h++) {
-      const bool real = open_side(b, n, solid, size, &site[3 * bw_pd_bond_id(pd)[h]]);
+    for (size_t h = 0; h < bw_solid_count(pd); h++) {
+      const bool real = open_side(b, n, solid, size, &site[3 * bw_solid_id(pd)[h]]);
       t->right += found[h] && real, t->found += found[h], t->real += real;
     }
-    bw_pd_bond_get_reference(pd, X0);
+    bw_solid_get_reference(pd, X0);
     if (b->crack > 0.0) st = open_crack(b, pd, pi);
     look(comm, b, pd, pi, X0, middle_x(n, site), t);
   }
   bw_pd_interface_destroy(&pi);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   bw_release(&site);
   bw_release(&kind);
   bw_release(&solid);

@@ -21,7 +21,7 @@ typedef struct {
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
   size_t n, total;
 } bodies_scene;
@@ -29,7 +29,7 @@ typedef struct {
 static inline void bodies_destroy(bodies_scene *s)
 {
   bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
+  bw_solid_destroy(&s->solid);
   bw_ns_channel_destroy(&s->fluid);
   bw_grid_destroy(&s->grid);
 }
@@ -69,7 +69,7 @@ static inline void bodies_make_fluid(const bodies_set_up *b, bodies_scene *s)
 /* Stiff and well damped: a block turns and moves, and hardly bends. */
 static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   bw_shape shape[4];
   int64_t n = 0;
   int32_t *site = NULL;
@@ -95,7 +95,7 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
   bw_check_ok(bw_solid_create_same(bw_check_world(), &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
-  s->n = bw_pd_bond_count(s->solid);
+  s->n = bw_solid_count(s->solid);
   s->total = (size_t)n;
 }
 
@@ -131,7 +131,7 @@ static inline bw_coupler_report bodies_step(bodies_scene *s, int steps, double d
 }
 
 /* all (total,3) on every rank, by global id. */
-static inline void bodies_gather(const bodies_scene *s, void (*get)(const bw_pd_bond *, double[]),
+static inline void bodies_gather(const bodies_scene *s, void (*get)(const bw_solid *, double[]),
                                  double all[])
 {
   double *mine = NULL;
@@ -141,7 +141,7 @@ static inline void bodies_gather(const bodies_scene *s, void (*get)(const bw_pd_
     all[q] = 0;
   for (size_t i = 0; i < s->n; i++)
     for (size_t k = 0; k < 3; k++)
-      all[3 * (size_t)bw_pd_bond_id(s->solid)[i] + k] = mine[3 * i + k];
+      all[3 * (size_t)bw_solid_id(s->solid)[i] + k] = mine[3 * i + k];
   bw_comm_sum(bw_check_world(), (int)(3 * s->total), all);
   bw_release(&mine);
 }

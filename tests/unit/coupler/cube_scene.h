@@ -14,7 +14,7 @@ static const double H = 1.0 / N, RHO = 10.0;
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
-  bw_pd_bond *solid;
+  bw_solid *solid;
   bw_coupler *coupler;
 } scene;
 
@@ -32,7 +32,7 @@ static inline scene build_blocks(double retraction, double relaxation, double sp
   const bw_comm *comm = bw_check_world();
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config flow = bw_ns_channel_config_default();
-  bw_pd_bond_config solid = bw_pd_bond_config_default();
+  bw_solid_config solid = bw_solid_config_default();
   bw_coupler_config config = bw_coupler_config_default();
   for (int d = 0; d < 3; d++)
     grid.n[d] = N, grid.length[d] = 1.0;
@@ -79,7 +79,7 @@ static inline scene build(double retraction, double relaxation)
 static inline void destroy(scene *s)
 {
   bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
+  bw_solid_destroy(&s->solid);
   bw_ns_channel_destroy(&s->fluid);
   bw_grid_destroy(&s->grid);
 }

@@ -25,7 +25,7 @@ START_TEST(a_block_leaves_and_its_mass_is_known)
                                 .load = BW_LOAD_REACTION};
   bodies_scene s = bodies_build(&set_up);
   const double of_one = 2.0 * H * H * H, mass = 25 * of_one;
-  const double rate = hypot(1 / bw_pd_bond_dt_max(s.solid), 1 / bw_pd_bond_dt_contact(s.solid));
+  const double rate = hypot(1 / bw_solid_dt_max(s.solid), 1 / bw_solid_dt_contact(s.solid));
   ck_assert_int_eq(bw_coupler_substeps(s.coupler, 3.5 * 0.8 / rate), 4); /* bonds and contact */
   double part_out = 0.0, V[2][3 * MOST];
   bw_coupler_report r = {0};
@@ -39,9 +39,9 @@ START_TEST(a_block_leaves_and_its_mass_is_known)
   bw_check_near(r.mass_left / of_one, 16.0, 1e-12);
   bw_check_near(r.mass_inside / of_one, 9.0, 1e-12);
   const int64_t markers = r.markers;
-  bodies_gather(&s, bw_pd_bond_get_velocity, V[0]);
+  bodies_gather(&s, bw_solid_get_velocity, V[0]);
   r = bodies_step(&s, 10, DT); /* the fluid runs on, the piece flies on */
-  bodies_gather(&s, bw_pd_bond_get_velocity, V[1]);
+  bodies_gather(&s, bw_solid_get_velocity, V[1]);
   check_sum(&r, mass);
   ck_assert_int_eq(r.markers, markers);
   bw_check_near(r.mass_left / of_one, 16.0, 1e-12);
@@ -79,7 +79,7 @@ START_TEST(restart_in_the_middle_of_leaving)
   for (int round = 0; round < 2; round++) {
     r = bodies_step(&s, 40, DT);
     ck_assert_double_gt(r.mass_left, 0.0);
-    bodies_gather(&s, bw_pd_bond_get_position, X[round]);
+    bodies_gather(&s, bw_solid_get_position, X[round]);
     if (round > 0) break;
     bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
     bw_check_ok(bw_coupler_load(s.coupler, ck));
@@ -112,7 +112,7 @@ START_TEST(a_heavy_block_lies_on_the_floor)
   const double before = ledger_of(s.solid).wall[1];
   bodies_step(&s, 50, DT);
   const double weight = 16 * H * H * H * (5.0 - 1.0) * 2.0, push = ledger_of(s.solid).wall[1];
-  bodies_gather(&s, bw_pd_bond_get_position, X);
+  bodies_gather(&s, bw_solid_get_position, X);
   for (size_t i = 0; i < s.total; i++)
     lowest = fmin(lowest, X[3 * i + 1]);
   ck_assert_double_gt(lowest, 0.45 * H);
@@ -134,7 +134,7 @@ START_TEST(the_seam_is_not_there)
       memcpy(set_up.block[0], (int[4]){first, 4, first + 4, 8}, sizeof set_up.block[0]);
       bodies_scene s = bodies_build(&set_up);
       bodies_step(&s, 100, DT);
-      bodies_gather(&s, bw_pd_bond_get_position, X[q]);
+      bodies_gather(&s, bw_solid_get_position, X[q]);
       bodies_destroy(&s);
     }
     ck_assert_double_gt(X[1][0], 24 * H); /* across, and not wrapped */
@@ -149,7 +149,7 @@ END_TEST
 static double mean_speed(const bodies_scene *s)
 {
   double V[3 * 16], mean = 0.0;
-  bodies_gather(s, bw_pd_bond_get_velocity, V);
+  bodies_gather(s, bw_solid_get_velocity, V);
   for (size_t i = 0; i < s->total; i++)
     mean += V[3 * i] / (double)s->total;
   return mean;

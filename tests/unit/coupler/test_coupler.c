@@ -16,8 +16,8 @@ START_TEST(markers_sit_where_the_retraction_says)
     scene s = build(retraction, 1.0);
     const bw_coupler *c = s.coupler;
     double *X = NULL;
-    bw_check_ok(BW_ALLOCATE(&X, 3 * bw_pd_bond_count(s.solid)));
-    bw_pd_bond_get_position(s.solid, X);
+    bw_check_ok(BW_ALLOCATE(&X, 3 * bw_solid_count(s.solid)));
+    bw_solid_get_position(s.solid, X);
     for (size_t m = 0; m < c->n_surface; m++)
       for (int d = 0; d < 3; d++) {
         const double centre = X[3 * (size_t)c->particle[m] + d];
@@ -46,7 +46,7 @@ START_TEST(linear_pressure_lifts_the_body)
   for (int d = 0; d < 3; d++)
     memset(u[d], 0, g->size * sizeof *u[d]);
   bw_coupler_hold_solid(s.coupler, false);
-  for (size_t i = 0; i < bw_pd_bond_count(s.solid); i++)
+  for (size_t i = 0; i < bw_solid_count(s.solid); i++)
     s.coupler->V_before[3 * i] = -3.0 * 0.25; /* the particles are at rest now */
   bw_check_ok(bw_coupler__probe_force(s.coupler, 0.25));
   bw_coupler__carry_force(s.coupler, 0.5 * H);
@@ -60,8 +60,8 @@ START_TEST(linear_pressure_lifts_the_body)
   ck_assert_double_lt(fabs(force[1]), ROUND_OFF * expected);
   ck_assert_double_lt(fabs(force[2]), ROUND_OFF * expected);
   double total = 0.0; /* the load on the particles is half of that force: the relaxation */
-  for (size_t i = 0; i < bw_pd_bond_count(s.solid); i++)
-    total += s.coupler->F[3 * i] * bw_pd_bond_volume(s.solid);
+  for (size_t i = 0; i < bw_solid_count(s.solid); i++)
+    total += s.coupler->F[3 * i] * bw_solid_volume(s.solid);
   bw_comm_sum(bw_check_world(), 1, &total);
   bw_check_near(total, 0.5 * force[0], ROUND_OFF);
   destroy(&s);
@@ -87,14 +87,14 @@ START_TEST(blocks_share_a_marker_and_its_force)
   scene s = build_blocks(0.3, 1.0, 2.0);
   const bw_coupler *c = s.coupler;
   const bw_coupler__blocks *b = &c->blocks;
-  const size_t n = bw_pd_bond_count(s.solid);
+  const size_t n = bw_solid_count(s.solid);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_position(s.solid, X);
+  bw_solid_get_position(s.solid, X);
   for (size_t i = 0; i < n; i++) /* spinning about z, stretched along z */
     V[3 * i] = -X[3 * i + 1], V[3 * i + 1] = X[3 * i], V[3 * i + 2] = 0.3 * X[3 * i + 2];
-  bw_pd_bond_set_state(s.solid, X, V);
+  bw_solid_set_state(s.solid, X, V);
   bw_check_ok(bw_coupler__follow_surface(s.coupler));
   bw_check_ok(bw_coupler_step(s.coupler, 1.0e-3));
   bw_coupler__reaction_force(s.coupler);
@@ -143,15 +143,15 @@ START_TEST(the_load_has_the_markers_moment_and_power)
 {
   scene s = build(0.3, 1.0);
   const bw_coupler *c = s.coupler;
-  const size_t n = bw_pd_bond_count(s.solid);
+  const size_t n = bw_solid_count(s.solid);
   double *X = NULL, *V = NULL, sum[2][7] = {{0.0}};
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_position(s.solid, X);
+  bw_solid_get_position(s.solid, X);
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++)
       V[3 * i + d] = sin(40.0 * X[3 * i + (d + 1) % 3]) - X[3 * i + d];
-  bw_pd_bond_set_state(s.solid, X, V);
+  bw_solid_set_state(s.solid, X, V);
   bw_check_ok(bw_coupler__follow_surface(s.coupler));
   for (size_t q = 0; q < c->n_surface; q++)
     for (size_t d = 0; d < 3; d++)
@@ -192,7 +192,7 @@ END_TEST
 START_TEST(substeps_keep_the_solid_within_its_limit)
 {
   scene s = build(0.5, 0.5);
-  const double limit = 0.8 * bw_pd_bond_dt_max(s.solid);
+  const double limit = 0.8 * bw_solid_dt_max(s.solid);
   ck_assert_int_eq(bw_coupler_substeps(s.coupler, 0.5 * limit), 1);
   ck_assert_int_eq(bw_coupler_substeps(s.coupler, 3.5 * limit), 4);
   destroy(&s);
@@ -212,19 +212,19 @@ static double max_difference(const double a[], const double b[], size_t n)
 START_TEST(held_solid_stays_free_one_is_carried)
 {
   scene s = build(0.5, 0.5);
-  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  const size_t n = 3 * bw_solid_count(s.solid);
   double *before = NULL, *after = NULL;
   bw_check_ok(BW_ALLOCATE(&before, n));
   bw_check_ok(BW_ALLOCATE(&after, n));
-  bw_pd_bond_get_position(s.solid, before);
+  bw_solid_get_position(s.solid, before);
   for (int q = 0; q < 2; q++)
     bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
-  bw_pd_bond_get_position(s.solid, after);
+  bw_solid_get_position(s.solid, after);
   ck_assert_double_eq(max_difference(before, after, n), 0.0);
   bw_coupler_hold_solid(s.coupler, false);
   for (int q = 0; q < 3; q++)
     bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
-  const bw_pd_bond_ledger e = ledger_of(s.solid);
+  const bw_solid_ledger e = ledger_of(s.solid);
   ck_assert_double_gt(e.momentum[0], 0.0);
   bw_release(&before);
   bw_release(&after);
@@ -236,7 +236,7 @@ END_TEST
 START_TEST(loaded_state_goes_on_as_the_saved_one)
 {
   scene s = build(0.5, 0.5);
-  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  const size_t n = 3 * bw_solid_count(s.solid);
   double *first = NULL, *second = NULL;
   bw_checkpoint *ck = NULL;
   const char *path = "test_coupler.h5";
@@ -251,7 +251,7 @@ START_TEST(loaded_state_goes_on_as_the_saved_one)
   for (int round = 0; round < 2; round++) {
     for (int q = 0; q < 3; q++)
       bw_check_ok(bw_coupler_step(s.coupler, 2.0e-3));
-    bw_pd_bond_get_velocity(s.solid, round == 0 ? first : second);
+    bw_solid_get_velocity(s.solid, round == 0 ? first : second);
     if (round > 0) break;
     bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
     bw_check_ok(bw_coupler_load(s.coupler, ck));

@@ -11,11 +11,11 @@ static const double DT = 5e-3;
 /* Both loads for 40 steps: nothing faster than four times the stream, no mass lost. */
 static void check_bounded(bodies_scene *s)
 {
-  const double mass = (double)s->total * bw_pd_bond_settings(s->solid)->rho * H * H * H;
+  const double mass = (double)s->total * bw_solid_settings(s->solid)->rho * H * H * H;
   const bw_coupler_report r = bodies_step(s, 40, DT);
   double *V = NULL, fastest = 0.0;
   bw_check_ok(BW_ALLOCATE(&V, 3 * s->n));
-  bw_pd_bond_get_velocity(s->solid, V);
+  bw_solid_get_velocity(s->solid, V);
   for (size_t i = 0; i < 3 * s->n; i++)
     fastest = fmax(fastest, fabs(V[i]));
   bw_comm_max(bw_check_world(), 1, &fastest);
@@ -94,10 +94,10 @@ START_TEST(all_bonds_broken)
                                 .load = BW_LOAD_REACTION};
   bodies_scene s = bodies_build(&set_up);
   uint8_t *bits = NULL;
-  bw_check_ok(BW_ALLOCATE(&bits, s.n * bw_pd_bond_bits_bytes(s.solid)));
-  bw_check_ok(bw_pd_bond_set_bits(s.solid, bits)); /* none */
+  bw_check_ok(BW_ALLOCATE(&bits, s.n * bw_solid_bits_bytes(s.solid)));
+  bw_check_ok(bw_solid_set_bits(s.solid, bits)); /* none */
   bw_release(&bits);
-  const bw_pd_bond_ledger e = ledger_of(s.solid);
+  const bw_solid_ledger e = ledger_of(s.solid);
   ck_assert_int_eq(e.broken, e.bonds);
   check_bounded(&s);
   bw_pd_fragment *piece = NULL;
@@ -121,10 +121,10 @@ START_TEST(a_crack_through_the_foundation)
                                 .held_block = 2,
                                 .load = BW_LOAD_REACTION};
   bodies_scene s = bodies_build(&set_up);
-  bw_check_ok(bw_pd_bond_precrack(s.solid, (double[3]){0, 0, 0}, (double[3]){2, 0, 0}, NULL));
+  bw_check_ok(bw_solid_precrack(s.solid, (double[3]){0, 0, 0}, (double[3]){2, 0, 0}, NULL));
   check_bounded(&s);
   double X[3 * 64], lowest = 1.0;
-  bodies_gather(&s, bw_pd_bond_get_position, X);
+  bodies_gather(&s, bw_solid_get_position, X);
   int under = 0;
   for (size_t i = 0; i < s.total; i++) {
     under += X[3 * i + 1] < 0.0;

@@ -15,12 +15,12 @@ static double make_light(scene *s)
   const double lower = FIRST * H, upper = (FIRST + BLOCK) * H, c = 4.0 * BLOCK * H / STEP;
   const bw_shape cube = {
       .kind = BW_SHAPE_BOX, .lower = {lower, lower, lower}, .upper = {upper, upper, upper}};
-  bw_pd_bond_config material = *bw_pd_bond_settings(s->solid);
+  bw_solid_config material = *bw_solid_settings(s->solid);
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   bw_coupler_destroy(&s->coupler);
-  bw_pd_bond_destroy(&s->solid);
+  bw_solid_destroy(&s->solid);
   material.rho = 0.1 * RHO;
   material.E = material.rho * c * c;
   material.damping_mean = material.rho * c / (BLOCK * H);
@@ -52,12 +52,12 @@ static double iterate(scene *s, double c, int most)
 static double mismatch(const scene *s, const double X[])
 {
   const bw_coupler *c = s->coupler;
-  const size_t n = 3 * bw_pd_bond_count(s->solid);
+  const size_t n = 3 * bw_solid_count(s->solid);
   double *now = NULL, *V = NULL, sums[2] = {0.0, 0.0};
   bw_check_ok(BW_ALLOCATE(&now, n));
   bw_check_ok(BW_ALLOCATE(&V, n));
-  bw_pd_bond_get_position(s->solid, now);
-  bw_pd_bond_get_velocity(s->solid, V);
+  bw_solid_get_position(s->solid, now);
+  bw_solid_get_velocity(s->solid, V);
   for (size_t i = 0; i < c->n_surface; i++)
     for (size_t d = 0; d < 3; d++) {
       const size_t p = 3 * (size_t)c->particle[i] + d;
@@ -78,13 +78,13 @@ static double mismatch(const scene *s, const double X[])
 START_TEST(iterated_step_meets_its_residual)
 {
   scene s = build(0.3, 0.1);
-  const double c = make_light(&s), mass = bw_pd_bond_settings(s.solid)->rho * pow(BLOCK * H, 3);
+  const double c = make_light(&s), mass = bw_solid_settings(s.solid)->rho * pow(BLOCK * H, 3);
   double *X = NULL;
   const double residual = iterate(&s, c, 60);
   bw_coupler_report r;
-  bw_check_ok(BW_ALLOCATE(&X, 3 * bw_pd_bond_count(s.solid)));
+  bw_check_ok(BW_ALLOCATE(&X, 3 * bw_solid_count(s.solid)));
   for (int q = 0; q < 4; q++) {
-    bw_pd_bond_get_position(s.solid, X);
+    bw_solid_get_position(s.solid, X);
     bw_check_ok(bw_coupler_step(s.coupler, STEP));
     bw_check_ok(bw_coupler_measure(s.coupler, &r));
     ck_assert_int_gt(r.iterations, 1);
@@ -111,7 +111,7 @@ START_TEST(a_restart_iterates_the_same_way)
 {
   scene s = build(0.3, 0.1);
   const double c = make_light(&s);
-  const size_t n = 3 * bw_pd_bond_count(s.solid);
+  const size_t n = 3 * bw_solid_count(s.solid);
   const char *path = "test_iterate.h5";
   double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
   bw_checkpoint *ck = NULL;
@@ -124,7 +124,7 @@ START_TEST(a_restart_iterates_the_same_way)
     for (int q = 0; q < 2; q++)
       bw_check_ok(bw_coupler_step(s.coupler, STEP));
     bw_check_ok(BW_ALLOCATE(&V[round], n));
-    bw_pd_bond_get_velocity(s.solid, V[round]);
+    bw_solid_get_velocity(s.solid, V[round]);
     if (round > 0) break;
     bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
     bw_check_ok(bw_coupler_load(s.coupler, ck));

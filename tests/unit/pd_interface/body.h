@@ -13,7 +13,7 @@ typedef struct {
   uint8_t *kind;
   int low[3], size[3]; /* bounding box */
   bool *solid;         /* (size) */
-  bw_pd_bond *pd;
+  bw_solid *pd;
   bw_pd_interface *pi;
 } body;
 
@@ -52,7 +52,7 @@ static inline void body_mark(body *b)
 
 /* Open sides of a site: neighbours that are missing, not counting those beyond the walls of ic;
  * periodic directions wrap. */
-static inline int body_open_sides(const body *b, const bw_pd_bond_config *c,
+static inline int body_open_sides(const body *b, const bw_solid_config *c,
                                   const bw_pd_interface_config *ic, const int32_t site[3])
 {
   int open = 0;
@@ -74,9 +74,9 @@ static inline int body_open_sides(const body *b, const bw_pd_bond_config *c,
   return open;
 }
 
-static inline bw_pd_bond_config body_config(bool planar)
+static inline bw_solid_config body_config(bool planar)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = planar ? BW_PD_PLANE_STRESS : BW_PD_3D;
   c.ds = 1.0;
   c.rho = 1.0;
@@ -84,7 +84,7 @@ static inline bw_pd_bond_config body_config(bool planar)
   return c;
 }
 
-static inline body body_create(int count, const bw_shape shape[], const bw_pd_bond_config *c,
+static inline body body_create(int count, const bw_shape shape[], const bw_solid_config *c,
                                const bw_pd_interface_config *ic)
 {
   body b;
@@ -101,7 +101,7 @@ static inline body body_create(int count, const bw_shape shape[], const bw_pd_bo
 static inline void body_destroy(body *b)
 {
   bw_pd_interface_destroy(&b->pi);
-  bw_pd_bond_destroy(&b->pd);
+  bw_solid_destroy(&b->pd);
   bw_release(&b->solid);
   bw_release(&b->site);
   bw_release(&b->kind);
@@ -118,10 +118,10 @@ static inline double body_sum(double x)
 static inline int body_wrong(const body *b, const bw_pd_interface_config *ic)
 {
   const bool *surface = bw_pd_interface_is_surface(b->pi);
-  const int64_t *id = bw_pd_bond_id(b->pd);
+  const int64_t *id = bw_solid_id(b->pd);
   double wrong = 0.0;
-  for (size_t h = 0; h < bw_pd_bond_count(b->pd); h++) {
-    const int open = body_open_sides(b, bw_pd_bond_settings(b->pd), ic, &b->site[3 * id[h]]);
+  for (size_t h = 0; h < bw_solid_count(b->pd); h++) {
+    const int open = body_open_sides(b, bw_solid_settings(b->pd), ic, &b->site[3 * id[h]]);
     wrong += surface[h] != (open > 0);
   }
   return (int)body_sum(wrong);

@@ -12,13 +12,13 @@ typedef struct {
 /* Give each piece its motion about its own centre, then compare the list with it. */
 static void check(body *b, int count, const motion piece[], double rho)
 {
-  const size_t n = bw_pd_bond_count(b->pd);
+  const size_t n = bw_solid_count(b->pd);
   double *X = NULL, *V = NULL;
   int64_t *label = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&label, n));
-  bw_pd_bond_get_reference(b->pd, X);
+  bw_solid_get_reference(b->pd, X);
   for (size_t h = 0; h < n; h++) {
     int found = 0;
     for (int q = 0; q < count; q++) {
@@ -38,7 +38,7 @@ static void check(body *b, int count, const motion piece[], double rho)
     }
     ck_assert_int_eq(found, 1);
   }
-  bw_pd_bond_set_state(b->pd, X, V);
+  bw_solid_set_state(b->pd, X, V);
   bw_check_ok(bw_pd_interface_update(b->pi));
   size_t pieces = 0;
   bw_pd_fragment *list = NULL;
@@ -83,7 +83,7 @@ START_TEST(separate_bodies_with_known_motions)
     memcpy(shape[q].lower, piece[q].low, sizeof shape[q].lower);
     memcpy(shape[q].upper, piece[q].high, sizeof shape[q].upper);
   }
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   c.rho = 2.5;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   body b = body_create(4, shape, &c, &ic);
@@ -100,7 +100,7 @@ START_TEST(broken_bonds_part_a_body)
       {{0, 6, -1}, {20, 10, 1}, {-0.3, 0.4, 0}, {0, 0, -0.1}, 80},
   };
   const bw_shape shape[] = {{.kind = BW_SHAPE_BOX, .upper = {20, 10, 1}}};
-  const bw_pd_bond_config c = body_config(true);
+  const bw_solid_config c = body_config(true);
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   body b = body_create(1, shape, &c, &ic);
   size_t pieces = 0;
@@ -111,7 +111,7 @@ START_TEST(broken_bonds_part_a_body)
   ck_assert_int_eq(list[0].particles, 200);
   bw_release(&list);
   const double from[3] = {-1, 6, 0}, to[3] = {21, 6, 0};
-  bw_check_ok(bw_pd_bond_precrack(b.pd, from, to, NULL));
+  bw_check_ok(bw_solid_precrack(b.pd, from, to, NULL));
   check(&b, 2, piece, 1.0);
   body_destroy(&b);
 }
@@ -122,18 +122,18 @@ END_TEST
  * period in z). */
 START_TEST(a_piece_across_the_seam_is_whole)
 {
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   c.period[2] = 20.0;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   const bw_shape shape[] = {{.kind = BW_SHAPE_BOX, .lower = {0, 0, 6}, .upper = {4, 5, 12}},
                             {.kind = BW_SHAPE_BOX, .lower = {9, 0, 0}, .upper = {13, 5, 2}},
                             {.kind = BW_SHAPE_BOX, .lower = {9, 0, 16}, .upper = {13, 5, 20}}};
   body b = body_create(3, shape, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(b.pd, X);
+  bw_solid_get_reference(b.pd, X);
   const double spin[3] = {0.3, -0.2, 0.1}, v[3] = {1, 2, 3};
   for (size_t h = 0; h < n; h++) {
     const bool seam = X[3 * h] > 6.0;
@@ -142,7 +142,7 @@ START_TEST(a_piece_across_the_seam_is_whole)
     for (size_t d = 0; d < 3; d++)
       V[3 * h + d] = v[d] + spin[(d + 1) % 3] * r[(d + 2) % 3] - spin[(d + 2) % 3] * r[(d + 1) % 3];
   }
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   size_t pieces = 0;
   bw_pd_fragment *list = NULL;
   bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));
@@ -169,24 +169,24 @@ START_TEST(spin_of_a_crooked_piece)
   const bw_shape shape[] = {{.kind = BW_SHAPE_BOX, .upper = {9, 3, 3}},
                             {.kind = BW_SHAPE_BOX, .lower = {6, 0, 0}, .upper = {9, 8, 3}},
                             {.kind = BW_SHAPE_BOX, .lower = {6, 5, 0}, .upper = {9, 8, 7}}};
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   body b = body_create(3, shape, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL, centre[3] = {0.0, 0.0, 0.0};
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   for (int64_t q = 0; q < 3 * b.n; q++)
     centre[q % 3] += (b.site[q] + 0.5) / (double)b.n;
   const double spin[3] = {0.3, -0.7, 0.2}, v[3] = {1, 2, 3};
-  bw_pd_bond_get_reference(b.pd, X);
+  bw_solid_get_reference(b.pd, X);
   for (size_t h = 0; h < n; h++)
     for (size_t d = 0; d < 3; d++) {
       const size_t e = (d + 1) % 3, f = (d + 2) % 3;
       V[3 * h + d] =
           v[d] + spin[e] * (X[3 * h + f] - centre[f]) - spin[f] * (X[3 * h + e] - centre[e]);
     }
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   size_t pieces = 0;
   bw_pd_fragment *list = NULL;
   bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));

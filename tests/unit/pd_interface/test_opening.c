@@ -15,13 +15,13 @@ static const double cut = 6.0;
 static cracked cracked_create(bool planar)
 {
   const bw_shape block[] = {{.kind = BW_SHAPE_BOX, .lower = {0, 0, 0}, .upper = {11, 12, 11}}};
-  bw_pd_bond_config c = body_config(planar);
+  bw_solid_config c = body_config(planar);
   c.thickness = 0.5;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   cracked k = {.b = body_create(1, block, &c, &ic)};
   const double a[3] = {-1, cut, -1}, across[3] = {12, cut, -1}, deep[3] = {-1, cut, 12};
-  bw_check_ok(bw_pd_bond_precrack(k.b.pd, a, across, planar ? NULL : deep));
-  k.n = bw_pd_bond_count(k.b.pd);
+  bw_check_ok(bw_solid_precrack(k.b.pd, a, across, planar ? NULL : deep));
+  k.n = bw_solid_count(k.b.pd);
   bw_check_ok(BW_ALLOCATE(&k.X, 3 * k.n));
   bw_check_ok(BW_ALLOCATE(&k.V, 3 * k.n));
   return k;
@@ -37,7 +37,7 @@ static void cracked_destroy(cracked *k)
 /* Move the upper half by `gap` along y (and turn everything by `angle` about z). */
 static void open_crack(cracked *k, double gap, double angle)
 {
-  bw_pd_bond_get_reference(k->b.pd, k->X);
+  bw_solid_get_reference(k->b.pd, k->X);
   for (size_t h = 0; h < k->n; h++) {
     double *x = &k->X[3 * h];
     if (x[1] > cut) x[1] += gap;
@@ -45,7 +45,7 @@ static void open_crack(cracked *k, double gap, double angle)
                          sin(angle) * x[0] + cos(angle) * x[1]};
     x[0] = y[0], x[1] = y[1];
   }
-  bw_pd_bond_set_state(k->b.pd, k->X, k->V);
+  bw_solid_set_state(k->b.pd, k->X, k->V);
   bw_check_ok(bw_pd_interface_update(k->b.pi));
 }
 
@@ -123,7 +123,7 @@ START_TEST(crack_faces_have_opposite_normals_and_their_area)
     const bw_pd_surface s = bw_pd_interface_surface(k.b.pi);
     double *X0 = NULL;
     bw_check_ok(BW_ALLOCATE(&X0, 3 * k.n));
-    bw_pd_bond_get_reference(k.b.pd, X0);
+    bw_solid_get_reference(k.b.pd, X0);
     double upper = 0.0, lower = 0.0;
     for (size_t q = 0; q < s.n; q++) {
       const double *x = &X0[3 * s.particle[q]], *n = &s.N[3 * q];
@@ -169,7 +169,7 @@ START_TEST(a_block_torn_from_its_foot_shows_its_underside)
   const bw_shape shape[] = {
       {.kind = BW_SHAPE_BOX, .lower = {0, 0, 0}, .upper = {9, 9, 9}},
       {.kind = BW_SHAPE_BOX, .lower = {0, -3, 0}, .upper = {9, 0, 9}, .particle_kind = 1}};
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   ic.walled[1][0] = true;
   ic.lower[1] = 0.0;
@@ -177,16 +177,16 @@ START_TEST(a_block_torn_from_its_foot_shows_its_underside)
   const int standing = 9 * 9 * 9 - 7 * 8 * 7, all = 9 * 9 * 9 - 7 * 7 * 7;
   ck_assert_int_eq((int)body_sum((double)bw_pd_interface_surface(b.pi).n), standing);
   const double p[3] = {-1, 0, -1}, q[3] = {10, 0, -1}, r[3] = {-1, 0, 10};
-  bw_check_ok(bw_pd_bond_precrack(b.pd, p, q, r));
+  bw_check_ok(bw_solid_precrack(b.pd, p, q, r));
   double *X = NULL, *V = NULL;
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   for (int opened = 0; opened < 2; opened++) {
-    bw_pd_bond_get_reference(b.pd, X);
+    bw_solid_get_reference(b.pd, X);
     for (size_t h = 0; h < n; h++)
       if (X[3 * h + 1] > 0.0) X[3 * h + 1] += opened ? 2.0 : 0.1;
-    bw_pd_bond_set_state(b.pd, X, V);
+    bw_solid_set_state(b.pd, X, V);
     bw_check_ok(bw_pd_interface_update(b.pi));
     ck_assert_int_eq((int)body_sum((double)bw_pd_interface_surface(b.pi).n),
                      opened ? all : standing);
@@ -201,12 +201,12 @@ END_TEST
  * after cuts in all directions, moves of the pieces, and off the wall and back. */
 static void check_following(const bw_shape *shape)
 {
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   ic.walled[1][0] = true;
   ic.lower[1] = 0.0;
   body b = body_create(1, shape, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
@@ -218,14 +218,14 @@ static void check_following(const bw_shape *shape)
     const int f = (q % 3 + 1) % 3, g = (q % 3 + 2) % 3;
     r[f] = q % 2 ? 5.0 : e, r[g] = -e; /* p-r along f, p-t along g */
     t[f] = -e, t[g] = e;
-    bw_check_ok(bw_pd_bond_precrack(b.pd, p, r, t));
-    bw_pd_bond_get_reference(b.pd, X);
+    bw_check_ok(bw_solid_precrack(b.pd, p, r, t));
+    bw_solid_get_reference(b.pd, X);
     for (size_t h = 0; h < n; h++) {
       for (size_t d = 0; d < 3; d++)
         if (X[3 * h + d] > 4.0) X[3 * h + d] += gap[q];
       X[3 * h + 1] += q == 4 ? 4.0 : 0.0; /* all of it off the wall, once */
     }
-    bw_pd_bond_set_state(b.pd, X, V);
+    bw_solid_set_state(b.pd, X, V);
     bw_check_ok(bw_pd_interface_update(b.pi));
     bw_pd_interface *anew = NULL;
     bw_check_ok(bw_pd_interface_create(b.pd, &ic, &anew));

@@ -42,7 +42,7 @@ START_TEST(surface_is_the_particles_with_an_open_side)
              {2, porous_bcc, false}, {1, disc, true},  {2, ring, true}};
   for (size_t q = 0; q < sizeof row / sizeof *row; q++)
     for (int m = 2; m <= 5; m++) {
-      bw_pd_bond_config c = body_config(row[q].planar);
+      bw_solid_config c = body_config(row[q].planar);
       const bw_pd_interface_config ic = bw_pd_interface_config_default();
       c.horizon_ratio = m < 5 ? m : 3;
       c.disorder = m < 5 ? 0 : 0.3;
@@ -99,7 +99,7 @@ static double total_area(const body *b)
 START_TEST(clouds_have_normals_and_areas)
 {
   bw_pd_interface_config ic = bw_pd_interface_config_default();
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   double angle[2];
   body sites = body_create(1, ball, &c, &ic);
   c.disorder = 0.3;
@@ -123,7 +123,7 @@ START_TEST(round_bodies_have_their_normals_and_areas)
 {
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   ic.area = BW_PD_AREA_EQUAL;
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   double angle[2];
 
   body b = body_create(1, ball, &c, &ic);
@@ -153,7 +153,7 @@ END_TEST
 START_TEST(edges_stay_sharp)
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   const bw_shape block[] = {{.kind = BW_SHAPE_BOX, .upper = {20, 20, 20}}};
   body b = body_create(1, block, &c, &ic);
   const bw_pd_surface s = bw_pd_interface_surface(b.pi);
@@ -183,7 +183,7 @@ START_TEST(areas_close_the_body)
     bool planar;
   } row[] = {{1, cube, false}, {1, ball, false}, {2, porous, false}, {2, ring, true}};
   for (size_t r = 0; r < sizeof row / sizeof *row; r++) {
-    const bw_pd_bond_config c = body_config(row[r].planar);
+    const bw_solid_config c = body_config(row[r].planar);
     const bw_pd_interface_config ic = bw_pd_interface_config_default();
     body b = body_create(row[r].count, row[r].shape, &c, &ic);
     const bw_pd_surface s = bw_pd_interface_surface(b.pi);
@@ -214,7 +214,7 @@ END_TEST
 START_TEST(flat_faces_are_exact)
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   c.ds = 0.1;
   c.origin[1] = 7.05;
   const bw_shape plate[] = {{.kind = BW_SHAPE_BOX, .lower = {0, 7, 0}, .upper = {1.2, 8, 1.2}}};
@@ -237,7 +237,7 @@ END_TEST
 START_TEST(thin_things_have_normals)
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   const bw_shape thin[] = {{.kind = BW_SHAPE_BOX, .lower = {0, 0, 0}, .upper = {12, 12, 1}},
                            {.kind = BW_SHAPE_BOX, .lower = {0, 0, 20}, .upper = {1, 1, 21}},
                            {.kind = BW_SHAPE_BOX, .lower = {0, 0, 30}, .upper = {12, 12, 32}}};
@@ -259,7 +259,7 @@ END_TEST
  * no surface at the walls, the foot or the seam; no part of a normal along the wall. */
 START_TEST(walls_feet_and_seams_are_no_surface)
 {
-  bw_pd_bond_config c = body_config(false);
+  bw_solid_config c = body_config(false);
   c.period[2] = 9.0;
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   ic.walled[1][0] = ic.walled[1][1] = true;
@@ -285,22 +285,22 @@ END_TEST
 /* Away from the wall by more than the horizon: its side has become surface. */
 START_TEST(a_block_that_leaves_its_wall_shows_that_side)
 {
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   ic.walled[1][1] = true;
   ic.upper[1] = 9.0;
   const bw_shape block[] = {{.kind = BW_SHAPE_BOX, .lower = {0, 0, 0}, .upper = {9, 9, 9}}};
   body b = body_create(1, block, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   const double down[] = {0.0, 2.9, 3.1, 0.0}, all = 9 * 9 * 9 - 7 * 7 * 7, leaning = all - 7 * 7;
   for (int q = 0; q < 4; q++) {
-    bw_pd_bond_get_reference(b.pd, X);
+    bw_solid_get_reference(b.pd, X);
     for (size_t h = 0; h < n; h++)
       X[3 * h + 1] -= down[q];
-    bw_pd_bond_set_state(b.pd, X, V);
+    bw_solid_set_state(b.pd, X, V);
     bw_check_ok(bw_pd_interface_update(b.pi));
     ck_assert_double_eq(body_sum((double)bw_pd_interface_surface(b.pi).n),
                         down[q] > 3.0 ? all : leaning);
@@ -313,7 +313,7 @@ END_TEST
 
 START_TEST(wrong_settings_are_refused)
 {
-  const bw_pd_bond_config c = body_config(true);
+  const bw_solid_config c = body_config(true);
   bw_pd_interface_config ic = bw_pd_interface_config_default();
   body b = body_create(1, disc, &c, &ic);
   bw_pd_interface *other = NULL;

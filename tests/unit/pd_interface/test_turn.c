@@ -13,14 +13,14 @@ static void check_spin(bool planar, const bw_shape *shape, const double spin[3],
 {
   const double(*R)[3] = planar ? turned_in_plane : turned;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(planar);
+  const bw_solid_config c = body_config(planar);
   body b = body_create(1, shape, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL, *found = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&found, 3 * n));
-  bw_pd_bond_get_reference(b.pd, V);
+  bw_solid_get_reference(b.pd, V);
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++)
       X[3 * i + d] = R[d][0] * V[3 * i] + R[d][1] * V[3 * i + 1] + R[d][2] * V[3 * i + 2];
@@ -29,7 +29,7 @@ static void check_spin(bool planar, const bw_shape *shape, const double spin[3],
       const size_t e = (d + 1) % 3, f = (d + 2) % 3;
       V[3 * i + d] = 0.3 + spin[e] * X[3 * i + f] - spin[f] * X[3 * i + e];
     }
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   bw_check_ok(bw_pd_interface_update(b.pi));
   bw_pd_interface_turn(b.pi, found);
   for (size_t q = 0; q < 3 * bw_pd_interface_surface(b.pi).n; q++)
@@ -69,21 +69,21 @@ END_TEST
 static void check_twist(bool planar, const bw_shape *shape)
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(planar);
+  const bw_solid_config c = body_config(planar);
   body b = body_create(1, shape, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd), rows = bw_pd_interface_surface(b.pi).n;
+  const size_t n = bw_solid_count(b.pd), rows = bw_pd_interface_surface(b.pi).n;
   double *X = NULL, *V = NULL, *M = NULL, *spin = NULL, *F = NULL, sum[2][7] = {{0.0}};
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&F, 3 * n));
   bw_check_ok(BW_ALLOCATE(&M, 3 * rows));
   bw_check_ok(BW_ALLOCATE(&spin, 3 * rows));
-  bw_pd_bond_get_reference(b.pd, V);
+  bw_solid_get_reference(b.pd, V);
   for (size_t i = 0; i < 3 * n; i++)
     X[i] = V[i] + (i % 3 == 2 && planar ? 0.0 : 0.05 * sin(3.0 * V[i]));
   for (size_t i = 0; i < 3 * n; i++)
     V[i] = i % 3 == 2 && planar ? 0.0 : cos(17.0 * X[i] + 5.0 * X[3 * (i / 3)]);
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   bw_check_ok(bw_pd_interface_update(b.pi));
   const bw_pd_surface s = bw_pd_interface_surface(b.pi);
   for (size_t q = 0; q < 3 * rows; q++)
@@ -129,19 +129,19 @@ START_TEST(the_shortest_wave_is_no_rotation)
 {
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {6, 5, 4}};
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(false);
+  const bw_solid_config c = body_config(false);
   body b = body_create(1, &block, &c, &ic);
-  const size_t n = bw_pd_bond_count(b.pd);
+  const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL, *found = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&found, 3 * n));
-  bw_pd_bond_get_reference(b.pd, X);
+  bw_solid_get_reference(b.pd, X);
   for (size_t i = 0; i < n; i++) {
     const int sum = (int)floor(X[3 * i]) + (int)floor(X[3 * i + 1]) + (int)floor(X[3 * i + 2]);
     V[3 * i] = sum % 2 ? 1.0 : -1.0, V[3 * i + 1] = -0.3 * V[3 * i], V[3 * i + 2] = 2.0 * V[3 * i];
   }
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   bw_check_ok(bw_pd_interface_update(b.pi));
   bw_pd_interface_turn(b.pi, found);
   for (size_t q = 0; q < 3 * bw_pd_interface_surface(b.pi).n; q++)
@@ -157,21 +157,21 @@ END_TEST
 static void check_normals(bool planar, const bw_shape *shape, const double F[3][3])
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_pd_bond_config c = body_config(planar);
+  const bw_solid_config c = body_config(planar);
   body b = body_create(1, shape, &c, &ic);
   const bw_pd_surface s = bw_pd_interface_surface(b.pi);
-  const size_t n = bw_pd_bond_count(b.pd), rows = s.n;
+  const size_t n = bw_solid_count(b.pd), rows = s.n;
   double *X = NULL, *V = NULL, *before = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&before, 3 * rows));
   memcpy(before, s.N, 3 * rows * sizeof *before);
-  bw_pd_bond_get_reference(b.pd, V);
+  bw_solid_get_reference(b.pd, V);
   for (size_t i = 0; i < n; i++)
     for (size_t d = 0; d < 3; d++)
       X[3 * i + d] = F[d][0] * V[3 * i] + F[d][1] * V[3 * i + 1] + F[d][2] * V[3 * i + 2];
   memset(V, 0, 3 * n * sizeof *V);
-  bw_pd_bond_set_state(b.pd, X, V);
+  bw_solid_set_state(b.pd, X, V);
   bw_check_ok(bw_pd_interface_update(b.pi));
   for (size_t q = 0; q < rows; q++) {
     double want[3], length = 0.0;

@@ -2,7 +2,7 @@
 #pragma once
 #include "bw_check.h"
 #include "bw_memory.h"
-#include "bw_pd_bond.h"
+#include "bw_solid.h"
 #include "ledger.h"
 
 typedef struct {
@@ -31,9 +31,9 @@ static inline void pd_body_release(pd_body *b)
 }
 
 /* A soft material in units near 1: rounding shows at the size of BW_REAL_EPSILON. */
-static inline bw_pd_bond_config pd_soft(bw_pd_geometry geometry)
+static inline bw_solid_config pd_soft(bw_pd_geometry geometry)
 {
-  bw_pd_bond_config c = bw_pd_bond_config_default();
+  bw_solid_config c = bw_solid_config_default();
   c.geometry = geometry;
   c.ds = 0.5;
   c.rho = 2;
@@ -41,20 +41,19 @@ static inline bw_pd_bond_config pd_soft(bw_pd_geometry geometry)
   return c;
 }
 
-static inline bw_pd_bond *pd_make(const bw_comm *comm, const bw_pd_bond_config *c,
-                                  const pd_body *body)
+static inline bw_solid *pd_make(const bw_comm *comm, const bw_solid_config *c, const pd_body *body)
 {
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   bw_check_ok(bw_solid_create_same(comm, c, body->n, body->site, body->kind, &pd));
   return pd;
 }
 
-typedef void (*pd_getter)(const bw_pd_bond *, double[]);
+typedef void (*pd_getter)(const bw_solid *, double[]);
 
 /* all (total,3) on every rank: the getter's rows by global id. */
-static inline void pd_gather(const bw_pd_bond *pd, pd_getter get, double all[])
+static inline void pd_gather(const bw_solid *pd, pd_getter get, double all[])
 {
-  const size_t n = bw_pd_bond_count(pd), total = (size_t)bw_pd_bond_total(pd);
+  const size_t n = bw_solid_count(pd), total = (size_t)bw_solid_total(pd);
   double *mine = NULL;
   bw_check_ok(BW_ALLOCATE(&mine, 3 * n));
   get(pd, mine);
@@ -62,8 +61,8 @@ static inline void pd_gather(const bw_pd_bond *pd, pd_getter get, double all[])
     all[q] = 0;
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < 3; k++)
-      all[3 * (size_t)bw_pd_bond_id(pd)[i] + k] = mine[3 * i + k];
-  bw_comm_sum(bw_pd_bond_comm(pd), (int)(3 * total), all);
+      all[3 * (size_t)bw_solid_id(pd)[i] + k] = mine[3 * i + k];
+  bw_comm_sum(bw_solid_comm(pd), (int)(3 * total), all);
   bw_release(&mine);
 }
 
@@ -71,13 +70,13 @@ static inline void pd_gather(const bw_pd_bond *pd, pd_getter get, double all[])
 typedef void (*pd_field)(const double X0[3], double out[3]);
 
 /* State from fields of the displacement and the velocity (NULL: zero). */
-static inline void pd_set(bw_pd_bond *pd, pd_field displacement, pd_field velocity)
+static inline void pd_set(bw_solid *pd, pd_field displacement, pd_field velocity)
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(pd, X);
+  bw_solid_get_reference(pd, X);
   for (size_t i = 0; i < n; i++) {
     double u[3] = {0};
     if (velocity != NULL) velocity(X + 3 * i, V + 3 * i);
@@ -85,60 +84,60 @@ static inline void pd_set(bw_pd_bond *pd, pd_field displacement, pd_field veloci
     for (size_t k = 0; k < 3; k++)
       X[3 * i + k] += u[k];
   }
-  bw_pd_bond_set_state(pd, X, V);
+  bw_solid_set_state(pd, X, V);
   bw_release(&X);
   bw_release(&V);
 }
 
-static inline void pd_steps(bw_pd_bond *pd, int n, double dt)
+static inline void pd_steps(bw_solid *pd, int n, double dt)
 {
   for (int q = 0; q < n; q++)
-    bw_check_ok(bw_pd_bond_step(pd, dt));
+    bw_check_ok(bw_solid_step(pd, dt));
 }
 
 /* Kinetic, elastic and contact energy and what left: constant but for the work of forces. */
-static inline double pd_energy(bw_pd_bond *pd)
+static inline double pd_energy(bw_solid *pd)
 {
-  const bw_pd_bond_ledger l = ledger_of(pd);
+  const bw_solid_ledger l = ledger_of(pd);
   return l.kinetic + l.elastic + l.contact + l.retired + l.damping + l.fracture - l.external;
 }
 
 /* Rows of a rank to rows of another division: through the global id, by a sum over ranks. */
-static inline void pd_move_rows(const bw_pd_bond *from, const bw_pd_bond *to, size_t width,
+static inline void pd_move_rows(const bw_solid *from, const bw_solid *to, size_t width,
                                 const double rows[], double out[])
 {
-  const size_t total = (size_t)bw_pd_bond_total(from);
+  const size_t total = (size_t)bw_solid_total(from);
   double *all = NULL;
   bw_check_ok(BW_ALLOCATE(&all, width * total));
-  for (size_t i = 0; i < bw_pd_bond_count(from); i++)
+  for (size_t i = 0; i < bw_solid_count(from); i++)
     for (size_t k = 0; k < width; k++)
-      all[width * (size_t)bw_pd_bond_id(from)[i] + k] = rows[width * i + k];
-  bw_comm_sum(bw_pd_bond_comm(from), (int)(width * total), all);
-  for (size_t i = 0; i < bw_pd_bond_count(to); i++)
+      all[width * (size_t)bw_solid_id(from)[i] + k] = rows[width * i + k];
+  bw_comm_sum(bw_solid_comm(from), (int)(width * total), all);
+  for (size_t i = 0; i < bw_solid_count(to); i++)
     for (size_t k = 0; k < width; k++)
-      out[width * i + k] = all[width * (size_t)bw_pd_bond_id(to)[i] + k];
+      out[width * i + k] = all[width * (size_t)bw_solid_id(to)[i] + k];
   bw_release(&all);
 }
 
-static inline void pd_restart_from(const bw_pd_bond *from, bw_pd_bond *to)
+static inline void pd_restart_from(const bw_solid *from, bw_solid *to)
 {
-  const size_t n = bw_pd_bond_count(from), m = bw_pd_bond_count(to);
-  const size_t bytes = bw_pd_bond_bits_bytes(from);
-  double *rows = NULL, *moved = NULL, sums[BW_PD_RESTART_SUMS];
+  const size_t n = bw_solid_count(from), m = bw_solid_count(to);
+  const size_t bytes = bw_solid_bits_bytes(from);
+  double *rows = NULL, *moved = NULL, sums[BW_SOLID_RESTART_SUMS];
   uint8_t *bits = NULL;
-  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_PD_RESTART_ROW)));
-  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_PD_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_SOLID_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_SOLID_RESTART_ROW)));
   bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
-  bw_pd_bond_get_restart(from, rows, sums);
-  pd_move_rows(from, to, BW_PD_RESTART_ROW, rows, moved);
-  bw_check_ok(bw_pd_bond_set_restart(to, moved, sums));
-  bw_pd_bond_get_bits(from, bits);
+  bw_solid_get_restart(from, rows, sums);
+  pd_move_rows(from, to, BW_SOLID_RESTART_ROW, rows, moved);
+  bw_check_ok(bw_solid_set_restart(to, moved, sums));
+  bw_solid_get_bits(from, bits);
   for (size_t q = 0; q < n * bytes; q++)
     rows[q] = bits[q];
   pd_move_rows(from, to, bytes, rows, moved);
   for (size_t q = 0; q < m * bytes; q++)
     bits[q] = (uint8_t)moved[q];
-  bw_check_ok(bw_pd_bond_set_bits(to, bits));
+  bw_check_ok(bw_solid_set_bits(to, bits));
   bw_release(&rows);
   bw_release(&moved);
   bw_release(&bits);

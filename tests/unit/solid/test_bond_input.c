@@ -5,97 +5,97 @@
 #include <string.h>
 
 /* One change that spoils a configuration, and a word its message has to hold. */
-typedef void (*spoil)(bw_pd_bond_config *c);
-static void no_ds(bw_pd_bond_config *c)
+typedef void (*spoil)(bw_solid_config *c);
+static void no_ds(bw_solid_config *c)
 {
   c->ds = NAN;
 }
-static void no_rho(bw_pd_bond_config *c)
+static void no_rho(bw_solid_config *c)
 {
   c->rho = NAN;
 }
-static void no_E(bw_pd_bond_config *c)
+static void no_E(bw_solid_config *c)
 {
   c->E = NAN;
 }
-static void negative_E(bw_pd_bond_config *c)
+static void negative_E(bw_solid_config *c)
 {
   c->E = -1;
 }
-static void negative_G0(bw_pd_bond_config *c)
+static void negative_G0(bw_solid_config *c)
 {
   c->G0 = -1;
 }
-static void zero_thickness(bw_pd_bond_config *c)
+static void zero_thickness(bw_solid_config *c)
 {
   c->thickness = 0;
 }
-static void infinite_ds(bw_pd_bond_config *c)
+static void infinite_ds(bw_solid_config *c)
 {
   c->ds = INFINITY;
 }
-static void small_m(bw_pd_bond_config *c)
+static void small_m(bw_solid_config *c)
 {
   c->horizon_ratio = 0.5;
 }
-static void nu_03(bw_pd_bond_config *c)
+static void nu_03(bw_solid_config *c)
 {
   c->nu = 0.3;
 }
-static void nu_third(bw_pd_bond_config *c)
+static void nu_third(bw_solid_config *c)
 {
   c->nu = 1.0 / 3;
 }
-static void linear(bw_pd_bond_config *c)
+static void linear(bw_solid_config *c)
 {
   c->volume_fraction = BW_PD_FRACTION_LINEAR;
 }
-static void geometry(bw_pd_bond_config *c)
+static void geometry(bw_solid_config *c)
 {
   c->geometry = (bw_pd_geometry)7;
 }
-static void surface(bw_pd_bond_config *c)
+static void surface(bw_solid_config *c)
 {
   c->surface_correction = (bw_pd_surface_correction)9;
 }
-static void integrator(bw_pd_bond_config *c)
+static void integrator(bw_solid_config *c)
 {
-  c->integrator = (bw_pd_integrator)4;
+  c->integrator = (bw_solid_integrator)4;
 }
-static void reach(bw_pd_bond_config *c)
+static void reach(bw_solid_config *c)
 {
   c->family_reach = (bw_pd_family_reach)4;
 }
-static void damping(bw_pd_bond_config *c)
+static void damping(bw_solid_config *c)
 {
   c->damping_mean = -1;
 }
-static void axes(bw_pd_bond_config *c)
+static void axes(bw_solid_config *c)
 {
   c->axes[0][1] = 0.1;
 }
-static void origin(bw_pd_bond_config *c)
+static void origin(bw_solid_config *c)
 {
   c->origin[1] = NAN;
 }
-static void period(bw_pd_bond_config *c)
+static void period(bw_solid_config *c)
 {
   c->period[0] = 3.3;
 }
-static void short_period(bw_pd_bond_config *c)
+static void short_period(bw_solid_config *c)
 {
   c->period[1] = 1;
 }
-static void contact(bw_pd_bond_config *c)
+static void contact(bw_solid_config *c)
 {
   c->contact = true, c->period[2] = 1.5;
 }
-static void flat_period(bw_pd_bond_config *c)
+static void flat_period(bw_solid_config *c)
 {
   c->geometry = BW_PD_PLANE_STRESS;
   c->period[2] = 2;
 }
-static void flat_sites(bw_pd_bond_config *c)
+static void flat_sites(bw_solid_config *c)
 {
   c->geometry = BW_PD_PLANE_STRESS;
 }
@@ -131,21 +131,21 @@ START_TEST(bad_configurations_are_named)
 {
   pd_body body = pd_box(3, 3, 3);
   for (size_t q = 0; q < sizeof bad / sizeof *bad; q++) {
-    bw_pd_bond_config c = pd_soft(BW_PD_3D);
-    bw_pd_bond *pd = NULL;
+    bw_solid_config c = pd_soft(BW_PD_3D);
+    bw_solid *pd = NULL;
     bad[q].spoil(&c);
     bw_check_status(bw_solid_create_same(bw_check_world(), &c, body.n, body.site, NULL, &pd),
                     BW_EINPUT);
     ck_assert_ptr_null(pd);
     ck_assert_msg(strstr(bw_last_message(), bad[q].word) != NULL, "case %zu says: %s", q,
                   bw_last_message());
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
   }
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   c.nu = 0.25;
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  ck_assert_double_eq(bw_pd_bond_settings(pd)->nu, 0.25);
-  bw_pd_bond_destroy(&pd);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  ck_assert_double_eq(bw_solid_settings(pd)->nu, 0.25);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST
@@ -153,11 +153,12 @@ END_TEST
 START_TEST(bad_lists_are_named)
 {
   pd_body body = pd_box(3, 2, 1);
-  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
-  bw_pd_bond *pd = NULL;
+  const bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *pd = NULL;
   bw_check_status(bw_solid_create_same(bw_check_world(), &c, 0, body.site, NULL, &pd), BW_EINPUT);
   body.kind[4] = 8;
-  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, body.kind, &pd), BW_EINPUT);
+  bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, body.kind, &pd),
+                  BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "particle 4"));
   body.site[3 * 5] = 0;
   bw_check_status(bw_solid_create_same(bw_check_world(), &c, 6, body.site, NULL, &pd), BW_EINPUT);
@@ -172,20 +173,20 @@ END_TEST
 START_TEST(steps_beyond_the_limit_are_refused)
 {
   pd_body body = pd_box(4, 4, 4);
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const double limit = bw_pd_bond_dt_max(pd);
-  bw_check_status(bw_pd_bond_step(pd, 1.01 * limit), BW_ECFL);
-  bw_check_status(bw_pd_bond_step(pd, 0), BW_ECFL);
-  bw_check_status(bw_pd_bond_step(pd, NAN), BW_ECFL);
-  bw_check_ok(bw_pd_bond_step(pd, limit));
-  bw_pd_bond_set_damping(pd, 1, 0.1, 0.2);
-  ck_assert_double_lt(bw_pd_bond_dt_max(pd), limit);
-  bw_pd_bond_destroy(&pd);
-  c.integrator = BW_PD_RK3;
+  bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  const double limit = bw_solid_dt_max(pd);
+  bw_check_status(bw_solid_step(pd, 1.01 * limit), BW_ECFL);
+  bw_check_status(bw_solid_step(pd, 0), BW_ECFL);
+  bw_check_status(bw_solid_step(pd, NAN), BW_ECFL);
+  bw_check_ok(bw_solid_step(pd, limit));
+  bw_solid_set_damping(pd, 1, 0.1, 0.2);
+  ck_assert_double_lt(bw_solid_dt_max(pd), limit);
+  bw_solid_destroy(&pd);
+  c.integrator = BW_SOLID_RK3;
   pd = pd_make(bw_check_world(), &c, &body);
-  bw_check_near(bw_pd_bond_dt_max(pd) / limit, sqrt(3.0) / 2, 1e-12); /* ERRATA 6 */
-  bw_pd_bond_destroy(&pd);
+  bw_check_near(bw_solid_dt_max(pd) / limit, sqrt(3.0) / 2, 1e-12); /* ERRATA 6 */
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST
@@ -206,15 +207,15 @@ static void rough(const double X0[3], double u[3])
 }
 
 /* Steps at the limit from a rough start: the energy over that of the start. */
-static double growth(bw_pd_bond_config c, pd_body body, int steps)
+static double growth(bw_solid_config c, pd_body body, int steps)
 {
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, rough, NULL);
   const double start = ledger_of(pd).elastic;
   for (int s = 0; s < steps; s++)
-    bw_check_ok(bw_pd_bond_step(pd, bw_pd_bond_dt_max(pd)));
-  const bw_pd_bond_ledger l = ledger_of(pd);
-  bw_pd_bond_destroy(&pd);
+    bw_check_ok(bw_solid_step(pd, bw_solid_dt_max(pd)));
+  const bw_solid_ledger l = ledger_of(pd);
+  bw_solid_destroy(&pd);
   return (l.elastic + l.kinetic) / start;
 }
 
@@ -227,9 +228,9 @@ START_TEST(the_limit_is_that_of_the_sharpest_wave)
     for (int m = 1; m <= 3; m++)
       for (int q = 0; q < 2; q++) {
         const bool flat = geometry == 1;
-        bw_pd_bond_config c = pd_soft(flat ? BW_PD_PLANE_STRESS : BW_PD_3D);
+        bw_solid_config c = pd_soft(flat ? BW_PD_PLANE_STRESS : BW_PD_3D);
         pd_body body = flat ? pd_box(12, 12, 1) : pd_box(8, 8, 8);
-        c.integrator = (bw_pd_integrator)q, c.horizon_ratio = m;
+        c.integrator = (bw_solid_integrator)q, c.horizon_ratio = m;
         c.surface_correction = BW_PD_SURFACE_NONE;
         ck_assert_double_lt(growth(c, body, 200), 2.0);
         pd_body_release(&body);
@@ -241,18 +242,18 @@ END_TEST
 START_TEST(the_limit_is_stable)
 {
   for (int q = 0; q < 2; q++) {
-    bw_pd_bond_config c = pd_soft(BW_PD_3D);
-    c.integrator = (bw_pd_integrator)q;
+    bw_solid_config c = pd_soft(BW_PD_3D);
+    c.integrator = (bw_solid_integrator)q;
     c.damping_pair = 0.5, c.damping_mean = 1, c.damping_absolute = 0.5;
     pd_body body = pd_box(6, 6, 6);
-    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+    bw_solid *pd = pd_make(bw_check_world(), &c, &body);
     pd_set(pd, zigzag, NULL);
     const double start = ledger_of(pd).elastic;
     for (int s = 0; s < 300; s++)
-      bw_check_ok(bw_pd_bond_step(pd, bw_pd_bond_dt_max(pd)));
-    const bw_pd_bond_ledger l = ledger_of(pd);
+      bw_check_ok(bw_solid_step(pd, bw_solid_dt_max(pd)));
+    const bw_solid_ledger l = ledger_of(pd);
     ck_assert_double_lt(l.elastic + l.kinetic, start);
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
     pd_body_release(&body);
   }
 }
@@ -261,20 +262,20 @@ END_TEST
 START_TEST(divergence_is_reported_with_its_place)
 {
   pd_body body = pd_box(4, 4, 4);
-  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_pd_bond_count(pd);
+  const bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_solid_count(pd);
   double F[3 * 64] = {0};
   for (size_t i = 0; i < n; i++)
-    if (bw_pd_bond_id(pd)[i] == 17) F[3 * i] = 1e9;
-  bw_pd_bond_set_force(pd, F);
-  bw_check_status(bw_pd_bond_step(pd, 0.3), BW_EDIVERGED);
+    if (bw_solid_id(pd)[i] == 17) F[3 * i] = 1e9;
+  bw_solid_set_force(pd, F);
+  bw_check_status(bw_solid_step(pd, 0.3), BW_EDIVERGED);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "particle 17"));
   for (size_t i = 0; i < 3 * n; i++)
     F[i] = NAN;
-  bw_pd_bond_set_force(pd, F);
-  bw_check_status(bw_pd_bond_step(pd, 0.3), BW_EDIVERGED);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_set_force(pd, F);
+  bw_check_status(bw_solid_step(pd, 0.3), BW_EDIVERGED);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST

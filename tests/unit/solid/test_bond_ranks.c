@@ -26,9 +26,9 @@ static pd_body holed(void)
   return b;
 }
 
-static void compare(const bw_pd_bond *a, const bw_pd_bond *b, pd_getter get, double tolerance)
+static void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
 {
-  const size_t n = (size_t)bw_pd_bond_total(a);
+  const size_t n = (size_t)bw_solid_total(a);
   double *x = NULL, *y = NULL;
   bw_check_ok(BW_ALLOCATE(&x, 3 * n));
   bw_check_ok(BW_ALLOCATE(&y, 3 * n));
@@ -42,15 +42,15 @@ static void compare(const bw_pd_bond *a, const bw_pd_bond *b, pd_getter get, dou
 
 /* Four ways to run: RK3 or damped Verlet, on a lattice or in a cloud. */
 enum { WAYS = 4 };
-static bw_pd_bond_config breaking(int way)
+static bw_solid_config breaking(int way)
 {
   const bool damped = way % 2 == 1;
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   c.G0 = 0.003;
   c.damping_pair = damped ? 0.02 : 0;
   c.damping_mean = damped ? 0.01 : 0;
   c.surface_correction = way == 1 ? BW_PD_SURFACE_TENSOR : BW_PD_SURFACE_VOLUME;
-  c.integrator = damped ? BW_PD_VERLET : BW_PD_RK3;
+  c.integrator = damped ? BW_SOLID_VERLET : BW_SOLID_RK3;
   c.disorder = way < 2 ? 0 : 0.3;
   return c;
 }
@@ -60,26 +60,26 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
   bw_comm *self = pd_alone();
   pd_body body = holed();
   for (int way = 0; way < WAYS; way++) {
-    const bw_pd_bond_config c = breaking(way);
-    bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
-    ck_assert_double_eq(bw_pd_bond_dt_max(many), bw_pd_bond_dt_max(one));
+    const bw_solid_config c = breaking(way);
+    bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+    ck_assert_double_eq(bw_solid_dt_max(many), bw_solid_dt_max(one));
     pd_set(many, NULL, shake);
     pd_set(one, NULL, shake);
-    const double dt = 0.4 * bw_pd_bond_dt_max(one);
+    const double dt = 0.4 * bw_solid_dt_max(one);
     pd_steps(many, 50, dt);
     pd_steps(one, 50, dt);
-    compare(many, one, bw_pd_bond_get_position,
+    compare(many, one, bw_solid_get_position,
             1e-13 + 400 * (BW_REAL_EPSILON > 1e-10) * BW_REAL_EPSILON);
     pd_steps(many, 150, dt);
     pd_steps(one, 150, dt);
-    const bw_pd_bond_ledger a = ledger_of(many), b = ledger_of(one);
+    const bw_solid_ledger a = ledger_of(many), b = ledger_of(one);
     ck_assert_int_gt(b.broken, 50);
     ck_assert_int_eq(a.broken, b.broken);
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.damping, b.damping, 1e3 * BW_REAL_EPSILON);
-    compare(many, one, bw_pd_bond_get_velocity, 1e4 * BW_REAL_EPSILON);
-    bw_pd_bond_destroy(&many);
-    bw_pd_bond_destroy(&one);
+    compare(many, one, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+    bw_solid_destroy(&many);
+    bw_solid_destroy(&one);
   }
   pd_body_release(&body);
   bw_comm_destroy(&self);
@@ -92,15 +92,15 @@ START_TEST(a_wide_plate_moves_as_its_parts_do)
 {
   bw_comm *self = pd_alone();
   pd_body body = pd_box(72, 64, 4);
-  const bw_pd_bond_config c = pd_soft(BW_PD_3D);
-  bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+  const bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
   pd_set(many, NULL, shake);
   pd_set(one, NULL, shake);
-  pd_steps(many, 5, 0.4 * bw_pd_bond_dt_max(one));
-  pd_steps(one, 5, 0.4 * bw_pd_bond_dt_max(one));
-  compare(many, one, bw_pd_bond_get_velocity, 1e3 * BW_REAL_EPSILON);
-  bw_pd_bond_destroy(&many);
-  bw_pd_bond_destroy(&one);
+  pd_steps(many, 5, 0.4 * bw_solid_dt_max(one));
+  pd_steps(one, 5, 0.4 * bw_solid_dt_max(one));
+  compare(many, one, bw_solid_get_velocity, 1e3 * BW_REAL_EPSILON);
+  bw_solid_destroy(&many);
+  bw_solid_destroy(&one);
   pd_body_release(&body);
   bw_comm_destroy(&self);
 }
@@ -113,11 +113,11 @@ START_TEST(restart_on_another_number_of_ranks)
   bw_comm *self = pd_alone();
   pd_body body = holed();
   for (int way = 0; way < WAYS; way++) {
-    const bw_pd_bond_config c = breaking(way);
-    bw_pd_bond *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
-    const double dt = 0.4 * bw_pd_bond_dt_max(one);
-    bw_check_ok(bw_pd_bond_precrack(many, (double[]){1, 1, 0.5}, (double[]){2, 1, 0.5},
-                                    (double[]){1, 2, 0.5}));
+    const bw_solid_config c = breaking(way);
+    bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+    const double dt = 0.4 * bw_solid_dt_max(one);
+    bw_check_ok(bw_solid_precrack(many, (double[]){1, 1, 0.5}, (double[]){2, 1, 0.5},
+                                  (double[]){1, 2, 0.5}));
     pd_set(many, NULL, shake);
     pd_steps(many, 80, dt);
     pd_restart_from(many, one);
@@ -125,16 +125,16 @@ START_TEST(restart_on_another_number_of_ranks)
     ck_assert_int_eq(ledger_of(many).broken, ledger_of(one).broken);
     pd_steps(many, 100, dt);
     pd_steps(one, 100, dt);
-    const bw_pd_bond_ledger a = ledger_of(many), b = ledger_of(one);
+    const bw_solid_ledger a = ledger_of(many), b = ledger_of(one);
     ck_assert_int_eq(a.broken, b.broken);
     ck_assert_int_gt(a.broken, 50);
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.damping, b.damping,
                   1e-3); /* one kick is split anew between bonds and damping */
-    compare(many, one, bw_pd_bond_get_position, 0);
-    compare(many, one, bw_pd_bond_get_velocity, 0);
-    bw_pd_bond_destroy(&many);
-    bw_pd_bond_destroy(&one);
+    compare(many, one, bw_solid_get_position, 0);
+    compare(many, one, bw_solid_get_velocity, 0);
+    bw_solid_destroy(&many);
+    bw_solid_destroy(&one);
   }
   pd_body_release(&body);
   bw_comm_destroy(&self);
@@ -150,11 +150,11 @@ static void along_x(const double X0[3], double v[3])
   v[2] = 0;
 }
 
-static void row_of(const bw_pd_bond *pd, const pd_body *body, int y, int z, double out[])
+static void row_of(const bw_solid *pd, const pd_body *body, int y, int z, double out[])
 {
   double *X = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * (size_t)body->n));
-  pd_gather(pd, bw_pd_bond_get_velocity, X);
+  pd_gather(pd, bw_solid_get_velocity, X);
   for (int64_t q = 0; q < body->n; q++)
     if (body->site[3 * q + 1] == y && body->site[3 * q + 2] == z)
       for (int k = 0; k < 3; k++)
@@ -167,11 +167,11 @@ START_TEST(periods_are_an_endless_body)
   const int length = 10;
   double bulk[30], thin[30];
   pd_body wide = pd_box(length, 16, 16), narrow = pd_box(length, 4, 2);
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   c.surface_correction = BW_PD_SURFACE_NONE;
-  bw_pd_bond *a = pd_make(bw_check_world(), &c, &wide);
+  bw_solid *a = pd_make(bw_check_world(), &c, &wide);
   c.period[1] = 2, c.period[2] = 1;
-  bw_pd_bond *b = pd_make(bw_check_world(), &c, &narrow);
+  bw_solid *b = pd_make(bw_check_world(), &c, &narrow);
   pd_set(a, NULL, along_x);
   pd_set(b, NULL, along_x);
   /* 2 steps: the edge's news has come 3 x 2 cells far, the middle is 7 away */
@@ -181,8 +181,8 @@ START_TEST(periods_are_an_endless_body)
   row_of(b, &narrow, 1, 1, thin);
   for (int q = 0; q < 3 * length; q++)
     bw_check_near(thin[q], bulk[q], 20 * BW_REAL_EPSILON);
-  bw_pd_bond_destroy(&a);
-  bw_pd_bond_destroy(&b);
+  bw_solid_destroy(&a);
+  bw_solid_destroy(&b);
   pd_body_release(&wide);
   pd_body_release(&narrow);
 }
@@ -192,31 +192,31 @@ END_TEST
 START_TEST(orientation_does_not_matter)
 {
   pd_body body = pd_box(6, 5, 4);
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
-  bw_pd_bond *a = pd_make(bw_check_world(), &c, &body);
+  bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *a = pd_make(bw_check_world(), &c, &body);
   const double s = 0.6, k = 0.8, R[3][3] = {{k, s, 0}, {-s, k, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       c.axes[i][j] = R[i][j];
-  bw_pd_bond *b = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_pd_bond_count(a);
+  bw_solid *b = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_solid_count(a);
   double *X = NULL, *V = NULL, *W = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
   bw_check_ok(BW_ALLOCATE(&W, 3 * n));
-  bw_pd_bond_get_reference(a, X);
+  bw_solid_get_reference(a, X);
   for (size_t i = 0; i < n; i++) {
     shake(X + 3 * i, V + 3 * i);
     for (int q = 0; q < 3; q++)
       W[3 * i + (size_t)q] = R[0][q] * V[3 * i] + R[1][q] * V[3 * i + 1] + R[2][q] * V[3 * i + 2];
   }
-  bw_pd_bond_set_state(a, X, V);
-  bw_pd_bond_get_reference(b, X);
-  bw_pd_bond_set_state(b, X, W);
+  bw_solid_set_state(a, X, V);
+  bw_solid_get_reference(b, X);
+  bw_solid_set_state(b, X, W);
   pd_steps(a, 40, 0.3);
   pd_steps(b, 40, 0.3);
-  bw_pd_bond_get_velocity(a, V);
-  bw_pd_bond_get_velocity(b, W);
+  bw_solid_get_velocity(a, V);
+  bw_solid_get_velocity(b, W);
   for (size_t i = 0; i < n; i++)
     for (int q = 0; q < 3; q++)
       bw_check_near(W[3 * i + (size_t)q],
@@ -225,8 +225,8 @@ START_TEST(orientation_does_not_matter)
   bw_release(&X);
   bw_release(&V);
   bw_release(&W);
-  bw_pd_bond_destroy(&a);
-  bw_pd_bond_destroy(&b);
+  bw_solid_destroy(&a);
+  bw_solid_destroy(&b);
   pd_body_release(&body);
 }
 END_TEST

@@ -16,7 +16,7 @@ static void dilate_plane(const double X0[3], double u[3])
 }
 
 /* Mixed difference of the energies of boxes of a and a + 1 per edge: one bulk particle's. */
-static double bulk(const bw_pd_bond_config *c)
+static double bulk(const bw_solid_config *c)
 {
   const int d = c->geometry == BW_PD_3D ? 3 : 2, a = 4 * (int)(c->horizon_ratio + 0.5) + 1;
   double sum = 0;
@@ -25,10 +25,10 @@ static double bulk(const bw_pd_bond_config *c)
     for (int k = 0; k < d; k++)
       if (corner >> k & 1) size[k]++, sign = -sign;
     pd_body box = pd_box(size[0], size[1], size[2]);
-    bw_pd_bond *pd = pd_make(bw_check_world(), c, &box);
+    bw_solid *pd = pd_make(bw_check_world(), c, &box);
     pd_set(pd, d == 3 ? dilate : dilate_plane, NULL);
     sum += sign * ledger_of(pd).elastic;
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
     pd_body_release(&box);
   }
   return sum;
@@ -43,7 +43,7 @@ START_TEST(bulk_modulus_is_exact)
   SCALE = 1e-2;
   for (int g = 0; g < 3; g++)
     for (int surface = 0; surface < 3; surface++) {
-      bw_pd_bond_config c = pd_soft((bw_pd_geometry)g);
+      bw_solid_config c = pd_soft((bw_pd_geometry)g);
       c.horizon_ratio = g == 0 ? 2 : 3;
       c.calibration = BW_PD_CALIBRATION_LATTICE;
       c.surface_correction = (bw_pd_surface_correction)surface;
@@ -61,26 +61,26 @@ END_TEST
 START_TEST(fracture_energy_is_exact)
 {
   for (int g = 0; g < 3; g++) {
-    bw_pd_bond_config c = pd_soft((bw_pd_geometry)g);
+    bw_solid_config c = pd_soft((bw_pd_geometry)g);
     c.G0 = 7;
     c.calibration = BW_PD_CALIBRATION_LATTICE;
     pd_body one = pd_box(1, 1, 1);
-    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &one);
-    const double c0 = bw_pd_bond_micromodulus(pd), dv = bw_pd_bond_volume(pd);
+    bw_solid *pd = pd_make(bw_check_world(), &c, &one);
+    const double c0 = bw_solid_micromodulus(pd), dv = bw_solid_volume(pd);
     for (int turn = 0; turn < 2; turn++) {
-      const double s0 = bw_pd_bond_critical_stretch(pd);
+      const double s0 = bw_solid_critical_stretch(pd);
       double energy = 0; /* of the bonds from one column's particles, stacked below the plane */
-      for (int q = 0; q < bw_pd_bond_max_family(pd); q++) {
-        const double *xi = bw_pd_bond_stencil_offset(pd, q);
+      for (int q = 0; q < bw_solid_max_family(pd); q++) {
+        const double *xi = bw_solid_stencil_offset(pd, q);
         const double r = sqrt(xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]);
         for (int below = 0; below < 4; below++) /* particles 0, 1, .. spacings under the top one */
           if (xi[1] > (below + 0.5) * 0.5)
-            energy += 0.5 * c0 * s0 * s0 * r * bw_pd_bond_stencil_fraction(pd, q) * dv * dv;
+            energy += 0.5 * c0 * s0 * s0 * r * bw_solid_stencil_fraction(pd, q) * dv * dv;
       }
       bw_check_near(energy / (dv / 0.5), turn == 0 ? 7 : 21, 1e-9); /* area dv/ds */
-      bw_pd_bond_set_G0(pd, 21);
+      bw_solid_set_G0(pd, 21);
     }
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
     pd_body_release(&one);
   }
 }
@@ -88,9 +88,9 @@ END_TEST
 
 START_TEST(unknown_calibration_is_refused)
 {
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   pd_body one = pd_box(1, 1, 1);
-  bw_pd_bond *pd = NULL;
+  bw_solid *pd = NULL;
   c.calibration = (bw_pd_calibration)7;
   bw_check_status(bw_solid_create_same(bw_check_world(), &c, 1, one.site, NULL, &pd), BW_EINPUT);
   pd_body_release(&one);

@@ -1,7 +1,7 @@
 /* Disordered clouds: where the particles are and which are bonds, by enumeration of pairs.
  * BUILD modules=solid_tools
  * TEST ranks=1,2,3,4 */
-#include "bw_pd_stress.h"
+#include "bw_solid_stress.h"
 #include "ledger.h"
 #include "pd_cloud.h"
 
@@ -13,15 +13,15 @@
 START_TEST(places_are_of_the_sites_alone)
 {
   for (int g = 0; g < 2; g++) {
-    bw_pd_bond_config c = cloudy((bw_pd_geometry)g);
+    bw_solid_config c = cloudy((bw_pd_geometry)g);
     pd_body body = pd_box(12, 10, g == 0 ? 8 : 1), part = body;
     part.n = body.n / 3;
-    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-    bw_pd_bond *few = pd_make(bw_check_world(), &c, &part);
+    bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+    bw_solid *few = pd_make(bw_check_world(), &c, &part);
     c.disorder_seed = 5;
-    bw_pd_bond *others = pd_make(bw_check_world(), &c, &part);
-    double *X = rows_of(pd, bw_pd_bond_get_reference), *Y = rows_of(few, bw_pd_bond_get_reference);
-    double *Z = rows_of(others, bw_pd_bond_get_reference), middle[3] = {0}, moved = 0, d[3];
+    bw_solid *others = pd_make(bw_check_world(), &c, &part);
+    double *X = rows_of(pd, bw_solid_get_reference), *Y = rows_of(few, bw_solid_get_reference);
+    double *Z = rows_of(others, bw_solid_get_reference), middle[3] = {0}, moved = 0, d[3];
     int64_t near = 0;
     for (int64_t q = 0; q < body.n; q++) {
       double at[3] = {0}, nearest = INFINITY;
@@ -42,9 +42,9 @@ START_TEST(places_are_of_the_sites_alone)
       moved += fabs(X[q] - Z[q]);
     }
     ck_assert_double_gt(moved, 0.1 * (double)part.n * 0.5 * DISORDER);
-    bw_pd_bond_destroy(&pd);
-    bw_pd_bond_destroy(&few);
-    bw_pd_bond_destroy(&others);
+    bw_solid_destroy(&pd);
+    bw_solid_destroy(&few);
+    bw_solid_destroy(&others);
     bw_release(&X);
     bw_release(&Y);
     bw_release(&Z);
@@ -54,18 +54,18 @@ START_TEST(places_are_of_the_sites_alone)
 END_TEST
 
 /* All pairs nearer than m + 1/2 are bonds, no others; through periods too. */
-static void check_bonds(bw_pd_bond_config c, int nx, int ny, int nz)
+static void check_bonds(bw_solid_config c, int nx, int ny, int nz)
 {
   pd_body body = pd_box(nx, ny, nz);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  double *X = rows_of(pd, bw_pd_bond_get_reference), d[3];
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  double *X = rows_of(pd, bw_solid_get_reference), d[3];
   int64_t expected = 0;
   for (int64_t a = 0; a < body.n; a++)
     for (int64_t b = 0; b < a; b++)
       expected += apart(&c, X + 3 * a, X + 3 * b, d) < c.ds * (c.horizon_ratio + 0.5);
   ck_assert_int_eq(ledger_of(pd).bonds, expected);
   bw_release(&X);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 
@@ -73,7 +73,7 @@ START_TEST(bonds_are_the_pairs_in_reach)
 {
   check_bonds(cloudy(BW_PD_3D), 9, 7, 6);
   check_bonds(cloudy(BW_PD_PLANE_STRESS), 14, 9, 1);
-  bw_pd_bond_config c = cloudy(BW_PD_3D);
+  bw_solid_config c = cloudy(BW_PD_3D);
   c.disorder = 0.4, c.horizon_ratio = 2;
   c.period[0] = 4.5, c.period[2] = 4;
   check_bonds(c, 9, 7, 8);
@@ -85,10 +85,10 @@ END_TEST
 START_TEST(precracks_see_the_true_places)
 {
   const double y = 2.2, tip = 3.3;
-  bw_pd_bond_config c = cloudy(BW_PD_PLANE_STRESS);
+  bw_solid_config c = cloudy(BW_PD_PLANE_STRESS);
   pd_body body = pd_box(13, 9, 1);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  double *X = rows_of(pd, bw_pd_bond_get_reference), d[3];
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  double *X = rows_of(pd, bw_solid_get_reference), d[3];
   int64_t expected = 0;
   for (int64_t a = 0; a < body.n; a++)
     for (int64_t b = 0; b < a; b++) {
@@ -97,11 +97,11 @@ START_TEST(precracks_see_the_true_places)
       expected += t > 0 && t < 1 && X[3 * a] + t * d[0] <= tip;
     }
   const int64_t before = ledger_of(pd).bonds;
-  bw_check_ok(bw_pd_bond_precrack(pd, (double[]){-1, y, 0}, (double[]){tip, y, 0}, NULL));
+  bw_check_ok(bw_solid_precrack(pd, (double[]){-1, y, 0}, (double[]){tip, y, 0}, NULL));
   ck_assert_int_gt(expected, 100);
   ck_assert_int_eq(before - ledger_of(pd).bonds, expected);
   bw_release(&X);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST
@@ -116,19 +116,19 @@ static void dilate(const double X0[3], double u[3])
 
 START_TEST(calibration_takes_the_mean_family)
 {
-  bw_pd_bond_config c = cloudy(BW_PD_PLANE_STRESS);
+  bw_solid_config c = cloudy(BW_PD_PLANE_STRESS);
   c.calibration = BW_PD_CALIBRATION_LATTICE;
   c.surface_correction = BW_PD_SURFACE_NONE;
   c.period[0] = c.period[1] = 15;
   pd_body body = pd_box(30, 30, 1);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_pd_bond_count(pd);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_solid_count(pd);
   double *X = NULL, *stress = NULL, sum[2] = {0};
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&stress, 6 * n));
   pd_set(pd, dilate, NULL);
-  bw_pd_stress_compute(pd, NULL, stress);
-  bw_pd_bond_get_reference(pd, X);
+  bw_solid_stress_compute(pd, NULL, stress);
+  bw_solid_get_reference(pd, X);
   for (size_t i = 0; i < n; i++) {
     bool middle = true; /* images of a dilated body do not follow it */
     for (size_t k = 0; k < 2; k++)
@@ -140,7 +140,7 @@ START_TEST(calibration_takes_the_mean_family)
   bw_check_near(sum[0] / sum[1] / (1.5 * 3 * 1e-4), 1, 0.006);
   bw_release(&X);
   bw_release(&stress);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST
@@ -158,8 +158,8 @@ START_TEST(impossible_clouds_are_refused)
              {0.3, 1, BW_PD_FRACTION_DEFAULT, "horizon_ratio"},
              {0.3, 3, BW_PD_FRACTION_EXACT, "volume_fraction"}};
   for (size_t q = 0; q < sizeof bad / sizeof *bad; q++) {
-    bw_pd_bond_config c = pd_soft(BW_PD_3D);
-    bw_pd_bond *pd = NULL;
+    bw_solid_config c = pd_soft(BW_PD_3D);
+    bw_solid *pd = NULL;
     c.disorder = bad[q].disorder, c.horizon_ratio = bad[q].m, c.volume_fraction = bad[q].fraction;
     bw_check_status(bw_solid_create_same(bw_check_world(), &c, body.n, body.site, NULL, &pd),
                     BW_EINPUT);

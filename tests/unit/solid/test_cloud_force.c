@@ -1,8 +1,8 @@
 /* Disordered clouds: forces, books and states at rest, by sums over pairs.
  * BUILD modules=solid_tools
  * TEST ranks=1,2,3,4 */
-#include "bw_pd_static.h"
-#include "bw_pd_stress.h"
+#include "bw_solid_static.h"
+#include "bw_solid_stress.h"
 #include "ledger.h"
 #include "pd_cloud.h"
 
@@ -22,7 +22,7 @@ static void swirl(const double X0[3], double v[3])
 
 /* What the force of one particle is summed from. */
 typedef struct {
-  const bw_pd_bond_config *c;
+  const bw_solid_config *c;
   double c0, dv, full; /* full: V_0 of the volume method */
   int64_t n;
   const double *X0, *X, *V;
@@ -79,17 +79,17 @@ static double force_on(const pairs *p, int64_t a, double A[3])
   return energy;
 }
 
-static void check_force(bw_pd_bond_config c, bool spread)
+static void check_force(bw_solid_config c, bool spread)
 {
   const bool planar = c.geometry != BW_PD_3D;
   pd_body body = planar ? pd_box(13, 9, 1) : pd_box(9, 7, 6);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, wobble, swirl);
-  if (spread) bw_pd_bond_set_damping(pd, c.damping_pair, 1e-30, 0); /* another way through */
-  const double elastic = ledger_of(pd).elastic, horizon = bw_pd_bond_horizon(pd);
-  double *X0 = rows_of(pd, bw_pd_bond_get_reference), *X = rows_of(pd, bw_pd_bond_get_position);
-  double *A = rows_of(pd, bw_pd_bond_get_acceleration), *V = rows_of(pd, bw_pd_bond_get_velocity);
-  pairs p = {&c, bw_pd_bond_micromodulus(pd), bw_pd_bond_volume(pd), 0, body.n, X0, X, V, NULL};
+  if (spread) bw_solid_set_damping(pd, c.damping_pair, 1e-30, 0); /* another way through */
+  const double elastic = ledger_of(pd).elastic, horizon = bw_solid_horizon(pd);
+  double *X0 = rows_of(pd, bw_solid_get_reference), *X = rows_of(pd, bw_solid_get_position);
+  double *A = rows_of(pd, bw_solid_get_acceleration), *V = rows_of(pd, bw_solid_get_velocity);
+  pairs p = {&c, bw_solid_micromodulus(pd), bw_solid_volume(pd), 0, body.n, X0, X, V, NULL};
   p.full = acos(-1.0) * horizon * horizon * (planar ? 1 : 4.0 / 3 * horizon);
   bw_check_ok(BW_ALLOCATE(&p.w, (size_t)body.n));
   weigh(&p);
@@ -105,7 +105,7 @@ static void check_force(bw_pd_bond_config c, bool spread)
   double *all[] = {X0, X, A, V, p.w};
   for (int q = 0; q < 5; q++)
     bw_release(&all[q]);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 
@@ -114,7 +114,7 @@ START_TEST(forces_are_the_sum_over_pairs)
   for (int g = 0; g < 2; g++)
     for (int surface = 0; surface < 3; surface++)
       for (int damped = 0; damped < 3; damped++) {
-        bw_pd_bond_config c = cloudy((bw_pd_geometry)g);
+        bw_solid_config c = cloudy((bw_pd_geometry)g);
         c.surface_correction = (bw_pd_surface_correction)surface;
         c.damping_pair = damped > 0 ? 0.2 : 0;
         check_force(c, damped == 2);
@@ -132,23 +132,23 @@ static void burst(const double X0[3], double v[3])
 
 static void check_book(bool contact, double step, double tolerance)
 {
-  bw_pd_bond_config c = cloudy(BW_PD_3D);
+  bw_solid_config c = cloudy(BW_PD_3D);
   c.G0 = 0.005;
   c.contact = contact;
   pd_body body = pd_box(6, 5, 4);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, NULL, burst);
-  const double start = pd_energy(pd), dt = step * bw_pd_bond_dt_max(pd);
-  const bw_pd_bond_ledger first = ledger_of(pd);
+  const double start = pd_energy(pd), dt = step * bw_solid_dt_max(pd);
+  const bw_solid_ledger first = ledger_of(pd);
   pd_steps(pd, (int)(8 / step), dt);
-  const bw_pd_bond_ledger l = ledger_of(pd);
+  const bw_solid_ledger l = ledger_of(pd);
   ck_assert_int_gt(l.broken, 100);
   bw_check_near(pd_energy(pd) / start, 1, tolerance);
   for (int k = 0; k < 3; k++) {
     bw_check_near(l.momentum[k], first.momentum[k], 1e4 * BW_REAL_EPSILON);
     bw_check_near(l.angular[k], first.angular[k], 1e5 * BW_REAL_EPSILON);
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 
@@ -172,19 +172,19 @@ static void shear(const double X0[3], double u[3])
 
 START_TEST(linear_deformations_are_exact)
 {
-  bw_pd_bond_config c = cloudy(BW_PD_3D);
+  bw_solid_config c = cloudy(BW_PD_3D);
   pd_body body = pd_box(8, 7, 6);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_pd_bond_count(pd);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_solid_count(pd);
   const double G[9] = {1 + 1e-3, 2e-3, 0, -5e-4, 1, 0, 0, 0, 1 + 7e-4};
   double *F = NULL;
   bw_check_ok(BW_ALLOCATE(&F, 9 * n));
   pd_set(pd, shear, NULL);
-  bw_pd_stress_compute(pd, F, NULL);
+  bw_solid_stress_compute(pd, F, NULL);
   for (size_t q = 0; q < 9 * n; q++)
     bw_check_near(F[q], G[q % 9], 200 * BW_REAL_EPSILON);
   bw_release(&F);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST
@@ -193,27 +193,27 @@ END_TEST
 START_TEST(both_static_solvers_agree)
 {
   if (BW_REAL_EPSILON > 1e-10) return; /* the tolerance drowns in single precision */
-  bw_pd_bond_config c = cloudy(BW_PD_PLANE_STRESS);
+  bw_solid_config c = cloudy(BW_PD_PLANE_STRESS);
   pd_body body = pd_box(16, 6, 1);
   for (int64_t q = 0; q < body.n; q++)
     if (body.site[3 * q] < 3) body.kind[q] = BW_PD_PRESCRIBED;
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_pd_bond_count(pd);
-  bw_pd_static_config how = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  const size_t n = bw_solid_count(pd);
+  bw_solid_static_config how = bw_solid_static_config_default();
+  bw_solid_static_report report;
   double *F = NULL, *U = NULL, *X = NULL, *X0 = NULL;
   bw_check_ok(BW_ALLOCATE(&F, 3 * n));
   bw_check_ok(BW_ALLOCATE(&U, 3 * n));
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&X0, 3 * n));
   for (size_t i = 0; i < n; i++)
-    F[3 * i] = bw_pd_bond_id(pd)[i] % 16 > 12 ? 1e-6 : 0;
-  bw_pd_bond_set_force(pd, F);
+    F[3 * i] = bw_solid_id(pd)[i] % 16 > 12 ? 1e-6 : 0;
+  bw_solid_set_force(pd, F);
   how.tolerance = 1e-9;
-  bw_check_ok(bw_pd_static_linear(pd, &how, U, &report));
-  bw_check_ok(bw_pd_static_relax(pd, &how, &report));
-  bw_pd_bond_get_position(pd, X);
-  bw_pd_bond_get_reference(pd, X0);
+  bw_check_ok(bw_solid_static_linear(pd, &how, U, &report));
+  bw_check_ok(bw_solid_static_relax(pd, &how, &report));
+  bw_solid_get_position(pd, X);
+  bw_solid_get_reference(pd, X0);
   double most[2] = {0};
   for (size_t q = 0; q < 3 * n; q++) {
     most[0] = fmax(most[0], fabs(U[q]));
@@ -226,7 +226,7 @@ START_TEST(both_static_solvers_agree)
   bw_release(&U);
   bw_release(&X);
   bw_release(&X0);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&body);
 }
 END_TEST

@@ -1,8 +1,8 @@
 /* States at rest: relaxation, conjugate gradients and a dense solve agree; loads add up.
  * BUILD modules=solid_tools libs=gsl
  * TEST  ranks=1,2,3 */
-#include "bw_pd_load.h"
-#include "bw_pd_static.h"
+#include "bw_solid_load.h"
+#include "bw_solid_static.h"
 #include "pd_test.h"
 
 #include <gsl/gsl_linalg.h>
@@ -10,45 +10,45 @@
 enum { NX = 7, NY = 3, NZ = 3 };
 
 /* A block held at x = 0 and pulled and sheared at its other end. */
-static bw_pd_bond *block(bw_pd_surface_correction surface, double strain, double F[])
+static bw_solid *block(bw_pd_surface_correction surface, double strain, double F[])
 {
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   c.surface_correction = surface;
   c.horizon_ratio = 2;
   pd_body box = pd_box(NX, NY, NZ);
   for (int64_t q = 0; q < box.n; q++)
     if (box.site[3 * q] == 0) box.kind[q] = BW_PD_PRESCRIBED;
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &box);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &box);
   const double traction[3] = {c.E * strain, 0.2 * c.E * strain, 0};
-  for (size_t q = 0; q < 3 * bw_pd_bond_count(pd); q++)
+  for (size_t q = 0; q < 3 * bw_solid_count(pd); q++)
     F[q] = 0;
   bw_check_ok(
-      bw_pd_load_traction(pd, (double[3]){3, -9, -9}, (double[3]){9, 9, 9}, 2.25, traction, F));
-  bw_pd_bond_set_force(pd, F);
+      bw_solid_load_traction(pd, (double[3]){3, -9, -9}, (double[3]){9, 9, 9}, 2.25, traction, F));
+  bw_solid_set_force(pd, F);
   pd_body_release(&box);
   return pd;
 }
 
 /* K assembled by global id from what everybody sees: the links. No correction.
  * Solved dense by GSL. One rank. */
-static void dense(bw_pd_bond *pd, const double F[], double U[])
+static void dense(bw_solid *pd, const double F[], double U[])
 {
-  const size_t n = bw_pd_bond_count(pd);
-  const double c0 = bw_pd_bond_micromodulus(pd), dv = bw_pd_bond_volume(pd);
+  const size_t n = bw_solid_count(pd);
+  const double c0 = bw_solid_micromodulus(pd), dv = bw_solid_volume(pd);
   gsl_matrix *K = gsl_matrix_calloc(3 * n, 3 * n);
   gsl_vector *b = gsl_vector_calloc(3 * n), *x = gsl_vector_calloc(3 * n);
-  bw_pd_bond_link link[400];
+  bw_pd_link link[400];
   for (size_t h = 0; h < n; h++) {
-    const bool held = (bw_pd_bond_kind(pd)[h] & BW_PD_PRESCRIBED) != 0;
+    const bool held = (bw_solid_kind(pd)[h] & BW_PD_PRESCRIBED) != 0;
     for (size_t k = 0; k < 3; k++) {
       gsl_vector_set(b, 3 * h + k, held ? 0 : F[3 * h + k]);
       if (held) gsl_matrix_set(K, 3 * h + k, 3 * h + k, 1);
     }
-    const int bonds = held ? 0 : bw_pd_bond_links(pd, h, link);
+    const int bonds = held ? 0 : bw_solid_links(pd, h, link);
     for (int q = 0; q < bonds; q++) {
-      const double *xi = bw_pd_bond_stencil_offset(pd, link[q].slot);
+      const double *xi = bw_solid_stencil_offset(pd, link[q].slot);
       const double r = sqrt(xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]);
-      const double k = c0 * bw_pd_bond_stencil_fraction(pd, link[q].slot) * dv / (r * r * r);
+      const double k = c0 * bw_solid_stencil_fraction(pd, link[q].slot) * dv / (r * r * r);
       for (size_t i = 0; i < 3; i++)
         for (size_t j = 0; j < 3; j++) {
           *gsl_matrix_ptr(K, 3 * h + i, 3 * h + j) += k * xi[i] * xi[j];
@@ -86,15 +86,15 @@ START_TEST(conjugate_gradients_agree_with_a_dense_solve)
   if (bw_comm_size(bw_check_world()) > 1 || BW_REAL_EPSILON > 1e-10) return; /* serial, double */
   enum { N = 3 * NX * NY * NZ };
   double F[N], U[N] = {0}, want[N], size;
-  bw_pd_bond *pd = block(BW_PD_SURFACE_NONE, 1e-3, F);
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid *pd = block(BW_PD_SURFACE_NONE, 1e-3, F);
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   config.tolerance = 1e-11;
-  bw_check_ok(bw_pd_static_linear(pd, &config, U, &report));
+  bw_check_ok(bw_solid_static_linear(pd, &config, U, &report));
   dense(pd, F, want);
   ck_assert_double_lt(largest_difference(U, want, N, &size), 1e-7 * size);
   ck_assert_double_gt(size, 1e-4);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
 }
 END_TEST
 
@@ -106,24 +106,24 @@ START_TEST(relaxation_agrees_with_conjugate_gradients)
   const double strain = BW_REAL_EPSILON > 1e-10 ? 1e-2 : 1e-6;
   for (int surface = 0; surface < 3; surface++) {
     double F[N], U[N] = {0}, X[N], X0[N], size[2] = {0};
-    bw_pd_bond *pd = block((bw_pd_surface_correction)surface, strain, F);
-    bw_pd_static_config config = bw_pd_static_config_default();
-    bw_pd_static_report report;
+    bw_solid *pd = block((bw_pd_surface_correction)surface, strain, F);
+    bw_solid_static_config config = bw_solid_static_config_default();
+    bw_solid_static_report report;
     config.tolerance = BW_REAL_EPSILON > 1e-10 ? 1e-3 : 1e-8;
-    bw_check_ok(bw_pd_static_linear(pd, &config, U, &report));
+    bw_check_ok(bw_solid_static_linear(pd, &config, U, &report));
     ck_assert_double_le(report.residual, config.tolerance);
-    bw_check_ok(bw_pd_static_relax(pd, &config, &report));
+    bw_check_ok(bw_solid_static_relax(pd, &config, &report));
     ck_assert_double_le(report.residual, config.tolerance);
     ck_assert_int_gt(report.iterations, 10);
-    bw_pd_bond_get_position(pd, X);
-    bw_pd_bond_get_reference(pd, X0);
-    for (size_t q = 0; q < 3 * bw_pd_bond_count(pd); q++) {
+    bw_solid_get_position(pd, X);
+    bw_solid_get_reference(pd, X0);
+    for (size_t q = 0; q < 3 * bw_solid_count(pd); q++) {
       size[0] = fmax(size[0], fabs(X[q] - X0[q] - U[q]));
       size[1] = fmax(size[1], fabs(U[q]));
     }
     bw_comm_max(bw_check_world(), 2, size);
     ck_assert_double_lt(size[0], 100 * strain * size[1]);
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
   }
 }
 END_TEST
@@ -131,32 +131,32 @@ END_TEST
 /* Stretched by its ends beyond s0 the block breaks in two and ends without stress. */
 START_TEST(relaxation_breaks_what_is_beyond)
 {
-  bw_pd_bond_config c = pd_soft(BW_PD_3D);
+  bw_solid_config c = pd_soft(BW_PD_3D);
   c.horizon_ratio = 2;
   pd_body box = pd_box(12, 3, 3);
   for (int64_t q = 0; q < box.n; q++)
     if (box.site[3 * q] < 2 || box.site[3 * q] > 9)
       box.kind[q] = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE;
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &box);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &box);
   double X[3 * 108], V[3 * 108] = {0};
-  bw_pd_bond_get_reference(pd, X);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+  bw_solid_get_reference(pd, X);
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
     X[3 * i] += X[3 * i] > 3 ? 0.05 : 0;
-  bw_pd_bond_set_state(pd, X, V);
-  bw_pd_static_config config = bw_pd_static_config_default();
-  bw_pd_static_report report;
+  bw_solid_set_state(pd, X, V);
+  bw_solid_static_config config = bw_solid_static_config_default();
+  bw_solid_static_report report;
   config.tolerance = BW_REAL_EPSILON > 1e-10 ? 1e-3 : 1e-6;
   config.breaks = true;
-  bw_check_ok(bw_pd_static_relax(pd, &config, &report));
+  bw_check_ok(bw_solid_static_relax(pd, &config, &report));
   ck_assert_int_eq(report.broken, 0);
   const double elastic = ledger_of(pd).elastic;
-  bw_pd_bond_set_G0(pd, 1e-6); /* s0 = sqrt(5 G0/(6 E delta)) = 5e-4; the strain is near 1e-2 */
-  const bw_status st = bw_pd_static_relax(pd, &config, &report);
+  bw_solid_set_G0(pd, 1e-6); /* s0 = sqrt(5 G0/(6 E delta)) = 5e-4; the strain is near 1e-2 */
+  const bw_status st = bw_solid_static_relax(pd, &config, &report);
   ck_assert_msg(st == BW_OK, "%s", bw_last_message());
   ck_assert_int_gt(report.broken, 20);
   ck_assert_double_lt(ledger_of(pd).elastic, 1e-3 * elastic);
   ck_assert_double_gt(ledger_of(pd).fracture, 0);
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&box);
 }
 END_TEST
@@ -165,18 +165,19 @@ START_TEST(impossible_requests_are_refused)
 {
   enum { N = 3 * NX * NY * NZ };
   double F[N], U[N] = {0};
-  bw_pd_static_report report;
-  bw_pd_bond *pd = block(BW_PD_SURFACE_VOLUME, 1e-3, F);
-  bw_pd_static_config config = bw_pd_static_config_default();
+  bw_solid_static_report report;
+  bw_solid *pd = block(BW_PD_SURFACE_VOLUME, 1e-3, F);
+  bw_solid_static_config config = bw_solid_static_config_default();
   config.max_iterations = 3;
-  bw_check_status(bw_pd_static_relax(pd, &config, &report), BW_EDIVERGED);
-  bw_check_status(bw_pd_static_linear(pd, &config, U, &report), BW_EDIVERGED);
+  bw_check_status(bw_solid_static_relax(pd, &config, &report), BW_EDIVERGED);
+  bw_check_status(bw_solid_static_linear(pd, &config, U, &report), BW_EDIVERGED);
   config.tolerance = 0;
-  bw_check_status(bw_pd_static_relax(pd, &config, &report), BW_EINPUT);
+  bw_check_status(bw_solid_static_relax(pd, &config, &report), BW_EINPUT);
   const double box[2][3] = {{90, 90, 90}, {99, 99, 99}}, pull[3] = {1, 0, 0};
-  bw_check_status(bw_pd_load_traction(pd, box[0], box[1], 1, pull, F), BW_EINPUT);
-  bw_check_status(bw_pd_load_traction(pd, (double[3]){-9, -9, -9}, box[1], 0, pull, F), BW_EINPUT);
-  bw_pd_bond_destroy(&pd);
+  bw_check_status(bw_solid_load_traction(pd, box[0], box[1], 1, pull, F), BW_EINPUT);
+  bw_check_status(bw_solid_load_traction(pd, (double[3]){-9, -9, -9}, box[1], 0, pull, F),
+                  BW_EINPUT);
+  bw_solid_destroy(&pd);
 }
 END_TEST
 

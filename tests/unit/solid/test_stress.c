@@ -1,7 +1,7 @@
 /* Stress and strain at particles: affine fields, work conjugacy, rotation, statistics.
  * BUILD modules=solid_tools
  * TEST ranks=1,2,3 */
-#include "bw_pd_stress.h"
+#include "bw_solid_stress.h"
 #include "pd_test.h"
 
 #include <string.h>
@@ -12,29 +12,29 @@ typedef double tensor[3][3];
 static tensor DEFORMED = {{1.08, 0.20, -0.05}, {-0.15, 0.97, 0.04}, {0.02, 0.03, 1.05}};
 static tensor FLAT = {{1.08, 0.20, 0}, {-0.15, 0.97, 0}, {0, 0, 1}};
 
-static void deform(bw_pd_bond *pd, tensor F)
+static void deform(bw_solid *pd, tensor F)
 {
-  const size_t n = bw_pd_bond_count(pd);
+  const size_t n = bw_solid_count(pd);
   double *X = NULL, *V = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
   bw_check_ok(BW_ALLOCATE(&V, 3 * n));
-  bw_pd_bond_get_reference(pd, X);
+  bw_solid_get_reference(pd, X);
   for (size_t i = 0; i < n; i++) {
     const double x[3] = {X[3 * i], X[3 * i + 1], X[3 * i + 2]};
     for (size_t k = 0; k < 3; k++)
       X[3 * i + k] = F[k][0] * x[0] + F[k][1] * x[1] + F[k][2] * x[2];
   }
-  bw_pd_bond_set_state(pd, X, V);
+  bw_solid_set_state(pd, X, V);
   bw_release(&X);
   bw_release(&V);
 }
 
-static bw_pd_bond *body(bw_pd_geometry geometry, bw_pd_surface_correction surface)
+static bw_solid *body(bw_pd_geometry geometry, bw_pd_surface_correction surface)
 {
-  bw_pd_bond_config c = pd_soft(geometry);
+  bw_solid_config c = pd_soft(geometry);
   c.surface_correction = surface;
   pd_body box = pd_box(7, 6, geometry == BW_PD_3D ? 5 : 1);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &box);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &box);
   pd_body_release(&box);
   return pd;
 }
@@ -44,19 +44,19 @@ START_TEST(gradient_of_an_affine_field)
 {
   double F[9 * 210];
   for (int g = 0; g < 3; g++) {
-    bw_pd_bond *pd = body((bw_pd_geometry)g, BW_PD_SURFACE_VOLUME);
+    bw_solid *pd = body((bw_pd_geometry)g, BW_PD_SURFACE_VOLUME);
     tensor *want = g == 0 ? &DEFORMED : &FLAT;
     deform(pd, *want);
-    bw_pd_stress_compute(pd, F, NULL);
-    for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+    bw_solid_stress_compute(pd, F, NULL);
+    for (size_t i = 0; i < bw_solid_count(pd); i++)
       for (size_t k = 0; k < 9; k++)
         bw_check_near(F[9 * i + k], (*want)[k / 3][k % 3], 100 * BW_REAL_EPSILON);
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
   }
 }
 END_TEST
 
-static double energy_at(bw_pd_bond *pd, tensor F, int a, int b, double change)
+static double energy_at(bw_solid *pd, tensor F, int a, int b, double change)
 {
   tensor moved;
   memcpy(moved, F, sizeof moved);
@@ -67,19 +67,19 @@ static double energy_at(bw_pd_bond *pd, tensor F, int a, int b, double change)
 
 /* The ledger's energy knows nothing of stress: dE/dF = sum_h P_h dV with P F^T = J sigma, for any
  * body and correction. */
-static void check_conjugate(bw_pd_bond *pd, tensor F, int dimension)
+static void check_conjugate(bw_solid *pd, tensor F, int dimension)
 {
-  const double h = 1e-5, volume = bw_pd_bond_volume(pd);
+  const double h = 1e-5, volume = bw_solid_volume(pd);
   double stress[6 * 210], J = F[0][0] * F[1][1] - F[0][1] * F[1][0], mean[6] = {0};
   if (dimension == 3)
     J = J * F[2][2] + F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]) -
         F[1][2] * (F[0][0] * F[2][1] - F[0][1] * F[2][0]);
   deform(pd, F);
-  bw_pd_stress_compute(pd, NULL, stress);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++)
+  bw_solid_stress_compute(pd, NULL, stress);
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
     for (size_t k = 0; k < 6; k++)
       mean[k] += J * stress[6 * i + k] * volume;
-  bw_comm_sum(bw_pd_bond_comm(pd), 6, mean);
+  bw_comm_sum(bw_solid_comm(pd), 6, mean);
   const int place[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
   double slope[3][3] = {{0}};
   for (int a = 0; a < dimension; a++)
@@ -99,10 +99,10 @@ START_TEST(stress_is_the_slope_of_the_energy)
   if (BW_REAL_EPSILON > 1e-10) return; /* differences drown in single precision */
   for (int g = 0; g < 3; g++)
     for (int surface = 0; surface < 3; surface++) {
-      bw_pd_bond *pd = body((bw_pd_geometry)g, (bw_pd_surface_correction)surface);
-      bw_pd_bond_enable_breakage(pd, false);
+      bw_solid *pd = body((bw_pd_geometry)g, (bw_pd_surface_correction)surface);
+      bw_solid_enable_breakage(pd, false);
       check_conjugate(pd, g == 0 ? DEFORMED : FLAT, g == 0 ? 3 : 2);
-      bw_pd_bond_destroy(&pd);
+      bw_solid_destroy(&pd);
     }
 }
 END_TEST
@@ -115,16 +115,16 @@ START_TEST(stress_of_the_bulk)
   const double e = 1e-5, axial[] = {1.2, 1.125, 1.2}, lateral[] = {0.4, 0.375, 0.4};
   tensor F = {{1 + e, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int g = 0; g < 3; g++) {
-    bw_pd_bond_config c = pd_soft((bw_pd_geometry)g);
+    bw_solid_config c = pd_soft((bw_pd_geometry)g);
     pd_body box = pd_box(15, 15, g == 0 ? 15 : 1);
-    bw_pd_bond *pd = pd_make(bw_check_world(), &c, &box);
+    bw_solid *pd = pd_make(bw_check_world(), &c, &box);
     deform(pd, F);
     double *stress = NULL;
-    bw_check_ok(BW_ALLOCATE(&stress, 6 * bw_pd_bond_count(pd)));
-    bw_pd_stress_compute(pd, NULL, stress);
+    bw_check_ok(BW_ALLOCATE(&stress, 6 * bw_solid_count(pd)));
+    bw_solid_stress_compute(pd, NULL, stress);
     const int64_t middle = g == 0 ? 7 * 225 + 7 * 15 + 7 : 7 * 15 + 7;
-    for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
-      if (bw_pd_bond_id(pd)[i] != middle) continue;
+    for (size_t i = 0; i < bw_solid_count(pd); i++) {
+      if (bw_solid_id(pd)[i] != middle) continue;
       const double *s = stress + 6 * i, share = g == 0 ? 0.035 : 0.08;
       const double noise = 1000 * BW_REAL_EPSILON / e;
       bw_check_near(s[0] / (3 * e * axial[g]), 1, share + noise);
@@ -136,7 +136,7 @@ START_TEST(stress_of_the_bulk)
         bw_check_near(s[k] / (3 * e), 0, 1e-3 + noise);
     }
     bw_release(&stress);
-    bw_pd_bond_destroy(&pd);
+    bw_solid_destroy(&pd);
     pd_body_release(&box);
   }
 }
@@ -147,18 +147,18 @@ END_TEST
 START_TEST(cut_bonds_carry_nothing)
 {
   tensor pulled = {{1, 0, 0}, {0, 1.01, 0}, {0, 0, 1}};
-  bw_pd_bond_config c = pd_soft(BW_PD_PLANE_STRESS);
+  bw_solid_config c = pd_soft(BW_PD_PLANE_STRESS);
   pd_body box = pd_box(9, 2, 1);
-  bw_pd_bond *pd = pd_make(bw_check_world(), &c, &box);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &box);
   double stress[6 * 18], F[9 * 18];
-  bw_check_ok(bw_pd_bond_precrack(pd, (double[3]){-1, 0.5, 0}, (double[3]){9, 0.5, 0}, NULL));
+  bw_check_ok(bw_solid_precrack(pd, (double[3]){-1, 0.5, 0}, (double[3]){9, 0.5, 0}, NULL));
   deform(pd, pulled);
-  bw_pd_stress_compute(pd, F, stress);
-  for (size_t i = 0; i < bw_pd_bond_count(pd); i++) {
+  bw_solid_stress_compute(pd, F, stress);
+  for (size_t i = 0; i < bw_solid_count(pd); i++) {
     bw_check_near(stress[6 * i + 1], 0, 100 * BW_REAL_EPSILON); /* rows along x are left */
     bw_check_near(F[9 * i + 4], 1, 100 * BW_REAL_EPSILON);      /* no bond in y: F = 1 */
   }
-  bw_pd_bond_destroy(&pd);
+  bw_solid_destroy(&pd);
   pd_body_release(&box);
 }
 END_TEST
@@ -210,18 +210,18 @@ START_TEST(densities)
 {
   const double value[5] = {0.5, 1.5, 1.5, 9, NAN}, weight[5] = {2, 1, 1, 1, 0};
   double density[2], outside;
-  bw_check_ok(bw_pd_stress_pdf(bw_check_world(), 5, value, NULL, 0, 2, 2, density, &outside));
+  bw_check_ok(bw_solid_stress_pdf(bw_check_world(), 5, value, NULL, 0, 2, 2, density, &outside));
   bw_check_near(density[0], 0.2, 1e-14);
   bw_check_near(density[1], 0.4, 1e-14);
   bw_check_near(outside, 0.4, 1e-14);
-  bw_check_ok(bw_pd_stress_pdf(bw_check_world(), 5, value, weight, 0, 4, 2, density, &outside));
+  bw_check_ok(bw_solid_stress_pdf(bw_check_world(), 5, value, weight, 0, 4, 2, density, &outside));
   bw_check_near(density[0], 0.4, 1e-14); /* 4 of 5 within 2 wide */
   bw_check_near(outside, 0.2, 1e-14);
-  bw_check_status(bw_pd_stress_pdf(bw_check_world(), 5, value, NULL, 2, 2, 2, density, &outside),
+  bw_check_status(bw_solid_stress_pdf(bw_check_world(), 5, value, NULL, 2, 2, 2, density, &outside),
                   BW_EINPUT);
-  bw_check_status(bw_pd_stress_pdf(bw_check_world(), 5, value, NULL, 0, 2, 0, density, &outside),
+  bw_check_status(bw_solid_stress_pdf(bw_check_world(), 5, value, NULL, 0, 2, 0, density, &outside),
                   BW_EINPUT);
-  bw_check_status(bw_pd_stress_pdf(bw_check_world(), 0, value, NULL, 0, 2, 2, density, &outside),
+  bw_check_status(bw_solid_stress_pdf(bw_check_world(), 0, value, NULL, 0, 2, 2, density, &outside),
                   BW_EINPUT);
 }
 END_TEST

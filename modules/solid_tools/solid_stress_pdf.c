@@ -1,20 +1,20 @@
 /* Probability densities of values at particles. */
-#include "bw_pd_stress.h"
+#include "bw_solid_stress.h"
 
 #include <gsl/gsl_histogram.h>
 #include <math.h>
 
-bw_status bw_pd_stress_pdf(const bw_comm *comm, size_t n, const double value[],
-                           const double weight[], double lower, double upper, int bins,
-                           double density[], double *outside)
+bw_status bw_solid_stress_pdf(const bw_comm *comm, size_t n, const double value[],
+                              const double weight[], double lower, double upper, int bins,
+                              double density[], double *outside)
 {
   BW_REQUIRE(isfinite(lower) && isfinite(upper) && upper > lower, BW_EINPUT,
-             "pd_stress_pdf: the range %g .. %g has to be finite and not empty", lower, upper);
-  BW_REQUIRE(bins > 0, BW_EINPUT, "pd_stress_pdf: bins = %d has to be positive", bins);
+             "solid_stress_pdf: the range %g .. %g has to be finite and not empty", lower, upper);
+  BW_REQUIRE(bins > 0, BW_EINPUT, "solid_stress_pdf: bins = %d has to be positive", bins);
   double total[2] = {0}; /* all weight; weight inside */
   gsl_histogram *h = gsl_histogram_alloc((size_t)bins);
   const bw_status st = bw_comm_agree(
-      comm, h != NULL ? BW_OK : BW_FAIL(BW_EMEM, "pd_stress_pdf: no memory for %d bins", bins));
+      comm, h != NULL ? BW_OK : BW_FAIL(BW_EMEM, "solid_stress_pdf: no memory for %d bins", bins));
   if (st != BW_OK) {
     if (h != NULL) gsl_histogram_free(h);
     return st;
@@ -30,7 +30,7 @@ bw_status bw_pd_stress_pdf(const bw_comm *comm, size_t n, const double value[],
   gsl_histogram_free(h);
   bw_comm_sum(comm, bins, density);
   bw_comm_sum(comm, 2, total);
-  BW_REQUIRE(total[0] > 0, BW_EINPUT, "pd_stress_pdf: there is nothing to count");
+  BW_REQUIRE(total[0] > 0, BW_EINPUT, "solid_stress_pdf: there is nothing to count");
   for (int q = 0; q < bins; q++) {
     total[1] += density[q];
     density[q] *= bins / ((upper - lower) * total[0]);

@@ -1,6 +1,6 @@
 /* Conjugate gradients on the small-strain operator of the bonds that hold. */
 #include "bw_memory.h"
-#include "pd_static.h"
+#include "solid_static.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,11 +57,11 @@ static void turn(const bw_pd_body *pd, const solver *s, double beta)
     }
 }
 
-static bw_status iterate(bw_pd_body *pd, const bw_pd_static_config *config, const solver *s,
-                         double U[], bw_pd_static_report *report)
+static bw_status iterate(bw_pd_body *pd, const bw_solid_static_config *config, const solver *s,
+                         double U[], bw_solid_static_report *report)
 {
   double sum[4], before = 0;
-  bw_pd_static_scale by = {.first = -1};
+  bw_solid_static_scale by = {.first = -1};
   pd->law->rows(pd, s->mass);
   product(pd, s, U);
   for (size_t i = 0; i < pd->n; i++)
@@ -70,7 +70,7 @@ static bw_status iterate(bw_pd_body *pd, const bw_pd_static_config *config, cons
           bw_pd_body_material(pd, i)->rho * (double)pd->load.f[k][i] - s->kp[3 * i + k];
   for (int q = 0; q <= config->max_iterations; q++) {
     norms(pd, s, sum);
-    report->residual = bw_pd_static__residual(sum[0], sum[1], sum[2], &by);
+    report->residual = bw_solid_static__residual(sum[0], sum[1], sum[2], &by);
     if (report->residual <= config->tolerance) return BW_OK;
     if (!isfinite(report->residual)) break;
     turn(pd, s, q > 0 ? sum[3] / before : 0);
@@ -83,19 +83,20 @@ static bw_status iterate(bw_pd_body *pd, const bw_pd_static_config *config, cons
       s->r[x] -= step * s->kp[x];
     }
   }
-  return BW_FAIL(BW_EDIVERGED,
-                 "pd_static_linear: the residual is %g after %lld products, %g was asked; is the "
-                 "body held?",
-                 report->residual, (long long)report->iterations, config->tolerance);
+  return BW_FAIL(
+      BW_EDIVERGED,
+      "solid_static_linear: the residual is %g after %lld products, %g was asked; is the "
+      "body held?",
+      report->residual, (long long)report->iterations, config->tolerance);
 }
 
-bw_status bw_pd_static_linear(bw_pd_bond *solid, const bw_pd_static_config *config, double U[],
-                              bw_pd_static_report *report)
+bw_status bw_solid_static_linear(bw_solid *solid, const bw_solid_static_config *config, double U[],
+                                 bw_solid_static_report *report)
 {
-  bw_pd_body *pd = bw_pd_bond_body(solid);
+  bw_pd_body *pd = bw_solid_body(solid);
   solver s = {.copy = pd->vs};
-  *report = (bw_pd_static_report){.residual = NAN};
-  bw_status st = bw_pd_static__check(solid, config);
+  *report = (bw_solid_static_report){.residual = NAN};
+  bw_status st = bw_solid_static__check(solid, config);
   BW_THEN(st, BW_ALLOCATE(&s.mass, pd->n));
   BW_THEN(st, BW_ALLOCATE(&s.r, 3 * pd->n));
   BW_THEN(st, BW_ALLOCATE(&s.p, 3 * pd->n));

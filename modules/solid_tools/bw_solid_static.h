@@ -1,4 +1,4 @@
-/* bw_pd_static.h -- states at rest: adaptive dynamic relaxation, and a linear small-strain solve.
+/* bw_solid_static.h -- states at rest: adaptive dynamic relaxation, and a linear small-strain solve.
  *
  *   0 = L + F on every free particle; prescribed ones stay where they are.
  * Residual: |L + F| over the free particles divided by the larger of |F| and |L + F| over the
@@ -20,24 +20,24 @@ typedef struct {
   int max_iterations; /* force evaluations, of each equilibrium default 100000 */
   bool breaks;        /* break what is beyond s0 when at rest and relax again, until nothing
                          breaks                                 default false */
-} bw_pd_static_config;
-bw_pd_static_config bw_pd_static_config_default(void);
+} bw_solid_static_config;
+bw_solid_static_config bw_solid_static_config_default(void);
 
 typedef struct {
   int64_t iterations; /* force evaluations (relaxation) or products with K (linear) in all */
   double residual;    /* reached */
   int64_t broken;     /* undirected bonds broken on the way */
-} bw_pd_static_report;
+} bw_solid_static_report;
 
 /* Move the particles to rest under the force of set_force; velocities are zero afterwards. The
  * ledger's running sums do not count this work but for fracture. Damping is not used. BW_EDIVERGED
  * when max_iterations do not reach the tolerance (report: how far they came; the state is the last
  * one); BW_EMEM. Collective. */
-bw_status bw_pd_static_relax(bw_pd_bond *pd, const bw_pd_static_config *config,
-                             bw_pd_static_report *report) BW_MUST_CHECK;
+bw_status bw_solid_static_relax(bw_solid *pd, const bw_solid_static_config *config,
+                                bw_solid_static_report *report) BW_MUST_CHECK;
 
 /* U (n,3) [L]: on entry the displacement of the prescribed particles (rows of others: where to
  * start from), on exit of all, under the force of set_force. The object's state is not changed.
  * Errors as above. Collective. */
-bw_status bw_pd_static_linear(bw_pd_bond *pd, const bw_pd_static_config *config, double U[],
-                              bw_pd_static_report *report) BW_MUST_CHECK;
+bw_status bw_solid_static_linear(bw_solid *pd, const bw_solid_static_config *config, double U[],
+                                 bw_solid_static_report *report) BW_MUST_CHECK;

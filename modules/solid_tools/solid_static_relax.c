@@ -1,28 +1,30 @@
 /* Adaptive dynamic relaxation. */
 #include "bw_memory.h"
-#include "pd_static.h"
+#include "solid_static.h"
 
 #include <math.h>
 #include <string.h>
 
-bw_pd_static_config bw_pd_static_config_default(void)
+bw_solid_static_config bw_solid_static_config_default(void)
 {
-  return (bw_pd_static_config){.tolerance = 1e-6, .max_iterations = 100000};
+  return (bw_solid_static_config){.tolerance = 1e-6, .max_iterations = 100000};
 }
 
-bw_status bw_pd_static__check(const bw_pd_bond *s, const bw_pd_static_config *c)
+bw_status bw_solid_static__check(const bw_solid *s, const bw_solid_static_config *c)
 {
   BW_REQUIRE(c->tolerance > 0 && c->tolerance < 1, BW_EINPUT,
-             "pd_static: tolerance = %g must be above 0 and below 1", c->tolerance);
-  BW_REQUIRE(c->max_iterations > 0, BW_EINPUT, "pd_static: max_iterations = %d must be positive",
+             "solid_static: tolerance = %g must be above 0 and below 1", c->tolerance);
+  BW_REQUIRE(c->max_iterations > 0, BW_EINPUT, "solid_static: max_iterations = %d must be positive",
              c->max_iterations);
-  BW_REQUIRE(!bw_pd_bond_settings(s)->contact, BW_EINPUT,
-             "pd_static: the body has contact, which the fictitious masses do not bound; create it "
-             "without");
+  BW_REQUIRE(
+      !bw_solid_settings(s)->contact, BW_EINPUT,
+      "solid_static: the body has contact, which the fictitious masses do not bound; create it "
+      "without");
   return BW_OK;
 }
 
-double bw_pd_static__residual(double free2, double F2, double reaction2, bw_pd_static_scale *s)
+double bw_solid_static__residual(double free2, double F2, double reaction2,
+                                 bw_solid_static_scale *s)
 {
   s->scale = fmax(sqrt(fmax(F2, reaction2)), s->floor);
   if (s->first < 0) s->first = sqrt(free2);
@@ -72,28 +74,29 @@ static void advance(bw_pd_body *pd, relaxation *x, bool started, const double su
 }
 
 /* One equilibrium with the bonds there are. */
-static bw_status settle(bw_pd_bond *s, const bw_pd_static_config *config, relaxation *x,
-                        double floor, bw_pd_static_report *report, double *scale)
+static bw_status settle(bw_solid *s, const bw_solid_static_config *config, relaxation *x,
+                        double floor, bw_solid_static_report *report, double *scale)
 {
-  bw_pd_body *pd = bw_pd_bond_body(s);
+  bw_pd_body *pd = bw_solid_body(s);
   double sum[SUMS];
-  bw_pd_static_scale by = {.floor = floor, .first = -1};
+  bw_solid_static_scale by = {.floor = floor, .first = -1};
   memset(x->v, 0, 3 * pd->n * sizeof *x->v);
   pd->law->rows(pd, x->mass);
   for (int q = 0; q < config->max_iterations; q++) {
-    BW_TRY(bw_pd_bond_evaluate(s));
+    BW_TRY(bw_solid_evaluate(s));
     report->iterations++;
     measure(pd, x, q > 0, sum);
-    report->residual = bw_pd_static__residual(sum[FREE], sum[EXTERNAL], sum[REACTION], &by);
+    report->residual = bw_solid_static__residual(sum[FREE], sum[EXTERNAL], sum[REACTION], &by);
     *scale = by.scale;
     if (report->residual <= config->tolerance) return BW_OK;
     if (!isfinite(report->residual)) break;
     advance(pd, x, q > 0, sum);
   }
-  return BW_FAIL(BW_EDIVERGED,
-                 "pd_static_relax: the residual is %g after %lld evaluations, %g was asked; is the "
-                 "body held, and the load one it can bear?",
-                 report->residual, (long long)report->iterations, config->tolerance);
+  return BW_FAIL(
+      BW_EDIVERGED,
+      "solid_static_relax: the residual is %g after %lld evaluations, %g was asked; is the "
+      "body held, and the load one it can bear?",
+      report->residual, (long long)report->iterations, config->tolerance);
 }
 
 /* Breaks what is beyond s0; returns how many bonds of all ranks. */
@@ -114,14 +117,14 @@ static void at_rest(bw_pd_body *pd)
   pd->current = false;
 }
 
-bw_status bw_pd_static_relax(bw_pd_bond *s, const bw_pd_static_config *config,
-                             bw_pd_static_report *report)
+bw_status bw_solid_static_relax(bw_solid *s, const bw_solid_static_config *config,
+                                bw_solid_static_report *report)
 {
-  bw_pd_body *pd = bw_pd_bond_body(s);
+  bw_pd_body *pd = bw_solid_body(s);
   relaxation x = {0};
   double scale = 0;
-  *report = (bw_pd_static_report){.residual = NAN};
-  bw_status st = bw_pd_static__check(s, config);
+  *report = (bw_solid_static_report){.residual = NAN};
+  bw_status st = bw_solid_static__check(s, config);
   BW_THEN(st, BW_ALLOCATE(&x.mass, pd->n));
   BW_THEN(st, BW_ALLOCATE(&x.v, 3 * pd->n));
   BW_THEN(st, BW_ALLOCATE(&x.acc, 3 * pd->n));

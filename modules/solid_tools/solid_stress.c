@@ -1,5 +1,5 @@
 /* Deformation gradient and stress from the families. */
-#include "bw_pd_stress.h"
+#include "bw_solid_stress.h"
 #include "pd_law.h"
 
 #include <math.h>
@@ -78,9 +78,9 @@ static void stress_row(const bw_pd_body *pd, size_t i, const family_sums *sum, d
   if (pd->config.geometry == BW_PD_PLANE_STRAIN) s[2] = nu * (s[0] + s[1]);
 }
 
-void bw_pd_stress_compute(bw_pd_bond *s, double F[], double stress[])
+void bw_solid_stress_compute(bw_solid *s, double F[], double stress[])
 {
-  bw_pd_body *pd = bw_pd_bond_body(s);
+  bw_pd_body *pd = bw_solid_body(s);
   family_sums sum;
   double one[3][3];
   if (!pd->current) bw_pd_body_refresh(pd, false);

@@ -1,15 +1,15 @@
 #include "bw_memory.h"
-#include "bw_pd_load.h"
+#include "bw_solid_load.h"
 #include "pd_law.h"
 
 #include <math.h>
 
-double bw_pd_ramp_value(const bw_pd_ramp *ramp, double time)
+double bw_solid_ramp_value(const bw_solid_ramp *ramp, double time)
 {
   if (time < ramp->start) return 0;
   if (time >= ramp->start + ramp->duration) return 1;
   const double x = (time - ramp->start) / ramp->duration;
-  return ramp->kind == BW_PD_RAMP_SMOOTH ? x * x * (3 - 2 * x) : x;
+  return ramp->kind == BW_SOLID_RAMP_SMOOTH ? x * x * (3 - 2 * x) : x;
 }
 
 static void prescribe(bw_pd_body *pd, double factor, const double field[])
@@ -19,17 +19,17 @@ static void prescribe(bw_pd_body *pd, double factor, const double field[])
       pd->held.velocity[3 * q + k] = factor * field[3 * (size_t)pd->held.particle[q] + k];
 }
 
-void bw_pd_load_displace(bw_pd_bond *s, const bw_pd_ramp *ramp, double time, double dt,
-                         const double U[])
+void bw_solid_load_displace(bw_solid *s, const bw_solid_ramp *ramp, double time, double dt,
+                            const double U[])
 {
-  prescribe(bw_pd_bond_body(s),
-            (bw_pd_ramp_value(ramp, time + dt) - bw_pd_ramp_value(ramp, time)) / dt, U);
+  prescribe(bw_solid_body(s),
+            (bw_solid_ramp_value(ramp, time + dt) - bw_solid_ramp_value(ramp, time)) / dt, U);
 }
 
-void bw_pd_load_move(bw_pd_bond *s, const bw_pd_ramp *ramp, double time, double dt,
-                     const double V[])
+void bw_solid_load_move(bw_solid *s, const bw_solid_ramp *ramp, double time, double dt,
+                        const double V[])
 {
-  prescribe(bw_pd_bond_body(s), bw_pd_ramp_value(ramp, time + 0.5 * dt), V);
+  prescribe(bw_solid_body(s), bw_solid_ramp_value(ramp, time + 0.5 * dt), V);
 }
 
 static bool in_box(const bw_pd_body *pd, size_t i, const double lower[3], const double upper[3])
@@ -42,18 +42,18 @@ static bool in_box(const bw_pd_body *pd, size_t i, const double lower[3], const 
   return in;
 }
 
-bw_status bw_pd_load_traction(const bw_pd_bond *s, const double lower[3], const double upper[3],
-                              double area, const double traction[3], double F[])
+bw_status bw_solid_load_traction(const bw_solid *s, const double lower[3], const double upper[3],
+                                 double area, const double traction[3], double F[])
 {
-  const bw_pd_body *pd = bw_pd_bond_body(s);
-  BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT, "pd_load_traction: area = %g must be positive",
-             area);
+  const bw_pd_body *pd = bw_solid_body(s);
+  BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT,
+             "solid_load_traction: area = %g must be positive", area);
   int64_t chosen = 0;
   for (size_t i = 0; i < pd->n; i++)
     chosen += in_box(pd, i, lower, upper);
   bw_comm_sum_int(pd->comm, 1, &chosen);
   BW_REQUIRE(chosen > 0, BW_EINPUT,
-             "pd_load_traction: no free particle has its place in the box %g %g %g .. %g %g %g",
+             "solid_load_traction: no free particle has its place in the box %g %g %g .. %g %g %g",
              lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]);
   for (size_t i = 0; i < pd->n; i++)
     for (int k = 0; k < pd->dimension && in_box(pd, i, lower, upper); k++)
@@ -61,51 +61,51 @@ bw_status bw_pd_load_traction(const bw_pd_bond *s, const double lower[3], const 
   return BW_OK;
 }
 
-void bw_pd_load_gravity(const bw_pd_bond *s, const double g[3], double F[])
+void bw_solid_load_gravity(const bw_solid *s, const double g[3], double F[])
 {
-  const bw_pd_body *pd = bw_pd_bond_body(s);
+  const bw_pd_body *pd = bw_solid_body(s);
   for (size_t i = 0; i < pd->n; i++)
     for (int k = 0; k < pd->dimension; k++)
       F[3 * i + (size_t)k] += bw_pd_body_material(pd, i)->rho * g[k];
 }
 
-bw_status bw_pd_load_velocity(bw_pd_bond *s, bw_pd_load_field field, const void *data)
+bw_status bw_solid_load_velocity(bw_solid *s, bw_solid_load_field field, const void *data)
 {
-  const bw_pd_body *pd = bw_pd_bond_body(s);
+  const bw_pd_body *pd = bw_solid_body(s);
   double *X = NULL, *V = NULL, X0[3];
   bw_status st = BW_ALLOCATE(&X, 3 * pd->n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * pd->n));
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
-    bw_pd_bond_get_position(s, X);
+    bw_solid_get_position(s, X);
     for (size_t i = 0; i < pd->n; i++) {
       bw_pd_body_reference(pd, i, X0);
       field(X0, V + 3 * i, data);
     }
-    bw_pd_bond_set_state(s, X, V);
+    bw_solid_set_state(s, X, V);
   }
   bw_release(&X);
   bw_release(&V);
   return st;
 }
 
-bw_status bw_pd_load_launch(bw_pd_bond *s, const double velocity[3], const double spin[3],
-                            const double centre[3])
+bw_status bw_solid_load_launch(bw_solid *s, const double velocity[3], const double spin[3],
+                               const double centre[3])
 {
-  const bw_pd_body *pd = bw_pd_bond_body(s);
+  const bw_pd_body *pd = bw_solid_body(s);
   double *X = NULL, *V = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * pd->n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * pd->n));
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
-    bw_pd_bond_get_position(s, X);
+    bw_solid_get_position(s, X);
     for (size_t i = 0; i < pd->n; i++)
       for (size_t k = 0; k < 3; k++) {
         const size_t a = (k + 1) % 3, b = (k + 2) % 3;
         V[3 * i + k] = velocity[k] + spin[a] * (X[3 * i + b] - centre[b]) -
                        spin[b] * (X[3 * i + a] - centre[a]);
       }
-    bw_pd_bond_set_state(s, X, V);
+    bw_solid_set_state(s, X, V);
   }
   bw_release(&X);
   bw_release(&V);

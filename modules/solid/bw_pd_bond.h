@@ -1,1 +1,0 @@
-#include "bw_solid.h"

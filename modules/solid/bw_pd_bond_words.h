@@ -1,9 +1,0 @@
-/* bw_pd_bond_words.h -- the words of case files for the choices of bw_pd_bond_config: lists for
- * BW_CONFIG_WORD, each ending with a NULL name. */
-#pragma once
-#include "bw_config.h"
-
-extern const bw_config_word bw_pd_bond_correction_words[]; /* bw_pd_surface_correction */
-extern const bw_config_word bw_pd_bond_fraction_words[];   /* bw_pd_volume_fraction */
-extern const bw_config_word bw_pd_bond_reach_words[];      /* bw_pd_family_reach */
-extern const bw_config_word bw_pd_bond_integrator_words[]; /* bw_pd_integrator */

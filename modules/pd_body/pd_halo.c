@@ -4,6 +4,7 @@
  * found by counting (bw_particles_partition), rows go to their owners, and the places around own
  * particles that others own are asked for. */
 #include "bw_memory.h"
+#include "bw_particles_halo.h"
 #include "bw_particles_order.h"
 #include "bw_particles_partition.h"
 #include "pd_body.h"
@@ -26,13 +27,6 @@ typedef struct {
   size_t n;
   passenger *own; /* (n) as they arrived */
 } crowd;
-
-/* Sites that may be occupied by somebody else's particle, or by an image. */
-typedef struct {
-  size_t n, capacity;
-  int32_t *there, *home; /* (n,3) where it would act; where its owner has it */
-  int *owner;            /* (n) */
-} site_list;
 
 static bw_status extent_of_all(const bw_pd_body *pd, size_t n, const int32_t site[], crowd *g)
 {
@@ -145,136 +139,30 @@ static bw_status near_own(const bw_pd_body *pd, size_t n, const passenger own[],
   return BW_OK;
 }
 
-/* Where the particle whose image is at `site` is at home. */
-static void home_of(const crowd *g, const int32_t site[3], int32_t home[3])
-{
-  for (int k = 0; k < 3; k++) {
-    const int32_t p = g->period[k];
-    home[k] = p == 0 ? site[k] : g->lower[k] + ((site[k] - g->lower[k]) % p + p) % p;
-  }
-}
-
-static bw_status append(site_list *list, const int32_t there[3], const int32_t home[3], int owner)
-{
-  if (list->n == list->capacity) {
-    site_list more = {.n = list->n, .capacity = 2 * list->capacity + 1024};
-    BW_TRY(BW_ALLOCATE(&more.there, 3 * more.capacity));
-    BW_TRY(BW_ALLOCATE(&more.home, 3 * more.capacity));
-    BW_TRY(BW_ALLOCATE(&more.owner, more.capacity));
-    if (list->n > 0) {
-      memcpy(more.there, list->there, 3 * list->n * sizeof *more.there);
-      memcpy(more.home, list->home, 3 * list->n * sizeof *more.home);
-      memcpy(more.owner, list->owner, list->n * sizeof *more.owner);
-    }
-    bw_release(&list->there);
-    bw_release(&list->home);
-    bw_release(&list->owner);
-    *list = more;
-  }
-  memcpy(list->there + 3 * list->n, there, 3 * sizeof *there);
-  memcpy(list->home + 3 * list->n, home, 3 * sizeof *home);
-  list->owner[list->n++] = owner;
-  return BW_OK;
-}
-
-static void release_list(site_list *list)
-{
-  bw_release(&list->there);
-  bw_release(&list->home);
-  bw_release(&list->owner);
-}
-
-/* Is the place one that this rank cannot answer for? Then it has to ask its owner. */
-static bool foreign(const bw_pd_body *pd, const crowd *g, const bw_particles_map *near,
-                    const int32_t there[3], int32_t home[3], int *owner)
-{
-  bool outside = false;
-  home_of(g, there, home);
-  for (int k = 0; k < 3; k++)
-    outside = outside || home[k] < g->lower[k] || home[k] > g->upper[k];
-  if (outside) return false;
-  *owner = bw_particles_partition_owner(g->partition, home);
-  if (*owner != bw_comm_rank(pd->comm)) return true;
-  const bool image = memcmp(there, home, 3 * sizeof *home) != 0;
-  return image && bw_particles_map_get(near, home) >= 0;
-}
-
-/* Places in reach of own particles that may hold a copy, each once. */
-static bw_status list_places(const bw_pd_body *pd, const crowd *g, const passenger own[],
-                             const bw_particles_map *near, site_list *places)
-{
-  const bw_pd_stencil *stencil = &pd->level->stencil;
-  bw_particles_map seen = {0};
-  if (g->n == 0) return BW_OK;
-  int32_t lower[3], upper[3];
-  for (int k = 0; k < 3; k++) {
-    lower[k] = g->lower[k] - stencil->reach;
-    upper[k] = g->upper[k] + stencil->reach;
-  }
-  bw_status st = bw_particles_map_create(1024, lower, upper, &seen);
-  for (size_t i = 0; i < g->n && st == BW_OK; i++)
-    for (int q = 0; q < stencil->n && st == BW_OK; q++) {
-      const int32_t *s = own[i].site, *o = stencil->offset + 3 * q;
-      const int32_t there[3] = {s[0] + o[0], s[1] + o[1], s[2] + o[2]};
-      int32_t home[3], found;
-      int owner;
-      if (bw_particles_map_get(near, there) >= 0) continue;
-      if (!foreign(pd, g, near, there, home, &owner)) continue;
-      st = bw_particles_map_put(&seen, there, (int32_t)places->n, &found);
-      if (st == BW_OK && found < 0) st = append(places, there, home, owner);
-    }
-  bw_particles_map_destroy(&seen);
-  return st;
-}
-
 static int32_t find_own(const void *near, const void *key)
 {
   return bw_particles_map_get((const bw_particles_map *)near, (const int32_t *)key);
 }
 
-static bw_particles_question question_of(const site_list *list, const bw_particles_map *near)
+/* The occupied places around own particles that others, or images, occupy. Collective. */
+static bw_status find_copies(const bw_pd_body *pd, const crowd *g, const int32_t site[],
+                             bw_particles_map *near, bw_particles_halo *halo)
 {
-  return (bw_particles_question){.n = list->n,
-                                 .owner = list->owner,
-                                 .key_bytes = 3 * sizeof(int32_t),
-                                 .key = list->home,
-                                 .find = find_own,
-                                 .context = near};
+  const bw_pd_stencil *stencil = &pd->level->stencil;
+  bw_particles_lattice lattice = {
+      .partition = g->partition, .n_offset = stencil->n, .offset = stencil->offset};
+  memcpy(lattice.lower, g->lower, sizeof lattice.lower);
+  memcpy(lattice.period, g->period, sizeof lattice.period);
+  return bw_particles_halo_create(pd->comm, &lattice, pd->n, site, near, halo);
 }
 
-/* The places that turn out to be occupied, in lattice order. Collective. */
-static bw_status occupied(const bw_pd_body *pd, const site_list *places,
-                          const bw_particles_map *near, site_list *copies)
-{
-  int32_t *index = NULL, *order = NULL;
-  site_list found = {0};
-  bw_status st = bw_comm_agree(pd->comm, BW_ALLOCATE(&index, places->n));
-  if (st == BW_OK) {
-    const bw_particles_question question = question_of(places, near);
-    st = bw_particles_ask(pd->comm, &question, index);
-  }
-  for (size_t q = 0; q < places->n && st == BW_OK; q++)
-    if (index[q] >= 0)
-      st = append(&found, places->there + 3 * q, places->home + 3 * q, places->owner[q]);
-  BW_THEN(st, BW_ALLOCATE(&order, found.n));
-  BW_THEN(st, bw_particles_lattice_order(pd->points.axis, found.n, found.there, order));
-  for (size_t q = 0; q < found.n && st == BW_OK; q++) {
-    const size_t c = (size_t)order[q];
-    st = append(copies, found.there + 3 * c, found.home + 3 * c, found.owner[c]);
-  }
-  bw_release(&index);
-  bw_release(&order);
-  release_list(&found);
-  return bw_comm_agree(pd->comm, st);
-}
-
-/* Own particles, then copies; what copies are comes with the first exchange. */
-static bw_status extended_arrays(bw_pd_body *pd, const passenger own[], const site_list *copies)
+/* Own particles, then copies in lattice order; what copies are comes with the first exchange. */
+static bw_status extended_arrays(bw_pd_body *pd, const passenger own[],
+                                 const bw_particles_halo *halo, const int32_t order[],
+                                 bw_particles_map *near)
 {
   bw_pd_points *p = &pd->points;
-  const size_t n = pd->n, all = pd->n_extended = n + copies->n;
-  BW_REQUIRE(all < INT32_MAX, BW_EINPUT,
-             "solid: %zu particles and copies on one rank; the limit is 2^31, use more ranks", all);
+  const size_t n = pd->n, all = pd->n_extended = n + halo->n;
   BW_TRY(BW_ALLOCATE(&p->site, 3 * all));
   BW_TRY(BW_ALLOCATE(&p->id, all));
   BW_TRY(BW_ALLOCATE(&p->kind, all));
@@ -287,49 +175,89 @@ static bw_status extended_arrays(bw_pd_body *pd, const passenger own[], const si
     p->kind[i] = own[i].kind;
     p->group[i] = own[i].group;
   }
-  if (copies->n > 0) memcpy(p->site + 3 * n, copies->there, 3 * copies->n * sizeof *p->site);
+  for (size_t c = 0; c < halo->n; c++) {
+    int32_t *site = p->site + 3 * (n + c);
+    memcpy(site, halo->place + 3 * (size_t)order[c], 3 * sizeof *site);
+    bw_particles_map_replace(near, site, (int32_t)(n + c));
+  }
   return BW_OK;
 }
 
-static bw_status plan_halo(bw_pd_body *pd, const site_list *copies, bw_particles_map *near)
+/* Copies ask their owners by the site where these have them. Collective. */
+static bw_status plan_halo(bw_pd_body *pd, const bw_particles_halo *halo, const int32_t order[],
+                           const bw_particles_map *near)
 {
   bw_pd_points *p = &pd->points;
-  const bw_particles_question question = question_of(copies, near);
-  BW_TRY(bw_particles_copies_create(pd->comm, pd->n, &question, 6 * sizeof(bw_real),
-                                    &pd->halo.copies));
-  bw_particles_copies_values(pd->halo.copies, sizeof *p->id, p->id, p->id);
-  bw_particles_copies_values(pd->halo.copies, sizeof *p->kind, p->kind, p->kind);
-  bw_particles_copies_values(pd->halo.copies, sizeof *p->group, p->group, p->group);
-  bw_status st = BW_OK;
-  for (size_t c = 0; c < copies->n && st == BW_OK; c++) {
-    int32_t found;
-    st = bw_particles_map_put(near, copies->there + 3 * c, (int32_t)(pd->n + c), &found);
+  int32_t *home = NULL;
+  int *owner = NULL;
+  bw_status st = BW_ALLOCATE(&home, 3 * halo->n);
+  BW_THEN(st, BW_ALLOCATE(&owner, halo->n));
+  for (size_t c = 0; c < halo->n && st == BW_OK; c++) {
+    memcpy(home + 3 * c, halo->home + 3 * (size_t)order[c], 3 * sizeof *home);
+    owner[c] = halo->owner[order[c]];
   }
-  return bw_comm_agree(pd->comm, st);
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) {
+    const bw_particles_question question = {.n = halo->n,
+                                            .owner = owner,
+                                            .key_bytes = 3 * sizeof *home,
+                                            .key = home,
+                                            .find = find_own,
+                                            .context = near};
+    st = bw_particles_copies_create(pd->comm, pd->n, &question, 6 * sizeof(bw_real),
+                                    &pd->halo.copies);
+  }
+  if (st == BW_OK) {
+    bw_particles_copies_values(pd->halo.copies, sizeof *p->id, p->id, p->id);
+    bw_particles_copies_values(pd->halo.copies, sizeof *p->kind, p->kind, p->kind);
+    bw_particles_copies_values(pd->halo.copies, sizeof *p->group, p->group, p->group);
+  }
+  bw_release(&home);
+  bw_release(&owner);
+  return st;
+}
+
+/* Copies of what is near, once every particle is with its owner. Collective. */
+static bw_status make_copies(bw_pd_body *pd, const crowd *g, const passenger own[],
+                             bw_particles_map *near)
+{
+  bw_particles_halo halo = {0};
+  int32_t *site = NULL, *order = NULL;
+  bw_status st = BW_ALLOCATE(&site, 3 * pd->n);
+  for (size_t i = 0; i < pd->n && st == BW_OK; i++)
+    memcpy(site + 3 * i, own[i].site, sizeof own[i].site);
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) st = find_copies(pd, g, site, near, &halo);
+  if (st == BW_OK) {
+    st = BW_ALLOCATE(&order, halo.n);
+    BW_THEN(st, bw_particles_lattice_order(pd->points.axis, halo.n, halo.place, order));
+    BW_THEN(st, extended_arrays(pd, own, &halo, order, near));
+    st = bw_comm_agree(pd->comm, st);
+  }
+  if (st == BW_OK) st = plan_halo(pd, &halo, order, near);
+  bw_release(&site);
+  bw_release(&order);
+  bw_particles_halo_destroy(&halo);
+  return st;
 }
 
 /* Rows at home, who is near, which copies. Collective. */
 static bw_status divide(bw_pd_body *pd, const bw_pd_sites *given, crowd *g, bw_particles_map *near)
 {
   passenger *own = NULL;
-  site_list places = {0}, copies = {0};
   bw_status st =
       bw_particles_partition_create(pd->comm, (size_t)given->n, given->site, &g->partition);
   if (st == BW_OK) st = send_home(pd, given, g);
   if (st == BW_OK) {
-    st = settle_own(pd, g, &own);
     pd->n = g->n;
     pd->points.total = bw_particles_partition_total(g->partition);
+    st = settle_own(pd, g, &own);
     BW_THEN(st, near_own(pd, g->n, own, near));
-    BW_THEN(st, list_places(pd, g, own, near, &places));
     st = bw_comm_agree(pd->comm, st);
   }
-  if (st == BW_OK) st = occupied(pd, &places, near, &copies);
-  if (st == BW_OK) st = bw_comm_agree(pd->comm, extended_arrays(pd, own, &copies));
-  if (st == BW_OK) st = plan_halo(pd, &copies, near);
+  bw_release(&g->own);
+  if (st == BW_OK) st = make_copies(pd, g, own, near);
   bw_release(&own);
-  release_list(&places);
-  release_list(&copies);
   return st;
 }
 

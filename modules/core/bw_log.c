@@ -65,6 +65,7 @@ void bw_log_info(bw_log *log, const char *fmt, ...)
 {
   if (log == NULL || !log->speaks || log->config.quiet) return;
   va_list args;
+  /* The progress line makes room and is drawn anew by the next update. */
   clear_line(log);
   va_start(args, fmt);
   vfprintf(log->config.out, fmt, args);
@@ -138,6 +139,7 @@ static double remaining(const bw_progress *p)
 /* "1 d 02:03:04", "2:03:04" or "3:04"; "?" for NaN. */
 static void format_duration(char *text, size_t size, double seconds)
 {
+  /* NaN, or more than three hundred years: nothing to tell. */
   if (!(seconds < 1e10)) {
     snprintf(text, size, "?");
     return;
@@ -173,7 +175,6 @@ void bw_progress_update(bw_progress *p, int64_t step, double time, const char *f
 {
   if (p == NULL || p->log == NULL || !p->log->speaks || p->log->config.quiet) return;
   const bw_log_config *c = &p->log->config;
-  /* The last state is kept even when no line is due: finish shows it. */
   const double now = bw_wall_time();
   p->step = step;
   p->time = time;

@@ -1,5 +1,6 @@
-/* The systems of separators, see the head of bw_tridiagonal.c. The lines are dealt out over the ranks:
- * each solves its portion with what all the others told of it, and tells them their separators. */
+/* The systems of separators, see the head of bw_tridiagonal.c. The lines are dealt out over the
+ * ranks: each solves its portion with what all the others told of it, and tells them their
+ * separators. */
 #include "tridiagonal_internal.h"
 
 #include <string.h>
@@ -24,9 +25,8 @@ static inline equation separator(const bw_real *const of[PLANES], int q)
 
 static void planes_of(const bw_tridiagonal *t, int p, size_t q0, const bw_real *of[PLANES])
 {
+  /* A separator's row reaches into the next rank, which has told what its first row amounts to. */
   for (int w = 0; w < PLANES; w++)
-    /* The coefficient of the next separator, and what belongs to its first row, was told by the
-     * rank behind. */
     of[w] = told(t, w >= NEXT_F ? (p + 1) % t->ranks : p, w, q0);
 }
 

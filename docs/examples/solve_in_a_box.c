@@ -22,14 +22,14 @@ static bw_status make_field(const bw_comm *world, bw_grid **grid, bw_real **f)
   box.periodic[0] = box.periodic[2] = true;
   BW_TRY(bw_grid_create(world, &box, grid));
   BW_TRY(bw_field_create(*grid, f));
-  const bw_grid_view *g =
-      bw_grid_look(*grid); /* of all cells, m are this rank's, behind lo others */
+  const bw_grid_view *g = bw_grid_look(*grid); /* m cells are this rank's, behind lo others */
   for (int k = 1; k <= g->m[2]; k++)
     for (int j = 1; j <= g->m[1]; j++)
-      for (int i = 1; i <= g->m[0]; i++)
-        (*f)[bw_at(g, i, j, k)] =
-            (bw_real)(cos(pi * (i - 0.5) * g->spacing[0]) * cos(pi * g->y_centre[g->lo[1] + j]) *
-                      cos(2 * pi * (g->lo[2] + k - 0.5) * g->spacing[2]));
+      for (int i = 1; i <= g->m[0]; i++) {
+        const double x = (i - 0.5) * g->spacing[0], y = g->y_centre[g->lo[1] + j];
+        const double z = (g->lo[2] + k - 0.5) * g->spacing[2];
+        (*f)[bw_at(g, i, j, k)] = (bw_real)(cos(pi * x) * cos(pi * y) * cos(2 * pi * z));
+      }
   bw_halo_update(*grid, 1, f); /* what lies beside this rank's cells is there now */
   return BW_OK;
 }

@@ -42,7 +42,7 @@ bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_
                      n_overrides, overrides, size, config));
     bw_release(&text);
   }
-  /* The struct is plain memory without pointers, so that its bytes are the message. */
+  /* All know how it went. The struct is plain memory without pointers: its bytes are the message. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) bw_comm_broadcast(comm, size, config);
   return st;

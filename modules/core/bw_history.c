@@ -122,7 +122,7 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
 void bw_history_append(bw_history *h, const double values[])
 {
   if (h == NULL || h->out == NULL) return;
-  /* The first sample after a restart is the last one before it. */
+  /* A restarted run samples the state it begins with, which the old file may hold already. */
   if (values[0] == h->last_kept) return;
   bool ok = true;
   for (int q = 0; q < h->n; q++) {

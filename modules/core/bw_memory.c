@@ -33,8 +33,8 @@ static void *reserve(size_t bytes)
 bw_status bw_allocate(size_t count, size_t size, void *out)
 {
   void *p = NULL;
-  /* `out` is the address of a pointer of some type: its bytes are copied, so that no type is
-   * disregarded. */
+  /* `out` is the address of a pointer of some type: an access as void ** would break the rules of
+   * aliasing, a copy of its bytes does not. */
   memcpy(out, &p, sizeof p);
   BW_REQUIRE(size == 0 || count <= (SIZE_MAX - 2 * ALIGNMENT) / size, BW_EMEM,
              "an array of %zu items of %zu bytes exceeds the address space", count, size);

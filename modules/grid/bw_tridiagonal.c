@@ -231,8 +231,7 @@ void bw_tridiagonal_reduce(bw_tridiagonal *t, const bw_tridiagonal_batch *b, con
   for (int j = 0; j < t->inner; j++)
     carry(n, t->lower[lo + j], t->diagonal[lo + j], t->upper[lo + j], b->scale,
           row_shift(t, b, j, pinned), f + j * b->pitch, &s);
-  /* The separator of the rank before contains our first row with this coefficient of its own
-   * row. */
+  /* In the row of the separator before, our first row has this coefficient. */
   const bw_real u = t->upper[(lo + t->n - 1) % t->n];
   for (int q = 0; q < n; q++) {
     s.F[q] *= u;

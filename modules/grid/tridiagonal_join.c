@@ -24,9 +24,8 @@ static inline equation separator(const bw_real *const of[PLANES], int q)
 
 static void planes_of(const bw_tridiagonal *t, int p, size_t q0, const bw_real *of[PLANES])
 {
+  /* A separator's row reaches into the next rank, which has told what its first row amounts to. */
   for (int w = 0; w < PLANES; w++)
-    /* The coefficient of the next separator, and what belongs to its first row, was told by the
-     * rank behind. */
     of[w] = told(t, w >= NEXT_F ? (p + 1) % t->ranks : p, w, q0);
 }
 

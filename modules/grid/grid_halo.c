@@ -114,14 +114,12 @@ static void cross(bw_grid *g, int d, int count, bw_real *const field[])
   const bw_grid_view *v = &g->view;
   MPI_Request request[4];
   int n = 0;
-  /* Receives are posted before anything is sent, so that no message has to wait in a buffer. */
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
     const box b = halo_layers(v, d, side);
     MPI_Irecv(g->receive[side], (int)(volume(&b) * (size_t)count * sizeof(bw_real)), MPI_BYTE,
               g->neighbour[d][side], side, g->mpi, &request[n++]);
   }
-  /* The owned layers beside each neighbour, all fields behind each other: one message each way. */
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
     const box b = owned_layers(v, d, side);
@@ -134,8 +132,6 @@ static void cross(bw_grid *g, int d, int count, bw_real *const field[])
     bw_grid__count(&g->halo, bytes);
   }
   MPI_Waitall(n, request, MPI_STATUSES_IGNORE);
-  /* All messages are here; the fields are taken apart in the order in which the neighbour put
-   * them. */
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
     const box b = halo_layers(v, d, side);
@@ -178,20 +174,15 @@ void bw_halo_update_faces(bw_grid *g, bw_real *const u[3])
 {
   const bw_grid_view *v = &g->view;
   for (int d = 0; d < 3; d++) {
-    /* The divergence in cell 1 reads the component on face 0, which is the top face of the block
-     * below: values travel upwards only. */
     const box top = layer(v, d, v->m[d]), below = layer(v, d, 0);
     const size_t bytes = volume(&top) * sizeof(bw_real);
     if (v->halo[d] == 0) continue;
-    /* One block spans a periodic direction: its own top face is the face below its first cell. */
     if (wrapped(v, d)) copy_box(v, &top, &below, u[d]);
     if (!crosses(v, d)) continue;
     if (g->neighbour[d][ABOVE] != MPI_PROC_NULL) {
       pack(v, &top, u[d], g->send[ABOVE]);
       bw_grid__count(&g->halo, bytes);
     }
-    /* MPI_PROC_NULL stands beyond a physical boundary: the face there belongs to the boundary
-     * condition. */
     MPI_Sendrecv(g->send[ABOVE], (int)bytes, MPI_BYTE, g->neighbour[d][ABOVE], BELOW,
                  g->receive[BELOW], (int)bytes, MPI_BYTE, g->neighbour[d][BELOW], BELOW, g->mpi,
                  MPI_STATUS_IGNORE);
@@ -234,7 +225,6 @@ bw_status bw_grid__halo_create(bw_grid *g)
     }
   BW_REQUIRE(largest * BW_GRID__BATCH * sizeof(bw_real) < 2147483647u, BW_EINPUT,
              "grid: a halo message of %zu cells is too long for MPI; use more ranks", largest);
-  /* Nothing is divided: no message is ever sent and no buffer needed. */
   if (largest == 0) return BW_OK;
   for (int side = BELOW; side <= ABOVE; side++) {
     BW_TRY(BW_ALLOCATE(&g->send[side], largest * BW_GRID__BATCH));

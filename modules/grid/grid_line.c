@@ -31,7 +31,6 @@ void bw_grid_swap(bw_grid *g, int d, const size_t send_start[], const size_t sen
   const MPI_Datatype real = sizeof(bw_real) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT;
   const int r = v->ranks[d], me = v->coord[d];
   int n = 0;
-  /* Receives first, in the order in which the partners send to this rank. */
   for (int q = 1; q < r; q++) {
     const int p = (me + r - q) % r;
     if (receive_count[p] > 0)
@@ -45,7 +44,6 @@ void bw_grid_swap(bw_grid *g, int d, const size_t send_start[], const size_t sen
               &g->request[n++]);
     bw_grid__count(&g->swap, send_count[p] * sizeof(bw_real));
   }
-  /* `receive` is complete and `send` may be changed again when this returns. */
   MPI_Waitall(n, g->request, MPI_STATUSES_IGNORE);
 }
 

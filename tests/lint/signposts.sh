@@ -2,12 +2,13 @@
 # Inside a function a reader finds signposts: before each step of the algorithm a line that says
 # what state things are in or why the step is there. This lint can only count: it fails where a
 # function of a module longer than 40 lines has no comment that stands on a line of its own, and
-# lists those of more than 25 lines.
+# lists those of more than 25 lines. Then it says how dense comments are in each module.
 # A function is what lies between a { and a } that each stand alone at the beginning of a line.
 # usage: signposts.sh SOURCE
 cd "$1" || exit 2
 # shellcheck disable=SC2016 # the program of awk
 find modules -name '*.[ch]' | sort | xargs awk '
+  function module(part) { split(FILENAME, part, "/"); return part[2] }
   /^{$/ { begin = FNR; head = before; posts = 0; next }
   begin && /^ *\/\*/ { posts++ }
   /^}$/ && begin {
@@ -18,12 +19,16 @@ find modules -name '*.[ch]' | sort | xargs awk '
       else printf "no signpost in %d lines: %s\n", n, place
     }
     lines += n
+    line[module()] += n
     begin = 0
   }
-  { within = within || /\/\*/; if (begin && within) notes++; if (/\*\//) within = 0 }
+  { within = within || /\/\*/; if (begin && within) { notes++; note[module()]++ }
+    if (/\*\//) within = 0 }
   { before = $0 }
   END {
-    printf "%d lines inside functions, %d of them with a comment: %.1f %%\n", lines, notes,
-           lines ? 100 * notes / lines : 0
+    for (m in line) printf "%s: %.1f %% of the lines inside functions have a comment\n", m,
+                           100 * note[m] / line[m] | "sort"
+    close("sort")
+    printf "all modules: %.1f %% of %d lines\n", lines ? 100 * notes / lines : 0, lines
     exit bad
   }'

@@ -88,7 +88,6 @@ static bool transfer(hid_t set, const bw_checkpoint__slab *slab, const void *fro
   const hid_t together = H5Pcreate(H5P_DATASET_XFER);
   bool ok = memory >= 0 && file >= 0 && together >= 0 &&
             H5Pset_dxpl_mpio(together, H5FD_MPIO_COLLECTIVE) >= 0;
-  /* An empty share takes part with an empty selection. */
   if (ok && n > 0)
     ok = H5Sselect_hyperslab(file, H5S_SELECT_SET, slab->start, NULL, slab->count, NULL) >= 0;
   else if (ok)

@@ -15,7 +15,7 @@ for page in README.md modules/*/README.md; do
       close(name)
       return whole != "\n"
     }
-    match($0, /`[a-z_\/]+\.c`:/) { file = substr($0, RSTART + 1, RLENGTH - 3) }
+    match($0, /`[A-Za-z0-9_\/.-]+\.[ch]`:/) { file = substr($0, RSTART + 1, RLENGTH - 3) }
     /^#/ { file = "" }
     /^```c$/ { inside = 1; block = "\n"; at = NR; next }
     /^```/ && inside {

@@ -88,8 +88,10 @@ bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_cas
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&run, 1)));
   run->about = about;
   run->args.comm = comm;
+  /* The clock starts before the case file is read: set-up counts. */
   run->wall_start = bw_wall_time();
   const bw_status st = begin(run, argc, argv, config);
+  /* Nothing is recorded of a run that did not begin. */
   if (st != BW_OK) release(&run);
   *out = run;
   return st;

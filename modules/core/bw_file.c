@@ -63,6 +63,7 @@ bw_status bw_file_create(const bw_comm *comm, const char *path, bw_file **out)
   bw_status st = BW_ALLOCATE(&f, 1);
   BW_THEN(st, bw_path_join("", path, &f->path));
   BW_THEN(st, bw_core__part_path(path, &f->part));
+  /* PATH.part is made by rank 0 alone, before all ranks open it together. */
   if (st == BW_OK && bw_comm_rank(comm) == 0) st = make_empty(path, f->part);
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
@@ -72,6 +73,7 @@ bw_status bw_file_create(const bw_comm *comm, const char *path, bw_file **out)
     f->open = code == MPI_SUCCESS;
     st = bw_comm_agree(comm, f->open ? BW_OK : mpi_failed(path, 0, code));
   }
+  /* Another rank may have failed where this one has the file open. */
   if (st != BW_OK && f != NULL) {
     if (f->open) MPI_File_close(&f->mpi);
     release(&f);
@@ -85,17 +87,22 @@ bw_status bw_file_write_at_all(bw_file *f, int64_t offset, size_t bytes, const v
   const unsigned char *from = data;
   int64_t rounds = (int64_t)((bytes + CHUNK - 1) / CHUNK);
   bw_status st = BW_OK;
+  /* The call is collective: ranks with less to write take part with nothing until the last one is
+   * done. */
   bw_comm_max_int(f->comm, 1, &rounds);
   for (int64_t q = 0; q < rounds; q++) {
     const int n = bytes > CHUNK ? CHUNK : (int)bytes;
     MPI_Status done;
     int written = 0;
     const int code = MPI_File_write_at_all(f->mpi, offset, from, n, MPI_BYTE, &done);
+    /* A full disk may show as a short write only, not as an error of the call. */
     if (code == MPI_SUCCESS && n > 0) MPI_Get_count(&done, MPI_BYTE, &written);
     if (st == BW_OK && code != MPI_SUCCESS) st = mpi_failed(f->path, offset, code);
     if (st == BW_OK && written != n)
       st = BW_FAIL(BW_EIO, "cannot write %s: only %d of %d bytes at byte %lld (disk full?)",
                    f->path, written, n, (long long)offset);
+    /* The first failure is kept and the others are not looked at: all ranks make the same number of
+     * calls. */
     offset += n;
     bytes -= (size_t)n;
     if (n > 0) {
@@ -123,12 +130,14 @@ bw_status bw_file_close(bw_file **file)
 {
   bw_file *f = *file;
   if (f == NULL) return BW_OK;
+  /* How long the file has to be, over all ranks: only they know what they have written. */
   int64_t end = f->end;
   bw_comm_max_int(f->comm, 1, &end);
   const int code = MPI_File_close(&f->mpi);
   f->open = false;
   bw_status st = code == MPI_SUCCESS ? BW_OK : mpi_failed(f->path, end, code);
   st = bw_comm_agree(f->comm, st);
+  /* Closed by all: what is missing now will not come. The name changes last. */
   if (bw_comm_rank(f->comm) == 0) {
     if (st == BW_OK) st = rename_complete(f, end);
     if (st != BW_OK) remove(f->part);
@@ -142,6 +151,7 @@ void bw_file_abandon(bw_file **file)
 {
   bw_file *f = *file;
   if (f == NULL) return;
+  /* PATH has not been touched so far and never will be. */
   if (f->open) MPI_File_close(&f->mpi);
   bw_comm_barrier(f->comm); /* nobody has it open when it goes */
   if (bw_comm_rank(f->comm) == 0) remove(f->part);
@@ -152,6 +162,7 @@ static bw_status write_whole(const char *path, const char *part, const char *tex
 {
   FILE *out = fopen(part, "w");
   BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s: %s", path, strerror(errno));
+  /* Buffered: the disk may refuse only when the file is closed. */
   const bool put = fputs(text, out) >= 0;
   const int reason = put ? 0 : errno;
   const bool closed = fclose(out) == 0;
@@ -180,10 +191,12 @@ static bw_status read_whole(const char *path, char **text, size_t *bytes)
   FILE *in = fopen(path, "r");
   BW_REQUIRE(in != NULL, BW_EIO, "cannot read %s: %s", path, strerror(errno));
   bw_status st = BW_ALLOCATE(text, room);
+  /* One byte stays free for the 0 behind the text, which is there because memory comes zeroed. */
   while (st == BW_OK) {
     n += fread(*text + n, 1, room - 1 - n, in);
     if (ferror(in)) st = BW_FAIL(BW_EIO, "cannot read %s: %s", path, strerror(errno));
     if (st != BW_OK || n < room - 1) break;
+    /* The room is full: go on with twice as much, up to the longest text that is taken. */
     char *more = NULL;
     if (room >= (size_t)LARGEST_TEXT)
       st = BW_FAIL(BW_EIO, "cannot read %s: larger than 1 GiB", path);
@@ -207,8 +220,10 @@ bw_status bw_file_read_text(const bw_comm *comm, const char *path, size_t *bytes
   bw_status st = BW_OK;
   if (reader) st = read_whole(path, &content, &n);
   st = bw_comm_agree(comm, st);
+  /* The length first, so that the others have room for the text. */
   if (st == BW_OK) bw_comm_broadcast(comm, sizeof n, &n);
   if (st == BW_OK && !reader) st = BW_ALLOCATE(&content, n + 1);
+  /* Room on all ranks, or none of them waits for the text. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) bw_comm_broadcast(comm, n, content);
   if (st != BW_OK) bw_release(&content);

@@ -44,6 +44,7 @@ bw_status bw_folder_make(const bw_comm *comm, const char *path)
 {
   bw_status st = BW_OK;
   if (bw_comm_rank(comm) == 0) {
+    /* make_all cuts the text in place, and the caller's is not ours. */
     char *copy = NULL;
     st = bw_path_join("", path, &copy);
     BW_THEN(st, make_all(copy));
@@ -63,6 +64,7 @@ bool bw_path_exists(const bw_comm *comm, const char *path)
 
 bw_status bw_path_join(const char *folder, const char *name, char **out)
 {
+  /* An absolute name needs no folder before it. */
   const bool alone = folder[0] == '\0' || name[0] == '/';
   const char *slash = alone || folder[strlen(folder) - 1] == '/' ? "" : "/";
   const char *front = alone ? "" : folder;

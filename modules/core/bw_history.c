@@ -25,6 +25,7 @@ static bw_status check_names(const char *path, int n, const char *const names[])
   BW_REQUIRE(n >= 1, BW_EINPUT, "%s: no columns", path);
   for (int q = 0; q < n; q++) {
     const char *open = strchr(names[q], '['), *close = open != NULL ? strchr(open, ']') : NULL;
+    /* Every column says its unit: a reader of the file needs no other document. */
     BW_REQUIRE(close != NULL && close > open + 1 && close[1] == '\0' && open != names[q], BW_EINPUT,
                "%s: column '%s' has no unit: write it as 'name[unit]', '[-]' for a pure number",
                path, names[q]);
@@ -40,6 +41,7 @@ static bw_status make_header(int n, const char *const names[], char **header)
   for (int q = 0; q < n; q++)
     length += strlen(names[q]) + 1;
   BW_TRY(BW_ALLOCATE(header, length));
+  /* The length is known: nothing is cut. */
   for (int q = 0, at = 0; q < n; q++)
     at += snprintf(*header + at, length - (size_t)at, "%s%s", q == 0 ? "" : ",", names[q]);
   return BW_OK;

@@ -65,6 +65,7 @@ void bw_log_info(bw_log *log, const char *fmt, ...)
 {
   if (log == NULL || !log->speaks || log->config.quiet) return;
   va_list args;
+  /* The progress line makes room and is drawn anew by the next update. */
   clear_line(log);
   va_start(args, fmt);
   vfprintf(log->config.out, fmt, args);
@@ -100,6 +101,7 @@ bw_status bw_progress_create(bw_log *log, const bw_progress_config *config, bw_p
   BW_TRY(BW_ALLOCATE(&p, 1));
   p->log = log;
   p->config = config != NULL ? *config : bw_progress_config_default();
+  /* The first interval begins now, so that set-up before it does not count as slow steps. */
   p->wall_start = p->wall_shown = bw_wall_time();
   p->time = p->time_shown = p->config.time_start;
   p->step = p->step_shown = p->config.step_start;
@@ -138,6 +140,7 @@ static double remaining(const bw_progress *p)
 /* "1 d 02:03:04", "2:03:04" or "3:04"; "?" for NaN. */
 static void format_duration(char *text, size_t size, double seconds)
 {
+  /* NaN, or more than three hundred years: nothing to tell. */
   if (!(seconds < 1e10)) {
     snprintf(text, size, "?");
     return;

@@ -25,6 +25,7 @@ bw_status bw_timer_create(int n, const bw_timer_part parts[], bw_timer **out)
     bw_release(&t);
     return st;
   }
+  /* All sums are zero; the total starts with the reset. */
   t->n = n;
   t->parts = parts;
   bw_timer_reset(t);
@@ -142,6 +143,7 @@ bw_status bw_timer_report(const bw_timer *t, const bw_comm *comm, bw_log *log)
   double total = 0.0;
   if (t == NULL) return BW_OK;
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&rows, (size_t)t->n + 1)));
+  /* Every rank takes part in the sums; the log then speaks on rank 0 alone. */
   bw_timer_summary(t, comm, rows, &total);
   bw_log_info(log, "where the time went (largest over %d ranks; total %.3f s):", bw_comm_size(comm),
               total);

@@ -157,6 +157,7 @@ void bw_core__case_help(const bw_case *run, const void *config)
 {
   printf("%s: %s\n\nusage: [mpirun -np N] %s CASE.yaml [options]\n", run->about->name,
          run->about->summary, run->about->name);
+  /* Options and keys come from the tables that read them: the text cannot fall behind. */
   for (int q = 0; q < N_OPTIONS; q++) {
     char name[64];
     snprintf(name, sizeof name, "%s %s", options[q].name,

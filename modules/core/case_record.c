@@ -28,6 +28,7 @@ static bool holds_results(const char *folder)
   DIR *d = opendir(folder);
   bool found = false;
   if (d == NULL) return false;
+  /* Records alone are no results: a run that stopped before its first output may begin again. */
   for (const struct dirent *e = readdir(d); e != NULL && !found; e = readdir(d))
     found = e->d_name[0] != '.' && strcmp(e->d_name, "run.yaml") != 0 &&
             strncmp(e->d_name, "run-", 4) != 0;
@@ -41,6 +42,7 @@ static bw_status check_same_case(const bw_case *run, const char *path)
   char *text = NULL, line[128];
   BW_TRY(bw_file_read_text(run->args.comm, path, NULL, &text));
   snprintf(line, sizeof line, "\nrun:\n  case: %s\n", run->about->name);
+  /* The key is looked for as put_record writes it, on lines of its own. */
   const bool same = strstr(text, line) != NULL;
   bw_release(&text);
   BW_REQUIRE(same, BW_EINPUT, "the folder %s holds results of another case than %s: give --out NEW",
@@ -159,6 +161,7 @@ static bw_status append_end(const bw_case *run, const char *path, bw_status stat
 bw_status bw_core__case_record_end(const bw_case *run, bw_status status)
 {
   bw_status st = BW_OK;
+  /* Only where a record was begun; the end of a run that never began has no place. */
   if (run->recorded && bw_comm_rank(run->args.comm) == 0) {
     char *path = NULL;
     st = bw_path_join(run->out, "run.yaml", &path);

@@ -49,6 +49,7 @@ static bool accept_bool(FILE *out, const bw_config_field *f, const char *text)
 {
   static const char *const words[2][3] = {{"false", "no", "off"}, {"true", "yes", "on"}};
   (void)f;
+  /* Whatever spelling came in, one goes out: that is what libcyaml reads. */
   for (int b = 0; b < 2; b++)
     for (int q = 0; q < 3; q++)
       if (strcasecmp(text, words[b][q]) == 0) {

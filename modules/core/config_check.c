@@ -31,6 +31,7 @@ BW_PRINTF(3, 4) static void problem(walk *w, int id, const char *fmt, ...)
 static void found(const walk *w, int id, char text[FOUND])
 {
   const yaml_node_t *node = bw_core__config_node(w->source, id);
+  /* A block or a list is described, not printed. */
   if (node->type == YAML_MAPPING_NODE)
     snprintf(text, FOUND, "a block");
   else if (node->type == YAML_SEQUENCE_NODE)
@@ -132,6 +133,7 @@ static bool search_key(const bw_config_field fields[], const char *prefix, const
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
     char here[BW_CONFIG_PATH], item[BW_CONFIG_PATH];
     bw_core__config_join(prefix, f->key, here);
+    /* The first one in the order of the table is as good a guess as any. */
     if (strcmp(f->key, key) == 0) {
       memcpy(path, here, sizeof here);
       return true;

@@ -32,6 +32,7 @@ static bw_status make_words(pool *p, const bw_config_field *f, cyaml_schema_valu
   cyaml_strval_t *strings = NULL;
   while (f->words[n].word != NULL)
     n++;
+  /* libcyaml has its own list of words and numbers: it lives as long as the schema. */
   BW_TRY(pool_take(p, n, sizeof *strings, &strings));
   for (uint32_t q = 0; q < n; q++)
     strings[q] = (cyaml_strval_t){.str = f->words[q].word, .val = f->words[q].value};
@@ -51,9 +52,12 @@ static bw_status make_element(pool *p, const bw_config_field *f, cyaml_schema_va
       [BW_CONFIG_TYPE_BOOL] = CYAML_BOOL,    [BW_CONFIG_TYPE_TEXT] = CYAML_STRING,
       [BW_CONFIG_TYPE_WORD] = CYAML_ENUM,    [BW_CONFIG_TYPE_MAP] = CYAML_MAPPING,
       [BW_CONFIG_TYPE_LIST] = CYAML_MAPPING};
+  /* An element lies in the struct itself: no flag of a pointer. */
   value->type = types[f->type];
   value->flags = CYAML_FLAG_DEFAULT;
   value->data_size = (uint32_t)f->item_size;
+  /* What a type needs beside its size; a block leads back to make_fields, as deep as the table
+   * is. */
   if (value->type == CYAML_STRING) value->string.max = (uint32_t)f->size - 1;
   if (value->type == CYAML_ENUM) BW_TRY(make_words(p, f, value));
   if (value->type == CYAML_MAPPING) BW_TRY(make_fields(p, f->fields, &value->mapping.fields));
@@ -94,6 +98,7 @@ static bw_status make_fields(pool *p, const bw_config_field fields[],
   cyaml_schema_field_t *made = NULL;
   while (fields[n].key != NULL)
     n++;
+  /* One row more, which stays zero and ends the list. */
   BW_TRY(pool_take(p, n + 1, sizeof *made, &made));
   for (size_t q = 0; q < n; q++)
     BW_TRY(make_field(p, &fields[q], &made[q]));

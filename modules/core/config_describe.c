@@ -72,6 +72,7 @@ static void describe_range(const bw_config_range *r, size_t size, char *text)
   char low[BW_NUMBER_SIZE], high[BW_NUMBER_SIZE];
   bw_core__format_double(r->low, low);
   bw_core__format_double(r->high, high);
+  /* Whether a limit itself is allowed decides only about the sign in the text. */
   const bool lower = r->bounds & (BW_BOUND_MIN | BW_BOUND_ABOVE);
   const bool upper = r->bounds & (BW_BOUND_MAX | BW_BOUND_BELOW);
   const char *above = r->bounds & BW_BOUND_MIN ? ">=" : ">";

@@ -17,6 +17,8 @@ void bw_core__put_quoted(FILE *out, const char *text)
 {
   fputc('"', out);
   for (const char *c = text; *c != '\0'; c++) {
+    /* A quote or backslash inside would end the text or mean something else; control letters have
+     * no other way in. */
     if (*c == '"' || *c == '\\')
       fprintf(out, "\\%c", *c);
     else if ((unsigned char)*c < 32)

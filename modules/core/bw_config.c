@@ -42,7 +42,8 @@ bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_
                      n_overrides, overrides, size, config));
     bw_release(&text);
   }
-  /* All know how it went. The struct is plain memory without pointers: its bytes are the message. */
+  /* All know how it went. The struct is plain memory without pointers: its bytes are the
+   * message. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) bw_comm_broadcast(comm, size, config);
   return st;

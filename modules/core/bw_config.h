@@ -211,10 +211,11 @@ struct bw_config_field {
     NULL, BW_CONFIG_TYPE_INT, BW_OPTIONAL, 0, 0, 0, 0, BW_ANY, "", "", NULL, NULL                  \
   }
 
-/* config (`size` bytes, with its defaults) <- the file at `path` and then overrides[n_overrides],
- * each "key.path=value". `path` NULL: the overrides alone. Rank 0 reads; all ranks get the same struct or the same error:
- * BW_EIO when the file cannot be read, BW_EINPUT with one line for each thing found wrong. The
- * struct is unchanged after an error. Arguments of rank 0 count. Collective. */
+/* config (`size` bytes, with its defaults) <- the file at `path` and then
+ * overrides[n_overrides], each "key.path=value". `path` NULL: the overrides alone. Rank 0 reads;
+ * all ranks get the same struct or the same error: BW_EIO when the file cannot be read,
+ * BW_EINPUT with one line for each thing found wrong. The struct is unchanged after an error.
+ * Arguments of rank 0 count. Collective. */
 bw_status bw_config_load(const bw_comm *comm, const char *path, const bw_config_field fields[],
                          int n_overrides, const char *const overrides[], size_t size,
                          void *config) BW_MUST_CHECK;

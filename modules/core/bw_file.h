@@ -18,8 +18,8 @@ typedef struct bw_file bw_file;
 bw_status bw_file_create(const bw_comm *comm, const char *path, bw_file **out) BW_MUST_CHECK;
 
 /* Each rank writes `bytes` bytes (0 is fine, data may then be NULL) at `offset` from the start of
- * the file; the ranges of different ranks must not overlap. Any size (split inside). BW_EIO with the
- * offset on all ranks when one could not write. Collective. */
+ * the file; the ranges of different ranks must not overlap. Any size (split inside). BW_EIO with
+ * the offset on all ranks when one could not write. Collective. */
 bw_status bw_file_write_at_all(bw_file *file, int64_t offset, size_t bytes,
                                const void *data) BW_MUST_CHECK;
 
@@ -27,8 +27,8 @@ bw_status bw_file_write_at_all(bw_file *file, int64_t offset, size_t bytes,
  * is fine. Collective. */
 bw_status bw_file_close(bw_file **file) BW_MUST_CHECK;
 
-/* Give up after an error: PATH.part is removed, PATH stays as it was, *file becomes NULL; NULL inside
- * is fine. Collective. */
+/* Give up after an error: PATH.part is removed, PATH stays as it was, *file becomes NULL; NULL
+ * inside is fine. Collective. */
 void bw_file_abandon(bw_file **file);
 
 /* A small text file written by rank 0 (other ranks' text is not looked at), with the same

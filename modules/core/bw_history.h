@@ -18,8 +18,9 @@ typedef struct bw_history bw_history;
 bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const char *const names[],
                             double restart_time, bw_history **out) BW_MUST_CHECK;
 
-/* One row: values[n] of rank 0, values[0] being the time; other ranks' are not looked at. A row of the same time as the last one kept by a restart is that row
- * again and is not repeated. Errors of writing are remembered and returned by close. Local. */
+/* One row: values[n] of rank 0, values[0] being the time; other ranks' are not looked at. A row of
+ * the same time as the last one kept by a restart is that row again and is not repeated. Errors of
+ * writing are remembered and returned by close. Local. */
 void bw_history_append(bw_history *history, const double values[]);
 
 /* Rows in the file (those kept included). Meaningful on rank 0, 0 elsewhere. Local. */

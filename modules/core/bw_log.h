@@ -25,8 +25,8 @@ typedef struct {
 /* The defaults named above. Local. */
 bw_log_config bw_log_config_default(void);
 
-/* *out = a log of this rank, which speaks on rank 0 of `comm` only. NULL config: the defaults; it is
- * copied. BW_EMEM. Local. */
+/* *out = a log of this rank, which speaks on rank 0 of `comm` only. NULL config: the defaults; it
+ * is copied. BW_EMEM. Local. */
 bw_status bw_log_create(const bw_comm *comm, const bw_log_config *config,
                         bw_log **out) BW_MUST_CHECK;
 
@@ -58,8 +58,9 @@ bw_progress_config bw_progress_config_default(void);
 bw_status bw_progress_create(bw_log *log, const bw_progress_config *config,
                              bw_progress **out) BW_MUST_CHECK;
 
-/* After step number `step`, at the simulated `time`: `fmt` adds the watched quantities, e.g. "dp/p0 %.4f". The text is formed only
- * when a line is due, so call it in every step with values this rank has already. Local. */
+/* After step number `step`, at the simulated `time`: `fmt` adds the watched quantities, e.g. "dp/p0
+ * %.4f". The text is formed only when a line is due, so call it in every step with values this rank
+ * has already. Local. */
 void bw_progress_update(bw_progress *progress, int64_t step, double time, const char *fmt, ...)
     BW_PRINTF(4, 5);
 

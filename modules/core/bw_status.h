@@ -70,7 +70,8 @@ const char *bw_last_message(void);
     if ((st) == BW_OK) (st) = (call);                                                              \
   } while (0)
 
-/* What this code promises itself; compiled out in Release. Never for what a caller may get wrong. */
+/* What this code promises itself; compiled out in Release. Never for what a caller may get
+ * wrong. */
 #define BW_ASSERT(cond) assert(cond)
 
 BW_END_DECLS

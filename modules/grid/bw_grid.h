@@ -83,7 +83,8 @@ typedef struct {
 bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config,
                          bw_grid **out) BW_MUST_CHECK;
 
-/* Free *grid and set it to NULL; NULL inside is fine. After everything that borrows it. Collective. */
+/* Free *grid and set it to NULL; NULL inside is fine. After everything that borrows it.
+ * Collective. */
 void bw_grid_destroy(bw_grid **grid);
 
 /* The view of the grid; borrowed, valid until destroy. Local. */
@@ -129,7 +130,8 @@ typedef struct {
   size_t bytes;  /* in all */
 } bw_grid_sent;
 
-/* Sent to other ranks by this one since create: in halos, in the swaps of solvers on lines. Local. */
+/* Sent to other ranks by this one since create: in halos, in the swaps of solvers on lines.
+ * Local. */
 void bw_grid_traffic(const bw_grid *grid, bw_grid_sent *halo, bw_grid_sent *swap);
 
 /* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order

@@ -1,5 +1,5 @@
-/* tridiagonal_internal.h -- shared by the sources of bw_tridiagonal only; the algebra is in the head of
- * bw_tridiagonal.c. */
+/* tridiagonal_internal.h -- shared by the sources of bw_tridiagonal only; the algebra is in the
+ * head of bw_tridiagonal.c. */
 #pragma once
 #include "bw_tridiagonal.h"
 #include "grid_internal.h"

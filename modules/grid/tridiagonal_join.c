@@ -1,5 +1,6 @@
-/* The systems of separators, see the head of bw_tridiagonal.c. The lines are dealt out over the ranks:
- * each solves its portion with what all the others told of it, and tells them their separators. */
+/* The systems of separators, see the head of bw_tridiagonal.c. The lines are dealt out over the
+ * ranks: each solves its portion with what all the others told of it, and tells them their
+ * separators. */
 #include "tridiagonal_internal.h"
 
 #include <string.h>

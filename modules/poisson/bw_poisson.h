@@ -25,9 +25,9 @@ typedef enum {
   BW_POISSON_DIRICHLET /* phi = 0 on the boundary face */
 } bw_poisson_side;
 
-/* *out = a solver; side[d][0], side[d][1]: lower and upper condition in direction d; periodic ones in pairs and
- * only where the grid is periodic (BW_EINPUT otherwise; one cell in z takes either of periodic and
- * Neumann). `grid` is borrowed until destroy. BW_EMEM. Collective. */
+/* *out = a solver; side[d][0], side[d][1]: lower and upper condition in direction d; periodic ones
+ * in pairs and only where the grid is periodic (BW_EINPUT otherwise; one cell in z takes either of
+ * periodic and Neumann). `grid` is borrowed until destroy. BW_EMEM. Collective. */
 bw_status bw_poisson_create(bw_grid *grid, const bw_poisson_side side[3][2],
                             bw_poisson **out) BW_MUST_CHECK;
 

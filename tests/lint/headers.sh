@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every public header (modules/*/bw_*.h) compiles alone, without a warning, as C11 and as C++17;
-# gives its functions C linkage; and needs no mpi.h, but for the one that hands out a communicator and
-# the one that core and grid send messages with.
+# gives its functions C linkage; and needs no mpi.h, but for the one that hands out a communicator
+# and the one that core and grid send messages with.
 # usage: headers.sh SOURCE
 cd "$1" || exit 2
 may_need_mpi='modules/core/bw_comm_mpi.h modules/core/bw_message.h'

@@ -101,7 +101,6 @@ bw_status bw_progress_create(bw_log *log, const bw_progress_config *config, bw_p
   BW_TRY(BW_ALLOCATE(&p, 1));
   p->log = log;
   p->config = config != NULL ? *config : bw_progress_config_default();
-  /* The first interval begins now, so that set-up before it does not count as slow steps. */
   p->wall_start = p->wall_shown = bw_wall_time();
   p->time = p->time_shown = p->config.time_start;
   p->step = p->step_shown = p->config.step_start;
@@ -176,7 +175,6 @@ void bw_progress_update(bw_progress *p, int64_t step, double time, const char *f
 {
   if (p == NULL || p->log == NULL || !p->log->speaks || p->log->config.quiet) return;
   const bw_log_config *c = &p->log->config;
-  /* The last state is kept even when no line is due: finish shows it. */
   const double now = bw_wall_time();
   p->step = step;
   p->time = time;

@@ -3,13 +3,15 @@
 #include "bw_bench.h"
 #include "bw_solid.h"
 
+/* Some steps of a solid, as work to be timed. */
 typedef struct {
-  bw_solid *pd;
-  int steps;
-  double dt;
-  bw_status st;
+  bw_solid *pd; /* borrowed */
+  int steps;      /* per call */
+  double dt;      /* [T] */
+  bw_status st;   /* of all calls so far */
 } bw_bench_solid;
 
+/* Takes the steps; context: a bw_bench_solid. Collective. */
 static inline void bw_bench_solid_advance(void *context)
 {
   bw_bench_solid *w = context;

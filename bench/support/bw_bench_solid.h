@@ -3,13 +3,15 @@
 #include "bw_bench.h"
 #include "bw_pd_bond.h"
 
+/* Some steps of a solid, as work to be timed. */
 typedef struct {
-  bw_pd_bond *pd;
-  int steps;
-  double dt;
-  bw_status st;
+  bw_pd_bond *pd; /* borrowed */
+  int steps;      /* per call */
+  double dt;      /* [T] */
+  bw_status st;   /* of all calls so far */
 } bw_bench_solid;
 
+/* Takes the steps; context: a bw_bench_solid. Collective. */
 static inline void bw_bench_solid_advance(void *context)
 {
   bw_bench_solid *w = context;

@@ -12,23 +12,33 @@
 #include <limits.h>
 #include <math.h>
 
+/* The box of the fluid, one cell deep. */
 typedef struct {
-  double length, height;
-  int cells[2];
+  double length, height; /* along the stream, between the walls [L] */
+  int cells[2];          /* in x and y; cells are squares */
 } bending_channel;
+/* The fluid and its stream. */
 typedef struct {
-  double density, viscosity, bulk_velocity;
+  double density;       /* [M/L^3] */
+  double viscosity;     /* kinematic [L^2/T] */
+  double bulk_velocity; /* mean of the Poiseuille inflow [L/T] */
 } bending_fluid;
+/* The plate. */
 typedef struct {
-  double front, thickness, height; /* [L] */
-  int particles_across;            /* of the thickness */
-  int clamped_layers;              /*                      default 3 */
-  double young_modulus, density;
-  double horizon_ratio;                                /* default 3 */
-  double damping_mean, damping_pair, damping_absolute; /* [M/(L^3 T)], [M/(L^6 T)] default 0 */
-  int surface_correction;                              /* default volume */
+  double front, thickness,
+      height;              /* inflow to the upstream face; along the stream; over the wall [L] */
+  int particles_across;    /* of the thickness */
+  int clamped_layers;      /*                      default 3 */
+  double young_modulus;    /* [M/(L T^2)] */
+  double density;          /* [M/L^3] */
+  double horizon_ratio;    /* horizon over spacing [-]         default 3 */
+  double damping_mean;     /* k_d of FSI 9 [M/(L^3 T)]         default 0 */
+  double damping_pair;     /* k_d of POROUS 3.41 [M/(L^6 T)]   default 0 */
+  double damping_absolute; /* against rest [M/(L^3 T)]         default 0 */
+  int surface_correction;  /* bw_pd_surface_correction         default volume */
 } bending_plate;
 
+/* The whole set-up. */
 typedef struct {
   bending_channel channel;
   bending_fluid fluid;
@@ -36,25 +46,28 @@ typedef struct {
   bw_coupler_config coupling;
 } bending_config;
 
+/* The objects of a run. */
 typedef struct {
   bending_config config;
-  const bw_comm *comm;
+  const bw_comm *comm; /* borrowed */
   bw_grid *grid;
   bw_ns_channel *fluid;
   bw_pd_bond *solid;
   bw_coupler *coupler;
-  double h, ds;
-  size_t n;
-  double *X0, *X; /* (n,3) */
+  double h, ds;   /* spacing of the grid and of the particles [L] */
+  size_t n;       /* particles of this rank */
+  double *X0, *X; /* (n,3) reference and present positions [L] */
 } bending_flow;
 
+/* What is measured of a step. */
 typedef struct {
   double tip[2];                          /* displacement of the middle of the free end */
   double reaction[2], probe[2], box[2];   /* force on the plate per depth, three routes */
   double given, received;                 /* work of the fluid per depth: given by it at the
                                              markers, received by the solid */
   double kinetic, elastic, damping, slip; /* per depth; slip [L/T] */
-  int64_t markers, outside, shortened, blocked;
+  int64_t markers, outside;               /* markers of all ranks; of them outside the box */
+  int64_t shortened, blocked;             /* probes */
 } bending_measure;
 
 static inline bending_config bending_config_default(void)
@@ -85,6 +98,7 @@ static inline void bending_destroy(bending_flow *f)
   bw_release(&f->X);
 }
 
+/* Squares for cells, whole particles over the height, no holes, all of it in the channel. */
 static inline bw_status bending_check(const bending_config *c)
 {
   const double h = c->channel.height / c->channel.cells[1];
@@ -107,6 +121,7 @@ static inline bw_status bending_check(const bending_config *c)
   return BW_OK;
 }
 
+/* Poiseuille flow everywhere; context: the configuration. */
 static inline void bending_stream(const double x[3], double t, void *context, double u[3])
 {
   const bending_config *c = context;

@@ -10,43 +10,48 @@
 
 /* What the YAML file says (tables in box_config.c). */
 typedef struct {
-  int kind, profile;
-  double velocity[3], bulk_velocity;
+  int kind, profile;    /* bw_ns_side_kind, bw_ns_profile */
+  double velocity[3];   /* of a wall or a uniform inflow [L/T]       default 0 */
+  double bulk_velocity; /* of a Poiseuille inflow [L/T]; NaN: not given */
 } box_side;
 typedef struct {
-  box_side lower, upper;
+  box_side lower, upper; /* at 0 and at the length */
 } box_pair;
 typedef struct {
   box_pair x, y, z;
-  bool has_z;
+  bool has_z; /* are there sides in z? Not in two dimensions */
 } box_sides;
 typedef struct {
-  double length[3], stretch;
-  int cells[3];
-  char faces[256];
+  double length[3], stretch; /* [L]; of y by tanh [-], 0: uniform */
+  int cells[3];              /* cells[2] = 1: two dimensions */
+  char faces[256];           /* path of a file with the faces in y; empty: none */
 } box_domain;
 typedef struct {
-  double viscosity;
-  int viscous;
+  double viscosity; /* kinematic [L^2/T] */
+  int viscous;      /* bw_ns_viscous                               default explicit */
 } box_fluid;
 typedef struct {
-  int kind;
-  double value;
+  int kind;     /* bw_ns_forcing */
+  double value; /* bulk velocity [L/T], or -dp/dx over the density [L/T^2] */
 } box_forcing;
 typedef struct {
-  double centre[2], radius, swirl;
+  double centre[2], radius; /* in x and y; where it is fastest [L] */
+  double swirl;             /* largest velocity [L/T]; > 0: counterclockwise */
 } box_vortex;
 enum { BOX_VORTICES = 8 };
 typedef struct {
-  double velocity[3];
-  int n_vortices;
+  double velocity[3]; /* everywhere [L/T]                              default 0 */
+  int n_vortices;     /* added to it */
   box_vortex vortices[BOX_VORTICES];
 } box_start;
 typedef struct {
-  double end, step, limit_share;
+  double end, step;   /* of the run; fixed step, NaN: limit_share decides [T] */
+  double limit_share; /* step over the largest stable one [-]          default 0.8 */
 } box_time;
 typedef struct {
-  double sample_every, picture_every, checkpoint_every;
+  double sample_every;     /* rows of history.csv [T] */
+  double picture_every;    /* VTK files [T]; 0: at the end             default 0 */
+  double checkpoint_every; /* checkpoint.h5 [T]; 0: at the end         default 0 */
 } box_output;
 typedef struct {
   box_domain domain;
@@ -59,16 +64,17 @@ typedef struct {
   box_output output;
 } box_config;
 
-extern const bw_config_field box_fields[];
-box_config box_config_default(void);
+extern const bw_config_field box_fields[]; /* its keys */
+box_config box_config_default(void);       /* required values NaN or INT_MIN */
 
 /* The configurations of grid and solver, all contradictions found. Local. */
 bw_status box_resolve(box_config *c, bw_grid_config *grid,
                       bw_ns_channel_config *fluid) BW_MUST_CHECK;
 
+/* A run. */
 typedef struct {
-  const box_config *config;
-  bw_case *run;
+  const box_config *config; /* borrowed */
+  bw_case *run;             /* borrowed */
   bw_grid *grid;
   bw_ns_channel *fluid;
   bw_history *history;
@@ -79,15 +85,16 @@ typedef struct {
 /* box_run.c. All collective. */
 bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
                      const bw_ns_channel_config *fluid) BW_MUST_CHECK;
-void box_destroy(box_run *b);
-int64_t box_intervals(const box_config *c);          /* of the whole run */
-bw_status box_start_field(box_run *b) BW_MUST_CHECK; /* what `start` describes */
-bw_status box_advance(box_run *b) BW_MUST_CHECK;     /* one interval */
-bw_status box_restart(box_run *b, const char *path) BW_MUST_CHECK;
-bw_status box_checkpoint(box_run *b) BW_MUST_CHECK;
+void box_destroy(box_run *b);                                      /* half-built objects, too */
+int64_t box_intervals(const box_config *c);                        /* of the whole run */
+bw_status box_start_field(box_run *b) BW_MUST_CHECK;               /* what `start` describes */
+bw_status box_advance(box_run *b) BW_MUST_CHECK;                   /* one interval */
+bw_status box_restart(box_run *b, const char *path) BW_MUST_CHECK; /* goes on from a file */
+bw_status box_checkpoint(box_run *b) BW_MUST_CHECK;                /* checkpoint.h5 */
 
 /* box_output.c. All collective. */
-void box_describe(box_run *b);
+void box_describe(box_run *b); /* sizes, sides, steps, to the log */
+/* Creates history.csv, or goes on with it from restart_time [T] (NaN: anew). */
 bw_status box_open_history(box_run *b, double restart_time) BW_MUST_CHECK;
-void box_sample(box_run *b);
-bw_status box_picture(box_run *b) BW_MUST_CHECK;
+void box_sample(box_run *b);                     /* a row of it */
+bw_status box_picture(box_run *b) BW_MUST_CHECK; /* adds the present fields to fluid.pvd */

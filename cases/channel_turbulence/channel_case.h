@@ -6,20 +6,24 @@
 
 /* What the YAML file says (tables in channel_config.c). */
 typedef struct {
-  double length[3];
+  double length[3]; /* box [h]; length[1] is 1 */
   int cells[3];
-  double stretch;
-  char faces[256];
+  double stretch;  /* of y by tanh [-]; 0: uniform               default 0 */
+  char faces[256]; /* path of a file with the faces in y; empty: none */
 } channel_domain;
 typedef struct {
-  double reynolds, perturbation;
-  int viscous;
+  double reynolds;     /* U_b h/nu [-] */
+  double perturbation; /* of the first velocity [U_b]                default 0.2 */
+  int viscous;         /* bw_ns_viscous                              default explicit */
 } channel_fluid;
 typedef struct {
-  double spin_up, statistics, interval, courant_share;
+  double spin_up;       /* before the statistics [h/U_b] */
+  double statistics;    /* their length [h/U_b] */
+  double interval;      /* between samples [h/U_b]                   default 0.2 */
+  double courant_share; /* step over the largest stable one [-]      default 0.8 */
 } channel_time;
 typedef struct {
-  double checkpoint_every;
+  double checkpoint_every; /* checkpoint and profiles so far [h/U_b] default 5 */
 } channel_output;
 typedef struct {
   channel_domain domain;
@@ -28,12 +32,14 @@ typedef struct {
   channel_output output;
 } channel_case;
 
-extern const bw_config_field channel_fields[];
-channel_case channel_case_default(void);
+extern const bw_config_field channel_fields[]; /* its keys */
+channel_case channel_case_default(void);       /* required values NaN or INT_MIN */
+/* What the recipe (channel_flow.h) wants of it; borrows c->domain.faces. */
 channel_config channel_config_of(const channel_case *c);
 
 /* channel_output.c: sizes and times of what will run. Local. */
 void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log);
+/* Creates history.csv, or goes on with it from restart_time [h/U_b] (NaN: anew). Collective. */
 bw_status channel_open_history(const bw_comm *comm, const bw_case *run, double restart_time,
                                bw_history **out) BW_MUST_CHECK;
 /* A row of history.csv; returns Re_tau of the present wall shear. Collective. */
@@ -46,6 +52,7 @@ bw_status channel_profiles(channel_flow *f, const bw_case *run) BW_MUST_CHECK;
  * halves averaged; nothing before the first sample. Collective. */
 bw_status channel_spectra(channel_flow *f, const bw_case *run) BW_MUST_CHECK;
 
-/* The same columns into an HDF5 file, as arrays TABLE/COLUMN. Collective. */
+/* The columns of the profiles into an HDF5 file, as arrays TABLE/COLUMN. Collective. */
 bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck) BW_MUST_CHECK;
+/* Those of correlations and spectra. Collective. */
 bw_status channel_spectra_hdf5(channel_flow *f, bw_checkpoint *ck) BW_MUST_CHECK;

@@ -13,6 +13,7 @@
 #include <limits.h>
 #include <math.h>
 
+/* What a run is. */
 typedef struct {
   double length[3]; /* box [h]; length[1] is 1 */
   int cells[3];
@@ -26,8 +27,9 @@ typedef struct {
   double spin_up;       /* before statistics begin [h/U_b] */
 } channel_config;
 
+/* The objects of a run and how far it is. */
 typedef struct {
-  const channel_config *config;
+  const channel_config *config; /* borrowed */
   bw_grid *grid;
   bw_ns_channel *fluid;
   bw_ns_statistics *statistics;
@@ -164,12 +166,14 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
   return bw_comm_agree(comm, BW_ALLOCATE(&f->state, a > b ? a : b));
 }
 
+/* The perturbed parabola at t = 0. Collective. */
 static inline bw_status channel_start(channel_flow *f)
 {
   channel_config at_start = *f->config;
   return bw_ns_channel_set_velocity(f->fluid, channel_initial, &at_start, 0.0);
 }
 
+/* Has the flow been spun up? Local. */
 static inline bool channel_sampling(const channel_flow *f)
 {
   return (double)f->intervals * f->config->interval > f->config->spin_up * (1.0 + 1e-12);
@@ -209,6 +213,7 @@ static inline bw_status channel_advance(channel_flow *f)
 enum { CHANNEL_PROGRESS = 4 };
 static const char *const channel_field_name[4] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
+/* Fields, sums and progress to a file. Collective. */
 static inline bw_status channel_save(channel_flow *f, const char *path)
 {
   bw_real *const *u = bw_ns_channel_velocity(f->fluid);
@@ -235,6 +240,7 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
   return st;
 }
 
+/* Goes on from a file, to the last bit, on any number of ranks. Collective. */
 static inline bw_status channel_load(channel_flow *f, const char *path)
 {
   bw_real *const *u = bw_ns_channel_velocity(f->fluid);

@@ -11,13 +11,14 @@
 
 #include <math.h>
 
+/* The objects of a flow with bodies. */
 typedef struct {
   bw_grid *grid;
   bw_ns_channel *fluid;
   bw_ibm_mdf *body;
   bw_real *pressure; /* that acted over the last step, see body_flow_step */
   bw_real *drive[3]; /* acceleration of the fluid at the points of u [L/T^2]; NULL: none */
-  double dt;
+  double dt;         /* step [T] */
 } body_flow;
 
 static inline void body_flow_destroy(body_flow *f)
@@ -30,12 +31,14 @@ static inline void body_flow_destroy(body_flow *f)
   bw_grid_destroy(&f->grid);
 }
 
+/* The last of the making: the step and the field of the pressure that acts. Collective. */
 static inline bw_status body_flow_ready(body_flow *f, double dt)
 {
   f->dt = dt;
   return bw_field_create(f->grid, &f->pressure);
 }
 
+/* A box of cubic cells. */
 typedef struct {
   int n[3];         /* cells; n[2] = 1: flat */
   double h, nu;     /* edge of a cell [L], viscosity [L^2/T] */
@@ -114,6 +117,7 @@ static inline void body_surface_free(body_surface *s)
   bw_release(&s->dV);
 }
 
+/* Room for n points on rank 0, zeros. Collective. */
 static inline bw_status body_surface_alloc(const bw_comm *comm, size_t n, body_surface *s)
 {
   *s = (body_surface){.n = bw_comm_rank(comm) == 0 ? n : 0};
@@ -124,6 +128,7 @@ static inline bw_status body_surface_alloc(const bw_comm *comm, size_t n, body_s
   return bw_comm_agree(comm, st);
 }
 
+/* Makes the surface the markers of the flow. Collective. */
 static inline bw_status body_set_markers(body_flow *f, const body_surface *s)
 {
   return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV);

@@ -8,6 +8,7 @@
 #include "body_flow.h"
 #include "bw_probe.h"
 
+/* The flow and its discretisation. */
 typedef struct {
   double reynolds;             /* U_b d/nu                                 required */
   double blockage;             /* d over the channel's height              default 0.25 */
@@ -21,6 +22,7 @@ typedef struct {
   double dt_fraction;          /* of the largest stable step [-]           default 0.5 */
 } cylinder_config;
 
+/* Drag coefficients by every route [-]. */
 typedef struct {
   double reaction;       /* from the force of the markers (ERRATA 18) */
   double probe[2];       /* linear and quadratic profile (bw_probe_profile) */
@@ -28,14 +30,15 @@ typedef struct {
   double slip;           /* rms velocity left at the markers after the last step [U_b] */
 } cylinder_drag;
 
+/* The objects of a run. */
 typedef struct {
   cylinder_config config;
   body_flow flow;
-  bw_probe *probe[2];
-  double h;
-  body_surface wall; /* points on the nominal surface */
-  double *traction;  /* (n,3) there */
-  double area;       /* of one point */
+  bw_probe *probe[2]; /* linear and quadratic profile */
+  double h;           /* spacing [d] */
+  body_surface wall;  /* points on the nominal surface */
+  double *traction;   /* (n,3) there */
+  double area;        /* of one point */
 } cylinder_flow;
 
 static inline cylinder_config cylinder_config_default(void)

@@ -10,25 +10,30 @@
 #include "bw_pd_bond.h"
 #include "bw_pd_crack.h"
 
-enum { SPECIMEN_NOTCHES = 4, SPECIMEN_HOLES = 4, SPECIMEN_LOADS = 4 };
+enum { SPECIMEN_NOTCHES = 4, SPECIMEN_HOLES = 4, SPECIMEN_LOADS = 4 }; /* at most, in a file */
 
+/* The plate and its lattice. */
 typedef struct {
   double length, height, thickness; /* [m]; thickness in 2D: of the one layer */
   int particles;                    /* along the length; spacing length/particles */
   double lattice_angle;             /* [deg] the lattice is turned by, about the plate's middle */
 } specimen_shape;
+/* A straight cut through the thickness. */
 typedef struct {
-  double from[2], to[2]; /* [m] */
+  double from[2], to[2]; /* its ends in x and y [m] */
 } specimen_notch;
+/* A round hole through the thickness. */
 typedef struct {
   double centre[2], radius; /* [m] */
 } specimen_hole;
+/* The material and how it is discretised. */
 typedef struct {
-  int geometry; /* enums of bw_pd_bond.h */
-  double young_modulus, density, fracture_energy, horizon_ratio;
-  int surface_correction, volume_fraction, family_reach, integrator;
-  double disorder; /* of the particles off their sites, in spacings   default 0: a lattice */
-  int disorder_seed;
+  int geometry;                          /* bw_pd_geometry       default plane stress */
+  double young_modulus, density;         /* [Pa], [kg/m3] */
+  double fracture_energy, horizon_ratio; /* G0 [J/m2]; horizon over spacing [-], default 3 */
+  int surface_correction, volume_fraction, family_reach, integrator; /* enums of bw_pd_bond.h */
+  double disorder;   /* of the particles off their sites, in spacings   default 0: a lattice */
+  int disorder_seed; /* another one gives another cloud                 default 0 */
 } specimen_solid;
 
 typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;
@@ -37,14 +42,16 @@ typedef enum {
   SPECIMEN_VELOCITY, /* value [m/s], held (0: clamped) */
   SPECIMEN_START     /* value [m/s], at t = 0 only */
 } specimen_kind;
+/* What acts on an edge. */
 typedef struct {
-  int edge, kind, rows;
-  double value[2];
-  double from, to;  /* part of the edge [m]                     default all of it */
-  double rise;      /* time in which a traction rises to value [s]      default 0 */
-  bool unbreakable; /*                                                 default false */
+  int edge, kind, rows; /* specimen_edge, specimen_kind; rows of particles that take it */
+  double value[2];      /* in x and y; its unit by kind */
+  double from, to;      /* part of the edge [m]                     default all of it */
+  double rise;          /* time in which a traction rises to value [s]      default 0 */
+  bool unbreakable;     /*                                                 default false */
 } specimen_load;
 
+/* The crack that is followed. */
 typedef struct {
   double from[2];  /* the notch's tip [m] */
   double lower[2]; /* window the crack is looked for in [m]    default the plate */
@@ -53,14 +60,17 @@ typedef struct {
   double speed_window;     /* [s]                                      default 2e-6, ADAPT 6.1 */
   int every;               /* steps between looks                      default 1 */
 } specimen_follow;
+/* How long. */
 typedef struct {
-  double step, end; /* [s] */
+  double step, end; /* time step; end of the run [s] */
   double after;     /* stop this long after the crack reached an end [s]    default: never */
 } specimen_time;
+/* Files. */
 typedef struct {
-  int sample_every, picture_every; /* steps */
+  int sample_every, picture_every; /* steps between rows, between pictures   default 10, 200 */
 } specimen_files;
 
+/* What the YAML file says. */
 typedef struct {
   specimen_shape shape;
   int n_notches, n_holes, n_loads;
@@ -73,8 +83,8 @@ typedef struct {
   specimen_files output;
 } specimen_config;
 
-extern const bw_config_field specimen_fields[];
-specimen_config specimen_default(void); /* limits not given: NaN, meaning none */
+extern const bw_config_field specimen_fields[]; /* its keys (specimen_input.c) */
+specimen_config specimen_default(void);         /* limits not given: NaN, meaning none */
 
 /* What is known of the crack so far; NAN: not yet. */
 typedef struct {
@@ -87,13 +97,14 @@ typedef struct {
   double speed;    /* of reach over the last speed_window, ADAPT 6.1 [m/s] */
 } specimen_crack;
 
+/* A plate under load. */
 typedef struct {
-  const bw_comm *comm;
+  const bw_comm *comm; /* borrowed */
   specimen_config config;
   bw_pd_bond *solid;
-  double ds, time;
-  int64_t steps, events;
-  size_t n;
+  double ds, time;              /* spacing [m]; time [s] */
+  int64_t steps, events;        /* steps done; broken bonds of this rank at the last look */
+  size_t n;                     /* particles of this rank */
   double *X0, *damage, *F;      /* (n,3), (n), (n,3) of the tractions */
   uint8_t *loads;               /* (n) bit q: its site is in the rows of load q */
   bool *notched;                /* (n) cracked by the notches: no part of the crack */
@@ -106,9 +117,10 @@ typedef struct {
 /* `p` is filled; free it with specimen_destroy, also after a failure. Collective. */
 bw_status specimen_create(const bw_comm *comm, const specimen_config *config,
                           specimen *p) BW_MUST_CHECK;
-bw_status specimen_step(specimen *p) BW_MUST_CHECK; /* Collective. */
-bool specimen_done(const specimen *p);              /* time.end, or time.after. Local. */
-void specimen_destroy(specimen *p);
+/* One step, with loads that rise and a look at the crack where one is due. Collective. */
+bw_status specimen_step(specimen *p) BW_MUST_CHECK;
+bool specimen_done(const specimen *p); /* time.end, or time.after. Local. */
+void specimen_destroy(specimen *p);    /* half-built ones, too. Collective. */
 
 /* The followed crack as it is now (bw_pd_crack_release). Collective. */
 bw_status specimen_find(specimen *p, bw_pd_crack *crack) BW_MUST_CHECK;

@@ -7,10 +7,14 @@
 /* Print what the numbers mean: sizes, speeds, dt against its limit. Collective. */
 void specimen_describe(const specimen *p, bw_log *log);
 
+/* Creates history.csv. Collective. */
 bw_status specimen_open_history(const specimen *p, const bw_case *run,
                                 bw_history **out) BW_MUST_CHECK;
-void specimen_sample(specimen *p, bw_history *history);                    /* Collective. */
-bw_status specimen_picture(specimen *p, const bw_case *run) BW_MUST_CHECK; /* Collective. */
+/* A row of it. Collective. */
+void specimen_sample(specimen *p, bw_history *history);
+/* Adds the present particles to damage.pvd. Collective. */
+bw_status specimen_picture(specimen *p, const bw_case *run) BW_MUST_CHECK;
 /* crack.csv: the places of all cracked particles, now, notches included. Collective. */
 bw_status specimen_crack_file(specimen *p, const bw_case *run) BW_MUST_CHECK;
-bw_status specimen_summary(specimen *p, bw_log *log) BW_MUST_CHECK; /* Collective. */
+/* What was found of the crack, to the log. Collective. */
+bw_status specimen_summary(specimen *p, bw_log *log) BW_MUST_CHECK;

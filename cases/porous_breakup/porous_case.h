@@ -8,46 +8,62 @@
 
 /* ---- what the YAML file says (tables in porous_config.c) ---- */
 typedef struct {
-  double length[3];
-  int cells[3];
+  double length[3]; /* box: stream, wall-normal, span [m] */
+  int cells[3];     /* cubes */
 } porous_domain;
 typedef struct {
-  double density, viscosity, bulk_velocity;
+  double density, viscosity; /* [kg/m3], kinematic [m2/s] */
+  double bulk_velocity;      /* mean of the Poiseuille inflow [m/s] */
 } porous_fluid;
 typedef struct {
-  double density, young_modulus, fracture_energy, horizon_ratio, damping_pair;
-  int surface_correction, integrator;
-  bool contact;
+  double density, young_modulus;         /* [kg/m3], [Pa] */
+  double fracture_energy, horizon_ratio; /* G0 [J/m2]; horizon over spacing [-], default 3 */
+  double damping_pair;                   /* k_d of POROUS 3.41 [N s/m7]     default 0 */
+  int surface_correction, integrator;    /* enums of the solid     default volume, verlet */
+  bool contact;                          /* between fragments and with walls  default true */
 } porous_solid;
+/* Pores: balls at random places that overlap freely. */
 typedef struct {
-  double radius[2], porosity;
-  int seed;
+  double radius[2], porosity; /* smallest and largest [m]; to expect [-] */
+  int seed;                   /*                                          default 1 */
 } porous_random;
+/* A medium from voxels. */
 typedef struct {
-  char file[256];
-  double solid[2], voxel;
+  char file[256];  /* NRRD or MetaImage */
+  double solid[2]; /* smallest and largest value of a solid voxel */
+  double voxel;    /* its edge [m]; NaN: as the file says */
 } porous_image;
+/* A medium from a closed surface. */
 typedef struct {
-  char file[256];
-  double scale;
+  char file[256]; /* STL */
+  double scale;   /* a unit of length of the file [m]                     default 1 */
 } porous_surface;
+/* The medium: a box with pores on a lattice, or one of random, image and surface. */
 typedef struct {
-  int lattice;
-  double front, length, pitch, radius_over_pitch, offset[3];
-  bool has_random, has_image, has_surface;
+  int lattice;                             /* bw_shape_kind of the pores     default pores_sc */
+  double front, length;                    /* inflow to front; along the stream [m] */
+  double pitch, radius_over_pitch;         /* of the pores [m], [-]; NaN: not given */
+  double offset[3];                        /* of the lattice, in pitches     default 0.5 */
+  bool has_random, has_image, has_surface; /* which of the following is given */
   porous_random random;
   porous_image image;
   porous_surface surface;
-  int clamped_layers;
+  int clamped_layers; /* particles under the lower wall that hold it      default 3 */
 } porous_medium;
+/* One of the three phases. */
 typedef struct {
-  double time_step, settled, settling_rate;
-  int steps;
+  double time_step;     /* of the fluid [s]; the solid sub-cycles */
+  double settled;       /* ends when the drop changes by less per h/U_b [-]; 0: never */
+  double settling_rate; /* absolute damping over the density [1/s]        default 0 */
+  int steps;            /* at most */
 } porous_phase;
+/* Steps between rows and files; 0: at the ends of phases. */
 typedef struct {
-  int sample_every, picture_every, checkpoint_every, keep_every;
+  int sample_every, picture_every, checkpoint_every; /* defaults 10, 0, 0 */
+  int keep_every; /* between good states kept in memory               default 50 */
 } porous_output;
 
+/* The medium is held; it is elastic; bonds break. */
 enum { PHASE_FLOW, PHASE_SOLID, PHASE_BREAKAGE, PHASE_COUNT };
 typedef struct {
   porous_domain domain;
@@ -59,8 +75,9 @@ typedef struct {
   porous_output output;
 } porous_config;
 
-extern const bw_config_field porous_fields[];
-porous_config porous_config_default(void);
+extern const bw_config_field porous_fields[]; /* its keys */
+porous_config porous_config_default(void);    /* required values NaN or INT_MIN */
+/* The phase by its number, borrowed. */
 const porous_phase *porous_phase_of(const porous_config *q, int phase);
 extern const char *const porous_phase_name[PHASE_COUNT];
 
@@ -92,6 +109,8 @@ typedef struct {
   bool stopped;                     /* a signal asked for an end in good order */
 } porous_run;
 
+/* Fluid, solid and coupler from p->config, the stream uniform. Destroy also after a failure.
+ * Collective. */
 bw_status porous_build(porous_run *p) BW_MUST_CHECK;
 /* What p->phase allows the solid to do; the same again changes nothing. Local. */
 void porous_enter_phase(porous_run *p);
@@ -133,7 +152,8 @@ enum {
   COL_WALLS,
   COL_COUNT = COL_WALLS + 3
 };
-extern const char *const porous_columns[COL_COUNT];
+extern const char *const porous_columns[COL_COUNT]; /* names with units */
+/* A row of history.csv of the last step. Collective. */
 bw_status porous_measure(porous_run *p, double row[COL_COUNT]) BW_MUST_CHECK;
 double porous_pressure_drop(porous_run *p); /* over rho U_b^2 [-]. Collective. */
 
@@ -155,18 +175,21 @@ void porous_tensors_release(porous_tensors *t);
 bw_status porous_stress_csv(porous_run *p) BW_MUST_CHECK;
 
 /* ---- files (porous_output.c) ---- */
+/* Creates history.csv, or goes on with it from restart_time [s] (NaN: anew). All collective. */
 bw_status porous_open_history(porous_run *p, double restart_time) BW_MUST_CHECK;
-bw_status porous_sample(porous_run *p) BW_MUST_CHECK;
-bw_status porous_picture(porous_run *p) BW_MUST_CHECK;
-/* `kept`: the last good state instead of the present one. */
+bw_status porous_sample(porous_run *p) BW_MUST_CHECK;  /* measures, and writes a row */
+bw_status porous_picture(porous_run *p) BW_MUST_CHECK; /* adds to fluid.pvd and solid.pvd */
+/* Writes `name` in the folder of the run; `kept`: the last good state, not the present one. */
 bw_status porous_checkpoint(porous_run *p, const char *name, bool kept) BW_MUST_CHECK;
 /* Remember the present state as good. */
 bw_status porous_keep(porous_run *p) BW_MUST_CHECK;
 /* After a divergence: checkpoint-good.h5, and the cause again with its remedy. Returns `cause`. */
 bw_status porous_save_last_good(porous_run *p, bw_status cause) BW_MUST_CHECK;
+/* Goes on from a checkpoint, written by any number of ranks. */
 bw_status porous_restart(porous_run *p, const char *path) BW_MUST_CHECK;
 /* What is due after a step: the last good state, samples, pictures, checkpoints. */
 bw_status porous_after_step(porous_run *p) BW_MUST_CHECK;
+/* fragments.csv: the pieces now, largest first. */
 bw_status porous_fragments_csv(porous_run *p) BW_MUST_CHECK;
 /* Where the time went, and how evenly the markers lay on the ranks. Collective. */
 bw_status porous_cost(porous_run *p) BW_MUST_CHECK;

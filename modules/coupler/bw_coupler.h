@@ -11,8 +11,8 @@
  * several steps, however short they are). The load is therefore relaxed, F' = (1 - w) F + w (load
  * of the flow): steady loads are exact, motions faster than dt/w see a filtered load. What holds
  * are the w for which m a_{n+1} = F'_n, F_n = -sum_k g_k a_{n-k} does not grow; all of g at once
- * would give w < 2/(1 + m_a/m). Measured limits: README. w = 1 is POROUS's plain explicit scheme.
- * Waves of the lattice are fed by the late load: damp them (damping_mean; README).
+ * would give w < 2/(1 + m_a/m). The README has limits as measured. w = 1 is POROUS's plain explicit
+ * scheme. The late load feeds the shortest waves of the lattice: give the solid some damping_mean.
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
@@ -53,14 +53,23 @@
 #include "bw_probe.h"
 #include "bw_timer.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Fluid, solid, and what joins them. Opaque. */
 typedef struct bw_coupler bw_coupler;
 
 /* What loads the solid: the stress that probes see on the surface (POROUS 3.96), or the reaction
  * of the markers, -rho Q dV (FSI with ERRATA 18). Probes need two cells of room in front of the
  * surface and give a stress; the reaction is right in sum by construction, also in gaps of a few
  * cells, and holds the inertia of the fluid inside the body. */
-typedef enum { BW_LOAD_PROBES, BW_LOAD_REACTION } bw_coupler_load_kind;
+typedef enum {
+  BW_LOAD_PROBES,  /* stress of the fluid at normal probes */
+  BW_LOAD_REACTION /* reaction of the markers */
+} bw_coupler_load_kind;
 
+/* What a user chooses; lengths in grid spacings are those of x. */
 typedef struct {
   double rho;                /* density of the fluid [M/L^3]                required */
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
@@ -81,16 +90,19 @@ typedef struct {
                                 that ends the iteration [-]             default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
   bool count_work;   /* work_given, work_late of the report (an exchange a step) default false */
-  bool walled[3][2]; /* sides of the box the solid leans on: no surface there */
+  bool walled[3][2]; /* [direction][lower, upper]: sides of the box the solid leans on, where it
+                        has no surface                                     default false */
 } bw_coupler_config;
 
+/* Defaults as above, rho and nu NaN. Pure. */
 bw_coupler_config bw_coupler_config_default(void);
 
 /* `fluid` and `solid` are borrowed until destroy; the fluid's grid must be uniform with a halo of
- * 2. The solid starts held. Fails with BW_EINPUT (message names the value). */
+ * 2. The solid starts held. BW_EINPUT (message names the value), BW_EMEM. Collective. */
 bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid,
                             bw_pd_bond *solid, bw_coupler **out) BW_MUST_CHECK;
-void bw_coupler_destroy(bw_coupler **c); /* NULL is fine */
+/* Releases everything but fluid and solid, sets *c to NULL; NULL is fine. Collective. */
+void bw_coupler_destroy(bw_coupler **c);
 
 /* Hold the solid where it is (true) or let it move (false). Local. */
 void bw_coupler_hold_solid(bw_coupler *c, bool held);
@@ -101,10 +113,11 @@ void bw_coupler_hold_solid(bw_coupler *c, bool held);
  * all ranks. */
 void bw_coupler_watch(bw_coupler *c, bool watched);
 
-/* Advance both by dt [T]. BW_ECFL, BW_EDIVERGED from either phase. */
+/* Advance both by dt [T]. BW_ECFL, BW_EDIVERGED from either phase; BW_EMEM when the surface grows.
+ * Collective. */
 bw_status bw_coupler_step(bw_coupler *c, double dt) BW_MUST_CHECK;
 
-/* Solid sub-steps in a step of dt. Local. */
+/* How many solid sub-steps a step of dt [T] takes, at least 1. Local. */
 int bw_coupler_substeps(const bw_coupler *c, double dt);
 
 /* What was seen in the last step. */
@@ -122,36 +135,53 @@ typedef struct {
                                      given = late + received (the solid's ledger, external, less
                                      its weight's), to the order of the step */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
-  int iterations;                 /* of the last step (1: explicit) and ... */
-  double residual;                /* ... what it ended with [-]; 0 when explicit */
+  int iterations;                 /* of the last step; 1: explicit */
+  double residual;                /* with which it ended [-]; 0 when explicit */
   int64_t unconverged;            /* steps so far that used up their iterations */
-  int64_t markers, markers_outside, probes_shortened, probes_blocked;
-  double surface_area;                     /* [L^2] */
-  double mass_inside, mass_out, mass_left; /* of the solid [M]: in the box, with what holds it under
-                                 the walls; beyond a side, still joined to what is inside; retired.
-                                 Their sum never changes */
-  double imbalance;                        /* most markers on a rank over the mean [-] */
+  int64_t markers;                /* of all ranks */
+  int64_t markers_outside;        /* of them, outside the box: they force nothing */
+  int64_t probes_shortened;       /* shortened or crowded by something in their way */
+  int64_t probes_blocked;         /* without room: they bring no load */
+  double surface_area;            /* of the solid in the box [L^2] */
+  double mass_inside; /* of the solid in the box, with what holds it under the walls [M] */
+  double mass_out;    /* beyond a side, still joined to what is inside [M] */
+  double mass_left;   /* retired [M]; the sum of the three never changes */
+  double imbalance;   /* most markers on a rank over the mean [-] */
 } bw_coupler_report;
+/* Measures the last step; probes are read for it where they do not load the solid. BW_EMEM.
+ * Collective. */
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHECK;
 
-/* Where the time went since create, by part (bw_coupler_part). Borrowed. Local. */
+/* Parts of a step whose time is measured. */
 typedef enum {
-  BW_PART_MOMENTUM,
-  BW_PART_POISSON,
-  BW_PART_FORCING,
-  BW_PART_PROBES,
-  BW_PART_SOLID,
-  BW_PART_SURFACE,
-  BW_PART_COUNT
+  BW_PART_MOMENTUM, /* predict, correction, halos */
+  BW_PART_POISSON,  /* pressure solves */
+  BW_PART_FORCING,  /* placing markers, interpolation and spreading */
+  BW_PART_PROBES,   /* mean pressure, probes or reaction, load on the particles */
+  BW_PART_SOLID,    /* solid sub-steps */
+  BW_PART_SURFACE,  /* following the surface */
+  BW_PART_COUNT     /* how many there are */
 } bw_coupler_part;
+/* Where the time went since create, by part. Borrowed. Local. */
 bw_timer *bw_coupler_timer(bw_coupler *c);
 
-bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c); /* borrowed. Local. */
-bw_ibm_mdf *bw_coupler_markers(bw_coupler *c);             /* borrowed: cost, reports. Local. */
+/* The solid's interface, for fragments and the surface; borrowed. Local. */
+bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c);
+/* The forcing, for its cost and report; borrowed. Local. */
+bw_ibm_mdf *bw_coupler_markers(bw_coupler *c);
 
-/* State. keep remembers the present state in memory (the last good one); save writes the present
- * state, save_kept the remembered one (BW_EINPUT when there is none); load replaces the state. */
+/* Remembers the present state in memory, as the last good one: a copy of the fields and particles,
+ * allocated by the first call. BW_EMEM. Collective. */
 bw_status bw_coupler_keep(bw_coupler *c) BW_MUST_CHECK;
+/* Writes the present state into an open checkpoint, under fluid/ and solid/; it is remembered, too.
+ * BW_EMEM, BW_EIO. Collective. */
 bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;
+/* Writes the remembered state. BW_EINPUT when there is none, BW_EIO. Collective. */
 bw_status bw_coupler_save_kept(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;
+/* Replaces the state by that of a checkpoint, written by any number of ranks: the run goes on as it
+ * would have. BW_EINPUT when it does not fit, BW_EIO, BW_EMEM. Collective. */
 bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck) BW_MUST_CHECK;
+
+#ifdef __cplusplus
+}
+#endif

@@ -3,4 +3,13 @@
 #pragma once
 #include "bw_config.h"
 
-extern const bw_config_field bw_coupler_fields[]; /* of a bw_coupler_config */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The keys, for a struct bw_coupler_config; ends with BW_CONFIG_END. */
+extern const bw_config_field bw_coupler_fields[];
+
+#ifdef __cplusplus
+}
+#endif

@@ -9,18 +9,25 @@
  * Owns     copies of the markers, sorted by cell, on the rank that owns the cell; their weights.
  * MPI      markers are handed over by whoever has them; the module sends them to their cells. Each
  *          other block whose cells or halo a marker's support reaches holds an image of it, gets
- * its force and spreads it itself: one message per iteration, as long as there are images. */
+ *          its force and spreads it itself: one message per iteration, if there are images. */
 #pragma once
 #include "bw_grid.h"
 #include "bw_kernel_delta.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A set of markers and what they do to the velocity of one grid. Opaque. */
 typedef struct bw_ibm_mdf bw_ibm_mdf;
 
+/* What a user chooses. */
 typedef struct {
   bw_kernel_delta_id kernel; /*                     default BW_KERNEL_ROMA3 */
   int n_iter;                /* forcing iterations [-], >= 1       default 2 */
 } bw_ibm_mdf_config;
 
+/* Roma's kernel, two iterations. Pure. */
 bw_ibm_mdf_config bw_ibm_mdf_config_default(void);
 
 /* How far inside the nominal surface the markers of a solid belong, in grid spacings (ERRATA 21).
@@ -30,10 +37,13 @@ bw_ibm_mdf_config bw_ibm_mdf_config_default(void);
  * drag of a cylinder has no error (validation/ibm_mdf/cylinder_drag). Pure. */
 double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config);
 
-/* `grid` is borrowed. Collective. */
+/* No markers yet. `grid` is borrowed until destroy. BW_EINPUT for values out of range and a grid
+ * that is stretched, has another halo than 2 or more than 2^31 - 1 cells on a rank; BW_EMEM.
+ * Collective. */
 bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config,
                             bw_ibm_mdf **out) BW_MUST_CHECK;
-void bw_ibm_mdf_destroy(bw_ibm_mdf **ib); /* NULL is fine. Collective. */
+/* Releases everything and sets *ib to NULL; NULL is fine. Collective. */
+void bw_ibm_mdf_destroy(bw_ibm_mdf **ib);
 
 /* Replace the marker set: position X [L], velocity V of the boundary [L/T], volume dV [L^3]
  * (surface area per marker times the grid spacing). Copied. Markers outside the box in a
@@ -41,18 +51,19 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib); /* NULL is fine. Collective. */
  * spread beyond it is lost. Computes all weights; the force of the step is zero again.
  * How close: any number of markers may share a surface as long as their volumes add up to area
  * times h; more than some 1.5 h (roma3), 2 h (peskin4) or 1 h (hat2) apart the fluid leaks between
- * them (README). The slip goes through I - A per iteration, A = interpolate(spread(. dV)); when the
- * largest eigenvalue of A is above 2 the iteration grows: of the first set that has markers it is
- * measured (8 iterations' cost), those of later sets are taken to be as dense.
+ * them (table in the README). The slip goes through I - A per iteration, with
+ * A = interpolate(spread(. dV)); when the largest eigenvalue of A is above 2 the iteration grows.
+ * That of the first set that has markers is measured (the cost of 8 iterations), later sets are
+ * taken to be as dense.
  * BW_EINPUT for values that are not finite, negative volumes and iterations that grow, on all
- * ranks. Collective. */
+ * ranks; BW_EMEM. Collective. */
 bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], const double V[],
                                  const double dV[]) BW_MUST_CHECK;
 
-/* Make the velocity u[3] (fields with valid halos; u[2] may be NULL in 2D) meet V at the markers,
- * in place; halos of u stay valid (their owners' values to round-off), except beyond physical
- * boundaries.
- * Adds to the force of the step. Collective. */
+/* Make the velocity u[3] [L/T] (fields with valid halos; u[2] may be NULL in 2D) meet V at the
+ * markers, in place; halos of u stay valid (their owners' values to round-off), except beyond
+ * physical boundaries. dt [T] is that of the whole step (ERRATA 18). Adds to the force of the step.
+ * Collective. */
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt);
 
 /* Start a new step: the accumulated force is zero. Local. */
@@ -63,28 +74,39 @@ void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib);
  * (ERRATA 18). Collective. */
 void bw_ibm_mdf_marker_force(bw_ibm_mdf *ib, double QdV[]);
 
-/* The two operations by themselves: U (n,3) = interpolated u; u += spread(F dV) for F (n,3).
- * u's halos must be valid; after spreading they are updated. Collective. */
+/* U (n,3) [L/T] = u at the markers, in the order of set_markers; zero where one is outside the box.
+ * u's halos must be valid. Collective. */
 void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[]);
+/* u += spread(F dV) for F (n,3), a velocity per marker [L/T]; the adjoint of interpolate. u's halos
+ * stay valid. Collective. */
 void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
+/* What the last step did. */
 typedef struct {
-  double slip_before, slip_after;  /* rms |V - U| over markers before and after the last force
-                                      call [L/T]; slip_after costs one interpolation */
-  double total_force[3];           /* sum of QdV over all markers since begin_step [L^4/T^2] */
-  int64_t markers, outside;        /* over all ranks */
-  double imbalance;                /* most markers on a rank over the mean */
-  double spacing_min, spacing_max; /* nothing to do with the grid: dV/h^3 range [-] */
+  double slip_before;    /* rms |V - U| over markers before the last force call [L/T] */
+  double slip_after;     /* the same after it [L/T]; costs one interpolation */
+  double total_force[3]; /* sum of QdV over all markers since begin_step [L^4/T^2] */
+  int64_t markers;       /* handed over by all ranks */
+  int64_t outside;       /* of them, those outside the box, which force nothing */
+  double imbalance;      /* most markers on a rank over the mean */
+  double spacing_min;    /* smallest dV/h^3: volume of a marker over that of a cell [-] */
+  double spacing_max;    /* largest dV/h^3 [-] */
 } bw_ibm_mdf_report;
-/* u as in force: used to measure slip_after. Collective. */
+/* Measures the last step; u as in force, for slip_after. Collective. */
 bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3]);
 
-/* Where this rank's time went since create or the last reset [s]. Local. */
+/* Where this rank's time went since create or the last reset. */
 typedef struct {
-  double set;     /* set_markers: routes, order, weights */
-  double kernels; /* interpolation and spreading, those of images included */
-  double images;  /* forces to images on other blocks, waiting included */
+  double set;     /* set_markers: routes, order, weights [s] */
+  double kernels; /* interpolation and spreading, those of images included [s] */
+  double images;  /* forces to images on other blocks, waiting included [s] */
   int64_t forced; /* markers held, times iterations */
 } bw_ibm_mdf_cost;
+/* Reads the clocks. Local. */
 bw_ibm_mdf_cost bw_ibm_mdf_cost_of(const bw_ibm_mdf *ib);
+/* Sets clocks and counts to zero. Local. */
 void bw_ibm_mdf_cost_reset(bw_ibm_mdf *ib);
+
+#ifdef __cplusplus
+}
+#endif

@@ -18,20 +18,33 @@
 #pragma once
 #include "bw_grid.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The solver: fields, boundaries and time of one flow. Opaque. */
 typedef struct bw_ns_channel bw_ns_channel;
 
+/* What a side of the box does to the fluid. */
 typedef enum {
-  BW_SIDE_PERIODIC,
-  BW_SIDE_WALL,
-  BW_SIDE_FREE_SLIP,
-  BW_SIDE_INFLOW,
-  BW_SIDE_OUTFLOW
+  BW_SIDE_PERIODIC,  /* joined to the opposite side, which has to be periodic too */
+  BW_SIDE_WALL,      /* no slip; may move in its own plane */
+  BW_SIDE_FREE_SLIP, /* a plane of symmetry: nothing crosses it, no shear stress on it */
+  BW_SIDE_INFLOW,    /* velocity given by a profile */
+  BW_SIDE_OUTFLOW    /* convective; takes what the inflows bring */
 } bw_ns_side_kind;
-typedef enum { BW_PROFILE_UNIFORM, BW_PROFILE_POISEUILLE, BW_PROFILE_CALLBACK } bw_ns_profile;
+
+/* How the velocity of an inflow or of a wall is given. */
+typedef enum {
+  BW_PROFILE_UNIFORM,    /* the same everywhere: bw_ns_side.velocity */
+  BW_PROFILE_POISEUILLE, /* steady laminar flow through the section: bw_ns_side.bulk_velocity */
+  BW_PROFILE_CALLBACK    /* a function of place and time: bw_ns_side.function */
+} bw_ns_profile;
 
 /* u[3] [L/T] at the point x[3] [L] and time t [T]. Pure; called for any point, in any order. */
 typedef void (*bw_ns_velocity_fn)(const double x[3], double t, void *context, double u[3]);
 
+/* One side of the box. */
 typedef struct {
   bw_ns_side_kind kind;       /*                                          default wall */
   double velocity[3];         /* of the wall; of a uniform inflow [L/T]   default 0 */
@@ -42,19 +55,31 @@ typedef struct {
   void *context;              /* borrowed for the life of the solver */
 } bw_ns_side;
 
-typedef enum { BW_FORCING_NONE, BW_FORCING_FLOW_RATE, BW_FORCING_GRADIENT } bw_ns_forcing;
-/* Of the viscous term: none, that in y, or all is implicit (Crank-Nicolson in each sub-step, second
- * order in time). */
-typedef enum { BW_VISCOUS_EXPLICIT, BW_VISCOUS_IMPLICIT_Y, BW_VISCOUS_IMPLICIT } bw_ns_viscous;
+/* What drives a flow that is periodic in x. */
+typedef enum {
+  BW_FORCING_NONE,      /* nothing; sides may */
+  BW_FORCING_FLOW_RATE, /* a uniform gradient that keeps the bulk velocity, to round-off */
+  BW_FORCING_GRADIENT   /* a given uniform gradient */
+} bw_ns_forcing;
 
+/* How the viscous term advances in time; implicit parts by Crank-Nicolson in each sub-step, which
+ * is second order in time. */
+typedef enum {
+  BW_VISCOUS_EXPLICIT,   /* all by RK3: third order, the step limited by dx^2/nu */
+  BW_VISCOUS_IMPLICIT_Y, /* implicit in y: thin cells at walls do not limit the step */
+  BW_VISCOUS_IMPLICIT    /* implicit in all directions: only convection limits the step */
+} bw_ns_viscous;
+
+/* Everything that a flow is. */
 typedef struct {
-  bw_ns_side side[3][2]; /* lower, upper */
+  bw_ns_side side[3][2]; /* [direction][lower, upper] */
   double nu;             /* kinematic viscosity [L^2/T]             required */
   bw_ns_forcing forcing; /* in x                                    default none */
   double forcing_value;  /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
   bw_ns_viscous viscous; /*                                         default explicit */
 } bw_ns_channel_config;
 
+/* Walls at rest on all sides, no forcing, nu NaN. Pure. */
 bw_ns_channel_config bw_ns_channel_config_default(void);
 
 /* Is it possible on this grid? The check that create makes, before anything exists. Local. */
@@ -62,72 +87,87 @@ bw_status bw_ns_channel_config_check(const bw_grid_config *grid,
                                      const bw_ns_channel_config *config) BW_MUST_CHECK;
 
 /* `grid` is borrowed until destroy. BW_EINPUT for impossible or contradictory boundaries (named),
- * nu <= 0 or NaN, forcing without periodic x. Fluid at rest. Collective. */
+ * nu <= 0 or NaN, forcing without periodic x; BW_EMEM. Fluid at rest. Collective. */
 bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config,
                                bw_ns_channel **out) BW_MUST_CHECK;
-void bw_ns_channel_destroy(bw_ns_channel **ns); /* NULL is fine. Collective. */
+/* Releases everything and sets *ns to NULL; NULL is fine. Collective. */
+void bw_ns_channel_destroy(bw_ns_channel **ns);
 
 /* Set u at each component's own points, project it divergence-free, zero the pressure, set the
- * time to t [T]. Collective. */
+ * time to t [T]. `function` NULL: rest. BW_EDIVERGED when a value is not finite. Collective. */
 bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
                                      double t) BW_MUST_CHECK;
 
 /* Largest stable dt of the present field [T]: with c = max sum_i |u_i|/dx_i and
  * a = 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term (without z in 2D),
  *   dt = 1 / sqrt((c/sqrt(3))^2 + (a/2.5127)^2),
- * an ellipse inside the stability region of this RK3 (README); 2.41 with implicit y. INFINITY when
- * nothing limits it: fluid at rest, all implicit. ERRATA 22 has the viscous part with 1.65 instead
- * of 2.5127. Collective. */
+ * an ellipse inside the stability region of this RK3; with implicit y 2.41 in place of 2.5127
+ * (ERRATA 37). INFINITY when nothing limits it: fluid at rest, all implicit. ERRATA 22 has the
+ * viscous part with 1.65 instead of 2.5127. Collective. */
 double bw_ns_channel_dt_max(bw_ns_channel *ns);
 
 /* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,
  * BW_EDIVERGED when the field is not finite (message says where). Collective. */
 bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
 
-/* The parts, for the coupler; r = 0, 1, 2 in order, the same dt. After predict the velocity of
- * bw_ns_channel_velocity holds u*; a body may change its interior; project then updates halos
- * itself. project with r = 2 advances the time. A constant flow rate is met exactly after every
- * project, whatever the body took: predict applies the gradient of the sub-step before, project
- * the rest. Collective. */
+/* The first half of sub-step r = 0, 1, 2 (in order, with the same dt): the velocity of
+ * bw_ns_channel_velocity holds u* afterwards, whose interior a body may change. Part of step, for
+ * who puts something in between. Collective. */
 void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt);
+/* The second half: updates halos itself, makes u free of divergence; r = 2 advances the time. A
+ * constant flow rate is met exactly after every project, whatever the body took: predict applies
+ * the gradient of the sub-step before, project the rest. Collective. */
 void bw_ns_channel_project(bw_ns_channel *ns, int r, double dt);
 
-/* Is the field finite and the step within its limit? The check that step makes. Collective. */
+/* Is the field finite and the step within its limit? The check that step makes: BW_EDIVERGED,
+ * BW_ECFL, BW_EINPUT for a dt that is negative or not finite. Collective. */
 bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
 
-/* Fields (with halos, layout of bw_grid.h), borrowed; u[2] is NULL in 2D. Local. */
-bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns); /* u[3] [L/T] */
-bw_real *bw_ns_channel_pressure(bw_ns_channel *ns);        /* p/rho [L^2/T^2] */
+/* The velocity u[3] [L/T], each component on its own faces, with halos (layout of bw_grid.h);
+ * borrowed; u[2] is NULL in 2D. Local. */
+bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns);
+/* p/rho [L^2/T^2] at the centres, with halos; borrowed. Local. */
+bw_real *bw_ns_channel_pressure(bw_ns_channel *ns);
+/* The grid that create was given, borrowed. Local. */
 bw_grid *bw_ns_channel_grid(bw_ns_channel *ns);
+/* The configuration in force, borrowed until destroy. Local. */
 const bw_ns_channel_config *bw_ns_channel_settings(const bw_ns_channel *ns);
+/* Time of the present field [T]. Local. */
 double bw_ns_channel_time(const bw_ns_channel *ns);
+/* The present field is that of time t [T] from now on; nothing else changes. Local, the same on all
+ * ranks. */
 void bw_ns_channel_set_time(bw_ns_channel *ns, double t);
 
 /* After fields were overwritten through the views (restart): boundaries, halos. Collective. */
 void bw_ns_channel_refresh(bw_ns_channel *ns);
 
-double bw_ns_channel_divergence(bw_ns_channel *ns); /* max |div u| dx/U [-]. Collective. */
+/* Largest |div u| over the cells times dx over the largest |u| [-]; 0 at rest. Collective. */
+double bw_ns_channel_divergence(bw_ns_channel *ns);
 
+/* What a line of a history wants to know of the present field. */
 typedef struct {
   double bulk_velocity;     /* mean u over the box [L/T] */
   double kinetic_energy;    /* integral u.u/2 [L^5/T^2] */
   double pressure_gradient; /* mean forcing -dp/dx/rho applied in the last step [L/T^2] */
-  double inflow, outflow;   /* volume flux through x sides [L^3/T] */
+  double inflow;            /* volume flux along +x through the lower x side [L^3/T] */
+  double outflow;           /* the same through the upper x side [L^3/T] */
 } bw_ns_summary;
-bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns); /* Collective. */
+/* Integrals of the present field, the same on all ranks. Collective. */
+bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns);
 
-/* One side of the present field. Collective. */
+/* One side of the present field. */
 typedef struct {
   double flux;      /* out of the box [L^3/T] */
   double stress[3]; /* mean of nu du_c/dn of the tangential components, n into the fluid [L^2/T^2]:
                        force of the fluid on a wall per area and density; [d] is 0 */
 } bw_ns_side_report;
+/* Flux and stress of side s (0 lower, 1 upper) of direction d. Collective. */
 bw_ns_side_report bw_ns_channel_side(bw_ns_channel *ns, int d, int s);
 
 /* Watch the momentum of the cells lo[d] < i <= hi[d] (global; per velocity component those of
  * its points with these indices). Before a step; replaces an earlier box; costs the faces of the
- * box per sub-step and its volume per step. BW_EINPUT when the box is empty or leaves the grid.
- * Collective. */
+ * box per sub-step and its volume per step. BW_EINPUT when the box is empty or leaves the grid, or
+ * the viscous term is implicit in all directions. Collective. */
 bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3],
                                   const int hi[3]) BW_MUST_CHECK;
 
@@ -150,14 +190,25 @@ double bw_ns_channel_driving(const bw_ns_channel *ns);
 /* The gradient that the constant flow rate starts the next step from [L/T^2]: with u, v, w, p and
  * the time the whole state of the solver (a checkpoint saves it). Local. */
 double bw_ns_channel_gradient(const bw_ns_channel *ns);
+/* Puts that gradient [L/T^2] back after a restart. Local, the same on all ranks. */
 void bw_ns_channel_set_gradient(bw_ns_channel *ns, double gradient);
 
-/* Seconds this rank spent since create or the last reset, and the memory of its own fields
- * (without poisson's). Local. */
+/* Where this rank's time went since create or the last reset, and the memory of its own fields
+ * (without poisson's). */
 typedef struct {
-  double momentum, poisson, correct, halo, boundary; /* [s]; correct includes the divergence */
-  long substeps;
-  size_t bytes;
+  double momentum; /* the sweep of predict, and the implicit solves [s] */
+  double poisson;  /* pressure solves [s] */
+  double correct;  /* divergence and correction [s] */
+  double halo;     /* messages between ranks and ghosts at sides [s] */
+  double boundary; /* values of inflow and outflow, the watched box [s] */
+  long substeps;   /* sub-steps done */
+  size_t bytes;    /* memory of fields and buffers on this rank [B] */
 } bw_ns_cost;
+/* Reads the clocks. Local. */
 bw_ns_cost bw_ns_channel_cost(const bw_ns_channel *ns);
+/* Sets the clocks and the count of sub-steps to zero. Local. */
 void bw_ns_channel_cost_reset(bw_ns_channel *ns);
+
+#ifdef __cplusplus
+}
+#endif

@@ -28,36 +28,53 @@
 #pragma once
 #include "bw_pd_bond.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The surface of one solid. Opaque. */
 typedef struct bw_pd_interface bw_pd_interface;
 
-typedef enum { BW_PD_AREA_OPEN_SIDES, BW_PD_AREA_EQUAL } bw_pd_area;
+/* Area of a surface particle (above). */
+typedef enum {
+  BW_PD_AREA_OPEN_SIDES, /* its open lattice faces, projected on its normal */
+  BW_PD_AREA_EQUAL       /* the body's area over the number of surface particles */
+} bw_pd_area;
 
+/* What a user chooses. */
 typedef struct {
   double threshold;  /* mean distance over horizon that opens a sector [-]   default 1 */
   int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
                         POROUS), 1 in 3D                                     default 0 */
   bw_pd_area area;   /* of surface particles, above                  default open sides */
-  bool walled[3][2]; /* lower/upper side of the box `lower..upper` is a wall the solid leans on */
-  double lower[3], upper[3];
+  bool walled[3][2]; /* [direction][lower, upper]: this side of the box `lower .. upper` is a wall
+                        the solid leans on                             default false */
+  double lower[3];   /* places of the lower walls [L]           required where walled */
+  double upper[3];   /* places of the upper walls [L]           required where walled */
 } bw_pd_interface_config;
 
+/* Defaults as above, no walls. Pure. */
 bw_pd_interface_config bw_pd_interface_config_default(void);
 
-/* `pd` is borrowed until destroy. Finds the first surface. Collective. */
+/* `pd` is borrowed until destroy. Finds the surface of the reference shape and that of now.
+ * BW_EINPUT names the value; BW_EMEM. Collective. */
 bw_status bw_pd_interface_create(bw_pd_bond *pd, const bw_pd_interface_config *config,
                                  bw_pd_interface **out) BW_MUST_CHECK;
-void bw_pd_interface_destroy(bw_pd_interface **pi); /* NULL is fine. Collective. */
+/* Releases everything and sets *pi to NULL; NULL is fine. Collective. */
+void bw_pd_interface_destroy(bw_pd_interface **pi);
 
 /* Follow the solid: surface set where bonds broke, normals and positions everywhere. Collective. */
 bw_status bw_pd_interface_update(bw_pd_interface *pi) BW_MUST_CHECK;
 
-/* The surface of this rank, borrowed until the next update. Local. */
+/* The surface of this rank. */
 typedef struct {
-  size_t n;
+  size_t n;                /* surface particles of this rank */
   const int32_t *particle; /* (n) index into pd's own particles, rising */
-  const double *X, *N;     /* (n,3) position [L], unit outward normal */
+  const double *X;         /* (n,3) position [L] */
+  const double *N;         /* (n,3) unit outward normal, into the fluid */
   const double *A;         /* (n) area [L^2] */
 } bw_pd_surface;
+/* The surface as of the last update; arrays are borrowed until the next. Local. */
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
 /* spin (n,3) of that surface [1/T]: half the curl of the present velocities around each particle,
  * from the line elements that carry its normal; exact for rigid motion, 0 where none can be told. A
@@ -68,15 +85,17 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[]);
  * and their power is that of the spin, sum moment.spin = sum force.V (the adjoint of turn). A force
  * F at X + a N is F on the particle and the moment a N x F. After an update. Collective. */
 void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double force[]);
-const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi); /* (count of pd) Local. */
+/* Whether each own particle is surface, (count of pd); borrowed until the next update. Local. */
+const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi);
 
 /* Area of the reference shape [L^2], all ranks: ds^2 sum over its open lattice faces f of
  * |n_f.e_f|, n_f the normal at the face's own middle. Local. */
 double bw_pd_interface_reference_area(const bw_pd_interface *pi);
 
+/* A piece whose particles are joined by intact bonds. */
 typedef struct {
-  int64_t label; /* smallest global id in it */
-  int64_t particles;
+  int64_t label;      /* smallest global id in it */
+  int64_t particles;  /* how many, on all ranks */
   double mass;        /* [M] */
   double centre[3];   /* [L]; of the image its particle `label` is in (periodic directions) */
   double velocity[3]; /* of the centre [L/T] */
@@ -86,6 +105,10 @@ typedef struct {
 /* Pieces connected by intact bonds, largest first, then by label. label (count of pd) of each own
  * particle, may be NULL. *fragment (*n) is allocated on every rank (the same list), owned by the
  * caller (bw_release). The centre of a piece that meets itself through a periodic direction
- * depends on where it is cut there. Collective. */
+ * depends on where it is cut there. BW_EMEM. Collective. */
 bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t *n,
                                     bw_pd_fragment **fragment) BW_MUST_CHECK;
+
+#ifdef __cplusplus
+}
+#endif

@@ -47,8 +47,8 @@ typedef struct {
   int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
                         POROUS), 1 in 3D                                     default 0 */
   bw_pd_area area;   /* of surface particles, above                  default open sides */
-  bool walled[3][2]; /* [direction][lower, upper]: this side of the box `lower .. upper` is a wall
-                        the solid leans on                             default false */
+  bool walled[3][2]; /* [direction][lower, upper]: this side of the box from lower to
+                        upper is a wall the solid leans on                             default false */
   double lower[3];   /* places of the lower walls [L]           required where walled */
   double upper[3];   /* places of the upper walls [L]           required where walled */
 } bw_pd_interface_config;

@@ -6,11 +6,13 @@
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field domain_fields[] = {
-    V(box_domain, length, BW_REQUIRED, BW_ABOVE(0), "L", "box in x, y, z"),
-    V(box_domain, cells, BW_REQUIRED, BW_AT_LEAST(1), "", "in x, y, z; 1 in z: two dimensions"),
+    V(box_domain, length, BW_REQUIRED, BW_ABOVE(0), "L", "edges of the box in x, y and z"),
+    V(box_domain, cells, BW_REQUIRED, BW_AT_LEAST(1), "",
+      "cells in x, y and z; one cell in z: two dimensions"),
     V(box_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
-      "of y: tanh, thin cells at both sides; 0: uniform"),
-    V(box_domain, faces, BW_OPTIONAL, BW_ANY, "", "text file with the faces in y, 0 to length"),
+      "strength of the stretching in y by tanh, thin cells at both sides; 0: uniform"),
+    V(box_domain, faces, BW_OPTIONAL, BW_ANY, "",
+      "path of a text file with the faces in y, from 0 to length[1]"),
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {
     {"explicit", BW_VISCOUS_EXPLICIT, "cheapest; the step is limited by dx^2/nu"},
@@ -18,8 +20,9 @@ static const bw_config_word viscous_words[] = {
     {"implicit", BW_VISCOUS_IMPLICIT, "no limit by the viscosity"},
     {NULL, 0, NULL}};
 static const bw_config_field fluid_fields[] = {
-    V(box_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T", "kinematic"),
-    BW_CONFIG_WORD(box_fluid, viscous, BW_OPTIONAL, viscous_words, "viscous term in time"),
+    V(box_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T", "kinematic viscosity of the fluid"),
+    BW_CONFIG_WORD(box_fluid, viscous, BW_OPTIONAL, viscous_words,
+                   "how the viscous term advances in time"),
     BW_CONFIG_END};
 static const bw_config_word kind_words[] = {
     {"periodic", BW_SIDE_PERIODIC, "both sides of a direction"},
@@ -33,56 +36,68 @@ static const bw_config_word profile_words[] = {
     {"poiseuille", BW_PROFILE_POISEUILLE, "laminar profile between the walls: bulk_velocity"},
     {NULL, 0, NULL}};
 static const bw_config_field side_fields[] = {
-    BW_CONFIG_WORD(box_side, kind, BW_REQUIRED, kind_words, "what the side is"),
-    BW_CONFIG_WORD(box_side, profile, BW_OPTIONAL, profile_words, "of an inflow"),
-    V(box_side, velocity, BW_OPTIONAL, BW_ANY, "L/T", "of a wall or a uniform inflow"),
+    BW_CONFIG_WORD(box_side, kind, BW_REQUIRED, kind_words, "what the side is to the fluid"),
+    BW_CONFIG_WORD(box_side, profile, BW_OPTIONAL, profile_words, "velocity profile of an inflow"),
+    V(box_side, velocity, BW_OPTIONAL, BW_ANY, "L/T",
+      "velocity of a wall in its plane, or of a uniform inflow"),
     V(box_side, bulk_velocity, BW_OPTIONAL, BW_ANY, "L/T",
-      "of a poiseuille inflow, along +x, +y or +z (through an upper side: negative)"),
+      "mean velocity of a poiseuille inflow along +x, +y or +z; negative through an upper side"),
     BW_CONFIG_END};
 static const bw_config_field pair_fields[] = {
-    BW_CONFIG_MAP(box_pair, lower, side_fields, "at 0"),
-    BW_CONFIG_MAP(box_pair, upper, side_fields, "at the length"), BW_CONFIG_END};
+    BW_CONFIG_MAP(box_pair, lower, side_fields, "the side at 0"),
+    BW_CONFIG_MAP(box_pair, upper, side_fields, "the side at the length"), BW_CONFIG_END};
 static const bw_config_field sides_fields[] = {
-    BW_CONFIG_MAP(box_sides, x, pair_fields, "sides normal to x"),
-    BW_CONFIG_MAP(box_sides, y, pair_fields, "sides normal to y"),
-    BW_CONFIG_MAP_IF(box_sides, z, has_z, pair_fields, "sides normal to z; none in 2D"),
+    BW_CONFIG_MAP(box_sides, x, pair_fields, "the sides normal to x"),
+    BW_CONFIG_MAP(box_sides, y, pair_fields, "the sides normal to y"),
+    BW_CONFIG_MAP_IF(box_sides, z, has_z, pair_fields,
+                     "the sides normal to z; left out in two dimensions"),
     BW_CONFIG_END};
 static const bw_config_word forcing_words[] = {
     {"flow_rate", BW_FORCING_FLOW_RATE, "value: bulk velocity [L/T]"},
     {"gradient", BW_FORCING_GRADIENT, "value: -dp/dx over the density [L/T2]"},
     {NULL, 0, NULL}};
 static const bw_config_field forcing_fields[] = {
-    BW_CONFIG_WORD(box_forcing, kind, BW_REQUIRED, forcing_words, "what is held, along periodic x"),
-    V(box_forcing, value, BW_REQUIRED, BW_ANY, "L/T or L/T2", "its value"), BW_CONFIG_END};
+    BW_CONFIG_WORD(box_forcing, kind, BW_REQUIRED, forcing_words,
+                   "what is held constant along periodic x"),
+    V(box_forcing, value, BW_REQUIRED, BW_ANY, "L/T or L/T2",
+      "the bulk velocity, or the gradient -dp/dx over the density"),
+    BW_CONFIG_END};
 static const bw_config_field vortex_fields[] = {
-    V(box_vortex, centre, BW_REQUIRED, BW_ANY, "L", "x, y; the axis is along z"),
-    V(box_vortex, radius, BW_REQUIRED, BW_ABOVE(0), "L", "where it is fastest"),
-    V(box_vortex, swirl, BW_REQUIRED, BW_ANY, "L/T", "largest velocity; > 0: counterclockwise"),
+    V(box_vortex, centre, BW_REQUIRED, BW_ANY, "L",
+      "place of the axis in x and y; the axis is along z"),
+    V(box_vortex, radius, BW_REQUIRED, BW_ABOVE(0), "L", "radius at which the vortex is fastest"),
+    V(box_vortex, swirl, BW_REQUIRED, BW_ANY, "L/T",
+      "largest velocity of the vortex; > 0: counterclockwise"),
     BW_CONFIG_END};
 static const bw_config_field start_fields[] = {
-    V(box_start, velocity, BW_OPTIONAL, BW_ANY, "L/T", "everywhere"),
-    BW_CONFIG_LIST(box_start, vortices, n_vortices, BW_OPTIONAL, vortex_fields, "added to it"),
+    V(box_start, velocity, BW_OPTIONAL, BW_ANY, "L/T", "uniform velocity at the start"),
+    BW_CONFIG_LIST(box_start, vortices, n_vortices, BW_OPTIONAL, vortex_fields,
+                   "vortices added to it"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
-    V(box_time, end, BW_REQUIRED, BW_ABOVE(0), "T", "of the run"),
-    V(box_time, step, BW_OPTIONAL, BW_ABOVE(0), "T", "fixed; else from the largest stable step"),
+    V(box_time, end, BW_REQUIRED, BW_ABOVE(0), "T", "end of the run"),
+    V(box_time, step, BW_OPTIONAL, BW_ABOVE(0), "T",
+      "fixed time step; left out: limit_share decides"),
     V(box_time, limit_share, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
-      "step over the largest stable one (convective and viscous); 0.8 without step"),
+      "time step over the largest stable one; 0.8 where step is left out, too"),
     BW_CONFIG_END};
 static const bw_config_field output_fields[] = {
-    V(box_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "rows of history.csv"),
-    V(box_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "T", "fluid.pvd; 0: at the end"),
+    V(box_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "time between rows of history.csv"),
+    V(box_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
+      "time between VTK files of fluid.pvd; 0: at the end only"),
     V(box_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
-      "checkpoint.h5; 0: at the end"),
+      "time between checkpoint.h5; 0: at the end only"),
     BW_CONFIG_END};
 const bw_config_field box_fields[] = {
-    BW_CONFIG_MAP(box_config, domain, domain_fields, "the box"),
+    BW_CONFIG_MAP(box_config, domain, domain_fields, "the box and its cells"),
     BW_CONFIG_MAP(box_config, fluid, fluid_fields, "the fluid"),
-    BW_CONFIG_MAP(box_config, sides, sides_fields, "its six sides"),
-    BW_CONFIG_MAP_IF(box_config, forcing, has_forcing, forcing_fields, "what drives it"),
-    BW_CONFIG_MAP(box_config, start, start_fields, "the first velocity, made divergence-free"),
-    BW_CONFIG_MAP(box_config, time, time_fields, "the run"),
-    BW_CONFIG_MAP(box_config, output, output_fields, "files"),
+    BW_CONFIG_MAP(box_config, sides, sides_fields, "the six sides of the box"),
+    BW_CONFIG_MAP_IF(box_config, forcing, has_forcing, forcing_fields,
+                     "what drives a flow that is periodic in x"),
+    BW_CONFIG_MAP(box_config, start, start_fields,
+                  "the first velocity, which is made free of divergence"),
+    BW_CONFIG_MAP(box_config, time, time_fields, "how long the run is, in which steps"),
+    BW_CONFIG_MAP(box_config, output, output_fields, "when files are written"),
     BW_CONFIG_END};
 #undef V
 

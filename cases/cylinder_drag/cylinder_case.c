@@ -9,27 +9,36 @@ static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, "three 
                                               {"hat2", BW_KERNEL_HAT2, "two nodes"},
                                               {NULL, 0, NULL}};
 static const bw_config_field cylinder_fields[] = {
-    V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE(0), "-", "Re_d = U_b d/nu"),
-    V(cylinder_config, blockage, BW_OPTIONAL, BW_FROM_TO(0.02, 0.8), "-", "d over channel height"),
-    V(cylinder_config, upstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "inflow to centre"),
-    V(cylinder_config, downstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d", "centre to outflow"),
-    V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "", "resolution"),
+    V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE(0), "-", "Reynolds number Re_d = U_b d/nu"),
+    V(cylinder_config, blockage, BW_OPTIONAL, BW_FROM_TO(0.02, 0.8), "-",
+      "diameter over the channel's height"),
+    V(cylinder_config, upstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d",
+      "distance of the cylinder's centre from the inflow"),
+    V(cylinder_config, downstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d",
+      "distance of the outflow from the cylinder's centre"),
+    V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "",
+      "cells per diameter"),
     V(cylinder_config, retraction, BW_OPTIONAL, BW_FROM_TO(0, 2), "h",
-      "of the markers; left out: by kernel and n_iter"),
-    V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "", "forcing iterations"),
-    BW_CONFIG_WORD(cylinder_config, kernel, BW_OPTIONAL, kernel_words, "of the markers"),
-    V(cylinder_config, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "h", "of the normal probes"),
+      "how far inside the surface markers are; left out: the best for kernel and n_iter"),
+    V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "",
+      "forcing iterations in each sub-step"),
+    BW_CONFIG_WORD(cylinder_config, kernel, BW_OPTIONAL, kernel_words,
+                   "delta kernel of the markers"),
+    V(cylinder_config, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "h",
+      "length of the normal probes"),
     V(cylinder_config, dt_fraction, BW_OPTIONAL, BW_FROM_TO(0.01, 0.7), "",
       "time step over the largest stable one of the empty channel"),
     BW_CONFIG_END};
 static const bw_config_field until_fields[] = {
-    V(cylinder_until, steady, BW_OPTIONAL, BW_ABOVE(0), "1/(d/U_b)", "relative change of the drag"),
-    V(cylinder_until, latest, BW_OPTIONAL, BW_ABOVE(0), "d/U_b", "end of the run at the latest"),
-    V(cylinder_until, interval, BW_OPTIONAL, BW_ABOVE(0), "d/U_b", "between samples"),
+    V(cylinder_until, steady, BW_OPTIONAL, BW_ABOVE(0), "1/(d/U_b)",
+      "relative change of the drag per unit of time below which the run ends"),
+    V(cylinder_until, latest, BW_OPTIONAL, BW_ABOVE(0), "d/U_b",
+      "time at which the run ends at the latest"),
+    V(cylinder_until, interval, BW_OPTIONAL, BW_ABOVE(0), "d/U_b", "time between samples"),
     BW_CONFIG_END};
 const bw_config_field cylinder_case_fields[] = {
     BW_CONFIG_MAP(cylinder_case, cylinder, cylinder_fields, "the flow and its discretisation"),
-    BW_CONFIG_MAP(cylinder_case, until, until_fields, "when to stop"), BW_CONFIG_END};
+    BW_CONFIG_MAP(cylinder_case, until, until_fields, "when the run ends"), BW_CONFIG_END};
 
 cylinder_case cylinder_case_default(void)
 {

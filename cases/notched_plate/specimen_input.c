@@ -6,21 +6,23 @@
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field shape_fields[] = {
-    V(specimen_shape, length, BW_REQUIRED, BW_ABOVE(0), "m", "of the plate, in x"),
-    V(specimen_shape, height, BW_REQUIRED, BW_ABOVE(0), "m", "in y"),
-    V(specimen_shape, thickness, BW_OPTIONAL, BW_ABOVE(0), "m", "in z (2D: of the one layer)"),
-    V(specimen_shape, particles, BW_REQUIRED, BW_AT_LEAST(10), "", "along the length"),
+    V(specimen_shape, length, BW_REQUIRED, BW_ABOVE(0), "m", "length of the plate, in x"),
+    V(specimen_shape, height, BW_REQUIRED, BW_ABOVE(0), "m", "height of the plate, in y"),
+    V(specimen_shape, thickness, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "thickness of the plate, in z; in two dimensions that of the one layer"),
+    V(specimen_shape, particles, BW_REQUIRED, BW_AT_LEAST(10), "",
+      "particles along the length; they give the spacing"),
     V(specimen_shape, lattice_angle, BW_OPTIONAL, BW_FROM_TO(-180, 180), "deg",
-      "lattice turned about the middle"),
+      "angle by which the lattice is turned about the plate's middle"),
     BW_CONFIG_END};
 
 static const bw_config_field notch_fields[] = {
-    V(specimen_notch, from, BW_REQUIRED, BW_ANY, "m", "[x, y]"),
-    V(specimen_notch, to, BW_REQUIRED, BW_ANY, "m", "[x, y]"), BW_CONFIG_END};
+    V(specimen_notch, from, BW_REQUIRED, BW_ANY, "m", "one end of the cut, [x, y]"),
+    V(specimen_notch, to, BW_REQUIRED, BW_ANY, "m", "its other end, [x, y]"), BW_CONFIG_END};
 
 static const bw_config_field hole_fields[] = {
-    V(specimen_hole, centre, BW_REQUIRED, BW_ANY, "m", "[x, y]"),
-    V(specimen_hole, radius, BW_REQUIRED, BW_ABOVE(0), "m", "radius"), BW_CONFIG_END};
+    V(specimen_hole, centre, BW_REQUIRED, BW_ANY, "m", "middle of the hole, [x, y]"),
+    V(specimen_hole, radius, BW_REQUIRED, BW_ABOVE(0), "m", "radius of the hole"), BW_CONFIG_END};
 
 static const bw_config_word geometry_words[] = {
     {"plane_stress", BW_PD_PLANE_STRESS, "Poisson's ratio 1/3"},
@@ -28,21 +30,25 @@ static const bw_config_word geometry_words[] = {
     {"solid", BW_PD_3D, "three dimensions, 1/4"},
     {NULL, 0, NULL}};
 static const bw_config_field solid_fields[] = {
-    BW_CONFIG_WORD(specimen_solid, geometry, BW_OPTIONAL, geometry_words, "which mechanics"),
+    BW_CONFIG_WORD(specimen_solid, geometry, BW_OPTIONAL, geometry_words,
+                   "plane stress, plane strain or three dimensions"),
     V(specimen_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
     V(specimen_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
-    V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "G0"),
-    V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
+    V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
+    V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "",
+      "horizon over the spacing of the particles"),
     BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
-                   "stiffness of bonds near edges"),
+                   "how bonds near edges are made as stiff as inside"),
     BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, bw_pd_bond_fraction_words,
-                   "part of a partner within the horizon"),
+                   "which part of a partner's cell counts as within the horizon"),
     BW_CONFIG_WORD(specimen_solid, family_reach, BW_OPTIONAL, bw_pd_bond_reach_words,
-                   "who is a partner"),
-    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words, "in time"),
+                   "how far away a partner may be"),
+    BW_CONFIG_WORD(specimen_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words,
+                   "how the motion advances in time"),
     V(specimen_solid, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "spacings",
-      "particles off their sites; 0: a lattice"),
-    V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another one: another cloud"),
+      "how far particles stand off their sites; 0: a lattice"),
+    V(specimen_solid, disorder_seed, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "number of the disordered cloud; another one gives another cloud"),
     BW_CONFIG_END};
 
 static const bw_config_word edge_words[] = {{"left", SPECIMEN_LEFT, NULL},
@@ -55,48 +61,65 @@ static const bw_config_word kind_words[] = {{"traction", SPECIMEN_TRACTION, "Pa"
                                             {"start", SPECIMEN_START, "m/s, at t = 0 only"},
                                             {NULL, 0, NULL}};
 static const bw_config_field load_fields[] = {
-    BW_CONFIG_WORD(specimen_load, edge, BW_REQUIRED, edge_words, "where"),
-    BW_CONFIG_WORD(specimen_load, kind, BW_REQUIRED, kind_words, "what is given"),
-    V(specimen_load, value, BW_REQUIRED, BW_ANY, "", "[x, y]"),
-    V(specimen_load, rows, BW_OPTIONAL, BW_AT_LEAST(1), "", "of particles that take it"),
-    V(specimen_load, from, BW_OPTIONAL, BW_ANY, "m", "along the edge"),
-    V(specimen_load, to, BW_OPTIONAL, BW_ANY, "m", "along the edge"),
-    V(specimen_load, rise, BW_OPTIONAL, BW_AT_LEAST(0), "s", "a traction grows in this time"),
-    V(specimen_load, unbreakable, BW_OPTIONAL, BW_ANY, "", "these particles keep their bonds"),
+    BW_CONFIG_WORD(specimen_load, edge, BW_REQUIRED, edge_words,
+                   "edge of the plate that is loaded"),
+    BW_CONFIG_WORD(specimen_load, kind, BW_REQUIRED, kind_words, "what is given there"),
+    V(specimen_load, value, BW_REQUIRED, BW_ANY, "", "traction [Pa] or velocity [m/s], [x, y]"),
+    V(specimen_load, rows, BW_OPTIONAL, BW_AT_LEAST(1), "", "rows of particles that take the load"),
+    V(specimen_load, from, BW_OPTIONAL, BW_ANY, "m",
+      "where along the edge the load begins; left out: at its end"),
+    V(specimen_load, to, BW_OPTIONAL, BW_ANY, "m",
+      "where along the edge the load ends; left out: at its end"),
+    V(specimen_load, rise, BW_OPTIONAL, BW_AT_LEAST(0), "s",
+      "time in which a traction grows to its value"),
+    V(specimen_load, unbreakable, BW_OPTIONAL, BW_ANY, "",
+      "whether the bonds of the loaded particles cannot break"),
     BW_CONFIG_END};
 
 static const bw_config_field follow_fields[] = {
-    V(specimen_follow, from, BW_REQUIRED, BW_ANY, "m", "tip of the notch, [x, y]"),
-    V(specimen_follow, lower, BW_OPTIONAL, BW_ANY, "m", "window the crack is looked for in"),
-    V(specimen_follow, upper, BW_OPTIONAL, BW_ANY, "m", "its other corner"),
+    V(specimen_follow, from, BW_REQUIRED, BW_ANY, "m",
+      "tip of the notch where the crack begins, [x, y]"),
+    V(specimen_follow, lower, BW_OPTIONAL, BW_ANY, "m",
+      "lower left corner of the window in which the crack is looked for; left out: the plate's"),
+    V(specimen_follow, upper, BW_OPTIONAL, BW_ANY, "m",
+      "upper right corner of that window; left out: the plate's"),
     V(specimen_follow, fit_from, BW_OPTIONAL, BW_AT_LEAST(0), "m",
-      "angle: distance from the notch"),
-    V(specimen_follow, fit_to, BW_OPTIONAL, BW_ABOVE(0), "m", "angle: distance from the notch"),
-    V(specimen_follow, speed_window, BW_OPTIONAL, BW_ABOVE(0), "s", "speed: over this time"),
-    V(specimen_follow, every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "between looks"),
+      "distance from the notch's tip from which the crack's angle is fitted"),
+    V(specimen_follow, fit_to, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "distance up to which it is fitted; left out: all of the crack"),
+    V(specimen_follow, speed_window, BW_OPTIONAL, BW_ABOVE(0), "s",
+      "time over which the tip's speed is taken"),
+    V(specimen_follow, every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+      "steps between looks at the crack"),
     BW_CONFIG_END};
 
 static const bw_config_field time_fields[] = {
     V(specimen_time, step, BW_REQUIRED, BW_ABOVE(0), "s", "time step"),
-    V(specimen_time, end, BW_REQUIRED, BW_ABOVE(0), "s", "end"),
+    V(specimen_time, end, BW_REQUIRED, BW_ABOVE(0), "s", "end of the run"),
     V(specimen_time, after, BW_OPTIONAL, BW_AT_LEAST(0), "s",
-      "stop this long after the crack ended"),
+      "how long the run goes on after the crack has reached an edge or a hole; left out: to the "
+      "end"),
     BW_CONFIG_END};
 
 static const bw_config_field output_fields[] = {
-    V(specimen_files, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "rows of history.csv"),
-    V(specimen_files, picture_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "damage-*.vtp"),
+    V(specimen_files, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+      "steps between rows of history.csv"),
+    V(specimen_files, picture_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+      "steps between pictures damage-*.vtp"),
     BW_CONFIG_END};
 
 const bw_config_field specimen_fields[] = {
-    BW_CONFIG_MAP(specimen_config, shape, shape_fields, "the plate"),
-    BW_CONFIG_LIST(specimen_config, notches, n_notches, BW_OPTIONAL, notch_fields, "cuts"),
-    BW_CONFIG_LIST(specimen_config, holes, n_holes, BW_OPTIONAL, hole_fields, "round holes"),
-    BW_CONFIG_MAP(specimen_config, solid, solid_fields, "the material"),
-    BW_CONFIG_LIST(specimen_config, loads, n_loads, BW_REQUIRED, load_fields, "what tears it"),
+    BW_CONFIG_MAP(specimen_config, shape, shape_fields, "the plate and its lattice"),
+    BW_CONFIG_LIST(specimen_config, notches, n_notches, BW_OPTIONAL, notch_fields,
+                   "straight cuts through the thickness"),
+    BW_CONFIG_LIST(specimen_config, holes, n_holes, BW_OPTIONAL, hole_fields,
+                   "round holes through the thickness"),
+    BW_CONFIG_MAP(specimen_config, solid, solid_fields, "the material and its discretisation"),
+    BW_CONFIG_LIST(specimen_config, loads, n_loads, BW_REQUIRED, load_fields,
+                   "what acts on the edges"),
     BW_CONFIG_MAP(specimen_config, follow, follow_fields, "the crack that is measured"),
-    BW_CONFIG_MAP(specimen_config, time, time_fields, "how long"),
-    BW_CONFIG_MAP(specimen_config, output, output_fields, "files"),
+    BW_CONFIG_MAP(specimen_config, time, time_fields, "how long the run is"),
+    BW_CONFIG_MAP(specimen_config, output, output_fields, "when files are written"),
     BW_CONFIG_END};
 #undef V
 

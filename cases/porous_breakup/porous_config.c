@@ -7,28 +7,34 @@
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field domain_fields[] = {
-    V(porous_domain, length, BW_REQUIRED, BW_ABOVE(0), "m", "box: stream, wall-normal, span"),
-    V(porous_domain, cells, BW_REQUIRED, BW_AT_LEAST(4), "", "cells in x, y, z (cubic cells)"),
+    V(porous_domain, length, BW_REQUIRED, BW_ABOVE(0), "m",
+      "edges of the box: along the stream, from wall to wall, along the span"),
+    V(porous_domain, cells, BW_REQUIRED, BW_AT_LEAST(4), "",
+      "cells in x, y and z; cells are cubes"),
     BW_CONFIG_END};
 
 static const bw_config_field fluid_fields[] = {
-    V(porous_fluid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
-    V(porous_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
+    V(porous_fluid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density of the fluid"),
+    V(porous_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "m2/s",
+      "kinematic viscosity of the fluid"),
     V(porous_fluid, bulk_velocity, BW_REQUIRED, BW_ABOVE(0), "m/s",
-      "mean of the Poiseuille inflow"),
+      "mean velocity of the Poiseuille inflow"),
     BW_CONFIG_END};
 
 static const bw_config_field solid_fields[] = {
-    V(porous_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density"),
-    V(porous_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus"),
+    V(porous_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density of the solid"),
+    V(porous_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus of the solid"),
     V(porous_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
-    V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "", "horizon over spacing"),
-    V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7", "pairwise damping k_d"),
+    V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "",
+      "horizon over the spacing of the particles"),
+    V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7",
+      "damping along bonds, k_d of POROUS 3.41"),
     BW_CONFIG_WORD(porous_solid, surface_correction, BW_OPTIONAL, bw_pd_bond_correction_words,
-                   "stiffness of bonds near surfaces"),
+                   "how bonds near surfaces are made as stiff as inside"),
     BW_CONFIG_WORD(porous_solid, integrator, BW_OPTIONAL, bw_pd_bond_integrator_words,
-                   "of the solid"),
-    V(porous_solid, contact, BW_OPTIONAL, BW_ANY, "", "repulsion between fragments"),
+                   "how the solid advances in time"),
+    V(porous_solid, contact, BW_OPTIONAL, BW_ANY, "",
+      "whether fragments repel each other and the channel's walls"),
     BW_CONFIG_END};
 
 static const bw_config_word lattice_words[] = {
@@ -37,66 +43,79 @@ static const bw_config_word lattice_words[] = {
     {"pores_fcc", BW_SHAPE_PORES_FCC, "face-centred cubic"},
     {NULL, 0, NULL}};
 static const bw_config_field random_fields[] = {
-    V(porous_random, radius, BW_REQUIRED, BW_ABOVE(0), "m", "smallest and largest of the pores"),
+    V(porous_random, radius, BW_REQUIRED, BW_ABOVE(0), "m",
+      "smallest and largest radius of the pores"),
     V(porous_random, porosity, BW_REQUIRED, BW_BETWEEN(0, 1), "",
-      "to expect: pores overlap freely"),
-    V(porous_random, seed, BW_OPTIONAL, BW_AT_LEAST(0), "", "another seed, another medium"),
+      "porosity to be expected; pores overlap freely"),
+    V(porous_random, seed, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "number of the medium; another one gives another medium"),
     BW_CONFIG_END};
 static const bw_config_field image_fields[] = {
-    V(porous_image, file, BW_REQUIRED, BW_ANY, "", "NRRD or MetaImage"),
-    V(porous_image, solid, BW_REQUIRED, BW_ANY, "", "smallest and largest value of solid voxels"),
-    V(porous_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "m", "size; else as the file says"),
+    V(porous_image, file, BW_REQUIRED, BW_ANY, "", "path of an NRRD or MetaImage file"),
+    V(porous_image, solid, BW_REQUIRED, BW_ANY, "", "smallest and largest value of a solid voxel"),
+    V(porous_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "edge of a voxel; left out: as the file says"),
     BW_CONFIG_END};
 static const bw_config_field surface_fields[] = {
-    V(porous_surface, file, BW_REQUIRED, BW_ANY, "", "STL, closed"),
-    V(porous_surface, scale, BW_OPTIONAL, BW_ABOVE(0), "m", "a unit of length of the file"),
+    V(porous_surface, file, BW_REQUIRED, BW_ANY, "", "path of an STL file with a closed surface"),
+    V(porous_surface, scale, BW_OPTIONAL, BW_ABOVE(0), "m", "length of one unit of the file"),
     BW_CONFIG_END};
 static const bw_config_field medium_fields[] = {
-    V(porous_medium, front, BW_REQUIRED, BW_ABOVE(0), "m", "distance of the front from the inflow"),
-    V(porous_medium, length, BW_REQUIRED, BW_ABOVE(0), "m", "length along the stream"),
-    BW_CONFIG_WORD(porous_medium, lattice, BW_OPTIONAL, lattice_words, "where the pores are"),
-    V(porous_medium, pitch, BW_OPTIONAL, BW_ABOVE(0), "m", "of the pore lattice"),
-    V(porous_medium, radius_over_pitch, BW_OPTIONAL, BW_BETWEEN(0, 1), "", "of the pores"),
-    V(porous_medium, offset, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "of the pores, in pitches"),
+    V(porous_medium, front, BW_REQUIRED, BW_ABOVE(0), "m",
+      "distance of the medium's front from the inflow"),
+    V(porous_medium, length, BW_REQUIRED, BW_ABOVE(0), "m",
+      "length of the medium along the stream"),
+    BW_CONFIG_WORD(porous_medium, lattice, BW_OPTIONAL, lattice_words,
+                   "lattice on whose sites the pores are"),
+    V(porous_medium, pitch, BW_OPTIONAL, BW_ABOVE(0), "m", "pitch of the pores' lattice"),
+    V(porous_medium, radius_over_pitch, BW_OPTIONAL, BW_BETWEEN(0, 1), "",
+      "radius of the pores over the pitch"),
+    V(porous_medium, offset, BW_OPTIONAL, BW_FROM_TO(0, 1), "",
+      "place of the first pore in the medium's box, in pitches"),
     BW_CONFIG_MAP_IF(porous_medium, random, has_random, random_fields,
                      "instead of a lattice: balls at random places are pores"),
-    BW_CONFIG_MAP_IF(porous_medium, image, has_image, image_fields,
-                     "instead: voxels, the first one's corner at front, floor and z = 0"),
+    BW_CONFIG_MAP_IF(
+        porous_medium, image, has_image, image_fields,
+        "instead of a lattice: voxels, the first one's corner at front, floor and z = 0"),
     BW_CONFIG_MAP_IF(porous_medium, surface, has_surface, surface_fields,
-                     "instead: a body, its box's corner at front, floor and z = 0"),
+                     "instead of a lattice: a body, its box's corner at front, floor and z = 0"),
     V(porous_medium, clamped_layers, BW_OPTIONAL, BW_FROM_TO(0, 16), "",
-      "particles under the lower wall that hold the medium"),
+      "layers of particles under the lower wall that hold the medium"),
     BW_CONFIG_END};
 
 static const bw_config_field phase_fields[] = {
-    V(porous_phase, time_step, BW_REQUIRED, BW_ABOVE(0), "s", "of the fluid; the solid sub-cycles"),
-    V(porous_phase, steps, BW_REQUIRED, BW_AT_LEAST(0), "", "at most"),
+    V(porous_phase, time_step, BW_REQUIRED, BW_ABOVE(0), "s",
+      "time step of the fluid; the solid sub-cycles"),
+    V(porous_phase, steps, BW_REQUIRED, BW_AT_LEAST(0), "", "steps at most"),
     V(porous_phase, settled, BW_OPTIONAL, BW_AT_LEAST(0), "",
-      "end early when the pressure drop changes by less than this fraction per h/U_b; 0: never"),
+      "relative change of the pressure drop per h/U_b below which the phase ends early; 0: never"),
     V(porous_phase, settling_rate, BW_OPTIONAL, BW_AT_LEAST(0), "1/s",
       "absolute damping of the solid over its density"),
     BW_CONFIG_END};
 
 static const bw_config_field output_fields[] = {
-    V(porous_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps", "rows of history.csv"),
+    V(porous_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+      "steps between rows of history.csv"),
     V(porous_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
-      "VTK files; 0: at the ends"),
+      "steps between VTK files; 0: at the ends of phases only"),
     V(porous_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
-      "checkpoint-last.h5; 0: at the ends of phases"),
+      "steps between checkpoint-last.h5; 0: at the ends of phases only"),
     V(porous_output, keep_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
-      "remember a good state, written if the run diverges"),
+      "steps between good states in memory, one of which is written if the run diverges"),
     BW_CONFIG_END};
 
 const bw_config_field porous_fields[] = {
-    BW_CONFIG_MAP(porous_config, domain, domain_fields, "the channel"),
-    BW_CONFIG_MAP(porous_config, fluid, fluid_fields, "the fluid"),
-    BW_CONFIG_MAP(porous_config, solid, solid_fields, "the material"),
+    BW_CONFIG_MAP(porous_config, domain, domain_fields, "the channel and its cells"),
+    BW_CONFIG_MAP(porous_config, fluid, fluid_fields, "the fluid and its stream"),
+    BW_CONFIG_MAP(porous_config, solid, solid_fields, "the material of the medium"),
     BW_CONFIG_MAP(porous_config, medium, medium_fields, "the porous body"),
-    BW_CONFIG_MAP(porous_config, coupling, bw_coupler_fields, "fluid and solid"),
-    BW_CONFIG_MAP(porous_config, flow, phase_fields, "phase 1: rigid medium, the flow settles"),
-    BW_CONFIG_MAP(porous_config, deformation, phase_fields, "phase 2: elastic, nothing breaks"),
+    BW_CONFIG_MAP(porous_config, coupling, bw_coupler_fields, "how fluid and solid meet"),
+    BW_CONFIG_MAP(porous_config, flow, phase_fields,
+                  "phase 1: the medium is rigid, the flow settles"),
+    BW_CONFIG_MAP(porous_config, deformation, phase_fields,
+                  "phase 2: the medium is elastic, nothing breaks"),
     BW_CONFIG_MAP(porous_config, breakage, phase_fields, "phase 3: bonds may break"),
-    BW_CONFIG_MAP(porous_config, output, output_fields, "files"),
+    BW_CONFIG_MAP(porous_config, output, output_fields, "when files are written"),
     BW_CONFIG_END};
 #undef V
 

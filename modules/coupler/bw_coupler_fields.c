@@ -18,24 +18,27 @@ static const bw_config_word load_words[] = {
 #define WORD BW_CONFIG_WORD
 #define OURS bw_coupler_config
 const bw_config_field bw_coupler_fields[] = {
-    WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "regularised delta"),
-    V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "", "of the forcing"),
+    WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "delta kernel of the forcing"),
+    V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
+      "forcing iterations in each sub-step of the fluid"),
     V(OURS, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
-      "of the markers, inwards from the nominal surface; left out: by kernel and iterations"),
+      "how far inside the nominal surface markers are; left out: the best for kernel and "
+      "iterations"),
     V(OURS, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
-      "along the surface; 0: every surface particle is a marker"),
-    V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "normal probes"),
-    WORD(OURS, probe_profile, BW_OPTIONAL, profile_words, "of the velocity along a probe"),
+      "largest distance of markers along the surface; 0: every surface particle is one"),
+    V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "length of the normal probes"),
+    WORD(OURS, probe_profile, BW_OPTIONAL, profile_words,
+         "how the velocity is taken to vary along a probe"),
     WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "share of the new fluid load in each step; 1: plain explicit coupling"),
     V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",
-      "at most, of a step; 1: explicit"),
+      "repetitions of a step at most; 1: explicit coupling"),
     V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",
-      "of the surface's velocity, ends the iteration"),
+      "relative change of the surface's velocity that ends the repetitions"),
     V(OURS, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "solid sub-step over its stability limit"),
-    V(OURS, gravity, BW_OPTIONAL, BW_ANY, "m/s2", "on solid and fluid"),
+    V(OURS, gravity, BW_OPTIONAL, BW_ANY, "m/s2", "acceleration by gravity of solid and fluid"),
     BW_CONFIG_END};
 #undef V
 #undef WORD

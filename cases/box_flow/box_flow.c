@@ -2,7 +2,7 @@
  * from.
  *
  * Goes on after an interruption with --restart OUT/checkpoint.h5, to the last bit.
- * Run:   mpirun -n 2 build/bin/box_flow cases/box_flow/lid_driven_cavity.yaml --out out/cavity
+ * Run:   mpirun -n 2 build/bin/box_flow cases/box_flow/box_flow.yaml --out out/cavity
  * BUILD modules=ns_channel,vtk,checkpoint */
 #include "box_case.h"
 #include "bw_stop.h"

@@ -11,8 +11,9 @@
  * several steps, however short they are). The load is therefore relaxed, F' = (1 - w) F + w (load
  * of the flow): steady loads are exact, motions faster than dt/w see a filtered load. What holds
  * are the w for which m a_{n+1} = F'_n, F_n = -sum_k g_k a_{n-k} does not grow; all of g at once
- * would give w < 2/(1 + m_a/m). The README has limits as measured. w = 1 is POROUS's plain explicit
- * scheme. The late load feeds the shortest waves of the lattice: give the solid some damping_mean.
+ * would give w < 2/(1 + m_a/m). docs/verification/coupler has limits as measured. w = 1 is POROUS's
+ * plain explicit scheme. The late load feeds the shortest waves of the lattice: give the solid some
+ * damping_mean.
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's

@@ -51,7 +51,7 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib);
  * spread beyond it is lost. Computes all weights; the force of the step is zero again.
  * How close: any number of markers may share a surface as long as their volumes add up to area
  * times h; more than some 1.5 h (roma3), 2 h (peskin4) or 1 h (hat2) apart the fluid leaks between
- * them (table in the README). The slip goes through I - A per iteration, with
+ * them (table in docs/verification/ibm_mdf). The slip goes through I - A per iteration, with
  * A = interpolate(spread(. dV)); when the largest eigenvalue of A is above 2 the iteration grows.
  * That of the first set that has markers is measured (the cost of 8 iterations), later sets are
  * taken to be as dense.

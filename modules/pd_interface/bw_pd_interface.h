@@ -2,8 +2,9 @@
  *
  * POROUS 3.3.7: the sphere of radius horizon around a particle is divided into sectors: 2D, 8 of
  * equal angle centred on the lattice's sides and diagonals; 3D, 24 of equal solid angle, the
- * octants cut in three by the largest component (README says why). A bond belongs to the sectors
- * of its reference direction, so that turning as a rigid body changes nothing. A sector is empty
+ * octants cut in three by the largest component (docs/verification/pd_interface says why). A bond
+ * belongs to the sectors of its reference direction, so that turning as a rigid body changes
+ * nothing. A sector is empty
  * when no intact bond points into it and the mean distance 3.42 to the partners of its broken
  * bonds, if it has any, exceeds the threshold (the horizon by default). A particle is surface
  * when `n_empty` neighbouring sectors are empty; in a body that never broke these are the
@@ -14,8 +15,8 @@
  * anything broke, or the direction of the empty sectors.
  * Areas of particles that were surface in the reference shape, one of
  *   open sides (default): ds^2 sum over the open lattice faces f of e_f.n_h, at least ds^2/4, so
- *     that sum A n is a closed surface (uniform pressure gives no net force) and sum A n.x each
- *     time the volume (figures in README);
+ *     that sum A n is nothing, as on a closed surface (a uniform pressure gives no net force), and
+ *     sum A n_d x_d the volume, for each direction d (figures in docs/verification/pd_interface);
  *   equal: as with POROUS 3.96, the body's area over their number.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
  * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
@@ -47,8 +48,8 @@ typedef struct {
   int n_empty;       /* neighbouring empty sectors that make a surface; 0: 2 in 2D (as in
                         POROUS), 1 in 3D                                     default 0 */
   bw_pd_area area;   /* of surface particles, above                  default open sides */
-  bool walled[3][2]; /* [direction][lower, upper]: this side of the box from lower to
-                        upper is a wall the solid leans on                             default false */
+  bool walled[3][2]; /* [direction][lower, upper]: this side of the box from lower
+                        to upper is a wall the solid leans on                default false */
   double lower[3];   /* places of the lower walls [L]           required where walled */
   double upper[3];   /* places of the upper walls [L]           required where walled */
 } bw_pd_interface_config;

@@ -1,3 +1,4 @@
+/* The frame of a benchmark: medians, the triad's bandwidth, rows of JSON. */
 #include "bw_bench.h"
 #include "bw_folder.h"
 #include "bw_memory.h"

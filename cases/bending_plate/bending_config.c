@@ -1,3 +1,4 @@
+/* The keys of bending_plate.yaml and their defaults. */
 #include "bending_case.h"
 #include "bw_coupler_fields.h"
 #include "bw_pd_bond_words.h"

@@ -1,3 +1,4 @@
+/* What the bending plate writes: log, history.csv, VTK files, checkpoints. */
 #include "bending_case.h"
 #include "bw_checkpoint.h"
 #include "bw_vtk.h"

@@ -1,3 +1,4 @@
+/* The keys of box_flow.yaml, their defaults, and every contradiction between them. */
 #include "box_case.h"
 
 #include <limits.h>

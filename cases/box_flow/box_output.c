@@ -1,3 +1,4 @@
+/* What a box flow writes: log, history.csv, VTK files. */
 #include "box_case.h"
 #include "bw_memory.h"
 #include "bw_vtk.h"

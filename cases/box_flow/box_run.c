@@ -1,3 +1,4 @@
+/* The objects of a box flow, its start, an interval of it, checkpoints. */
 #include "box_case.h"
 #include "bw_checkpoint.h"
 #include "bw_memory.h"

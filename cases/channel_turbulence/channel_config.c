@@ -1,3 +1,4 @@
+/* The keys of channel_turbulence.yaml and their defaults. */
 #include "channel_case.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* The keys of cylinder_drag.yaml, and what the case writes. */
 #include "cylinder_case.h"
 
 #include "bw_vtk.h"

@@ -1,3 +1,4 @@
+/* A plate under load: its sites, its material, its loads, a step. */
 #include "specimen.h"
 #include "bw_memory.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* What a specimen writes: log, history.csv, pictures, the crack's particles. */
 #include "specimen_output.h"
 #include "bw_file.h"
 #include "bw_memory.h"

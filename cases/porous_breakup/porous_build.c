@@ -1,3 +1,4 @@
+/* The objects of a run of the porous medium, its phases, and what --check prints. */
 #include "bw_memory.h"
 #include "porous_case.h"
 

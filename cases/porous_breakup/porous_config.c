@@ -1,3 +1,4 @@
+/* The keys of porous_breakup.yaml and their defaults. */
 #include "bw_coupler_fields.h"
 #include "bw_pd_bond_words.h"
 #include "porous_case.h"

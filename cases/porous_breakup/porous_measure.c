@@ -1,3 +1,4 @@
+/* The columns of history.csv: pressure drop, damage, fragments, energies, forces, masses. */
 #include "bw_memory.h"
 #include "porous_case.h"
 

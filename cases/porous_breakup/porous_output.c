@@ -1,3 +1,4 @@
+/* What the porous medium writes: history.csv, VTK files, checkpoints, fragments.csv. */
 #include "bw_memory.h"
 #include "bw_vtk.h"
 #include "porous_case.h"

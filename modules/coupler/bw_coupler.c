@@ -1,3 +1,4 @@
+/* The object: its parts, its arrays, what it shows. */
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"

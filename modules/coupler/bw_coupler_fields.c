@@ -1,3 +1,4 @@
+/* The `coupling:` block of a case file, key by key. */
 #include "bw_coupler_fields.h"
 #include "bw_coupler.h"
 

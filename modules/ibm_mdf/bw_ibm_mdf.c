@@ -1,3 +1,4 @@
+/* The object, the forcing iteration, and what is asked of it. */
 #include "bw_memory.h"
 #include "ibm_mdf_internal.h"
 

@@ -10,7 +10,7 @@
 
 struct bw_ns_lines {
   int d, n;                         /* direction, rows of all ranks */
-  bool cyclic;                      /* */
+  bool cyclic;                      /* periodic direction */
   bw_tridiagonal *divided;          /* NULL: all rows are here */
   double *lower, *diagonal, *upper; /* rows j = 1 .. n at [j-1] */
   double edge[2];                   /* what couples rows 1 and n to the ghosts or faces */

@@ -1,3 +1,4 @@
+/* Cracked particles of all ranks; branches, fork and angle of a crack along a line. */
 #include "bw_pd_crack.h"
 #include "bw_memory.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The object, its walls, and the surface of the reference shape. */
 #include "bw_pd_interface.h"
 #include "bw_memory.h"
 #include "pd_interface_internal.h"

@@ -1,3 +1,4 @@
+/* The object, and the traction from what the tips have read. */
 #include "bw_memory.h"
 #include "probe_internal.h"
 

@@ -40,6 +40,7 @@ def main():
     table = folder / "history.csv"
     with open(table, newline="") as file:
         rows = list(csv.reader(file))
+    # A head line and two samples make a curve.
     if len(rows) < 3:
         print(f"{table}: fewer than two samples, nothing to plot")
         return
@@ -47,6 +48,7 @@ def main():
     figures.mkdir(exist_ok=True)
     done = subprocess.run(["gnuplot"], input=script(table, rows[0], figures), text=True,
                           capture_output=True)
+    # gnuplot may end without an error and without a figure.
     missing = [c for c in rows[0][1:] if not (figures / file_name(c)).is_file()]
     if done.returncode != 0 or missing:
         sys.exit(f"plot_history.py: gnuplot made no figure of {missing}:\n{done.stderr}")

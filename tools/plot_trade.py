@@ -12,6 +12,7 @@ def studies(rows):
     """{study: {curve: [(cost, error, point)]}} and {study: unit of its cost}."""
     found, unit = {}, {}
     value = {(r["case"], r["quantity"]): r for r in rows}
+    # In the order of the file: a curve goes through its points as they were run.
     for case in dict.fromkeys(r["case"] for r in rows):
         study, curve, point = case.split("/")
         cost = value[case, "cost"]
@@ -24,6 +25,7 @@ def studies(rows):
 def panel(study, curves, unit):
     """gnuplot's lines for one study: a block of data and its plot."""
     lines = [f"$d_{study} << E"]
+    # One block of data per curve, two blank lines apart, so that `index` finds it.
     for points in curves.values():
         lines += [f'{cost} {error} "{point}"' for cost, error, point in points] + ["", ""]
     lines += ["E", f"set title '{study}'", f"set xlabel 'cost [{unit}]'"]

@@ -38,6 +38,7 @@ def spacing_of(points):
     locator.BuildLocator()
     n = points.GetNumberOfPoints()
     edge = []
+    # Some 200 points are enough for a median, which broken pieces do not move.
     for q in range(0, n, max(1, n // 200)):
         x = points.GetPoint(q)
         locator.FindClosestNPoints(2, x, near)
@@ -81,6 +82,7 @@ def particles(points, table, edge, cut):
     cube, glyph = vtkCubeSource(), vtkGlyph3D()
     flat = points.GetBounds()[5] - points.GetBounds()[4] < 1e-3 * edge
     cube.SetXLength(edge), cube.SetYLength(edge), cube.SetZLength(1e-3 * edge if flat else edge)
+    # The glyph takes all points, or those on one side of the cut.
     if cut is None:
         glyph.SetInputData(points)
     else:
@@ -91,6 +93,7 @@ def particles(points, table, edge, cut):
         clip.SetClipFunction(plane)
         glyph.SetInputConnection(clip.GetOutputPort())
     glyph.SetSourceConnection(cube.GetOutputPort())
+    # Cubes keep their size; only their colour tells the damage.
     glyph.SetScaleModeToDataScalingOff()
     glyph.SetColorModeToColorByScalar()
     actor = actor_of(glyph, table)
@@ -101,6 +104,7 @@ def particles(points, table, edge, cut):
 
 def decorate(renderer, box, table, title):
     outline, bar, text = vtkOutlineSource(), vtkScalarBarActor(), vtkTextActor()
+    # The box of the fluid, the scale, and the step as a title.
     outline.SetBounds(box)
     renderer.AddActor(actor_of(outline, colour=(0.25, 0.25, 0.3)))
     bar.SetLookupTable(table)
@@ -128,6 +132,7 @@ def look(renderer, box):
     centre = [(box[2 * d] + box[2 * d + 1]) / 2 for d in range(3)]
     flat = box[5] - box[4] < 0.05 * max(box[1] - box[0], box[3] - box[2])
     camera.SetFocalPoint(centre)
+    # Face on in two dimensions, else from upstream, above and the side.
     direction = (0, 0, 1) if flat else (-0.55, 0.45, 1.0)
     camera.SetPosition(*[c + v for c, v in zip(centre, direction)])
     camera.SetViewUp(0, 1, 0)
@@ -150,6 +155,7 @@ def picture(points, box, title, path, cut=None):
     window.Render()
     image, writer = vtkWindowToImageFilter(), vtkPNGWriter()
     image.SetInput(window)
+    # Off screen there is no front buffer to read.
     image.ReadFrontBufferOff()
     writer.SetFileName(str(path))
     writer.SetInputConnection(image.GetOutputPort())
@@ -172,6 +178,7 @@ def series_of(folder):
 def draw(folder, file, name):
     """Pictures of one file; how many."""
     points = read(vtkXMLPolyDataReader(), file)
+    # Series without damage, such as surfaces, are passed over.
     if points.GetNumberOfPoints() == 0 or not points.GetPointData().HasArray("damage"):
         return 0
     box = box_of(folder, points)

@@ -54,6 +54,7 @@ def rows_of(path):
 
 def collect(folder):
     ended, found = runs(folder), []
+    # Every program of the source gets an entry, whether it ran or not: a missing one is seen.
     for name in programs():
         run = ended.get(name)
         item = {"program": name, "state": "not run", "why": None, "rows": [], "run": run}
@@ -61,6 +62,7 @@ def collect(folder):
         if run is not None or (folder / f"{name}.json").is_file():
             item["rows"] = rows or []
             failed = [r for r in item["rows"] if not r["pass"]]
+            # An exit code without a failed row: it crashed, or refused its input.
             if why is None and run is not None and run["code"] != 0 and not failed:
                 why = f"it ended with exit code {run['code']}"
             item["why"] = why
@@ -108,6 +110,7 @@ class Axis:
     def __init__(self, values, low, high, log=False):
         self.log = log
         v = [math.log10(x) if log else x for x in values]
+        # A margin on both sides; a single value gets an axis of some width.
         self.a, self.b = min(v), max(v)
         pad = 0.06 * (self.b - self.a) or 0.1 * abs(self.a) or 1.0
         self.a, self.b, self.low, self.high = self.a - pad, self.b + pad, low, high
@@ -117,12 +120,14 @@ class Axis:
         return self.low + (v - self.a) / (self.b - self.a) * (self.high - self.low)
 
     def ticks(self):
+        # Decades, thinned out when there are many, filled with 2 and 5 when there are few.
         if self.log:
             decades = range(math.floor(self.a), math.ceil(self.b) + 1)
             thin = max(1, len(decades) // 6)
             factors = (1, 2, 5) if self.b - self.a < 2 else (1,)
             every = [m * 10.0 ** d for d in decades if d % thin == 0 for m in factors]
             return [t for t in every if self.a <= math.log10(t) <= self.b]
+        # Steps of 1, 2 or 5 times a power of ten, about five of them.
         raw = (self.b - self.a) / 5
         step = 10 ** math.floor(math.log10(raw))
         step *= next(m for m in (1, 2, 5, 10) if m * step >= raw)
@@ -132,6 +137,7 @@ class Axis:
 
 def chart(title, x_label, curves, log_x=False, log_y=False):
     """curves: [(name, [(x, y)], dashed)]. Nothing when nothing can be drawn."""
+    # What a logarithm cannot take is left out, as is what is not finite.
     curves = [(n, [(x, y) for x, y in p if finite(x) and finite(y) and (x > 0 or not log_x)
                    and (y > 0 or not log_y)], d) for n, p, d in curves]
     every = [q for _, p, _ in curves for q in p]
@@ -147,6 +153,7 @@ def chart(title, x_label, curves, log_x=False, log_y=False):
     for t in ay.ticks():
         out.append(f'<line y1="{ay(t):.1f}" y2="{ay(t):.1f}" x1="{LEFT}" x2="{W - RIGHT}" class="g"/>'
                    f'<text y="{ay(t) + 4:.1f}" x="{LEFT - 5}" text-anchor="end">{t:g}</text>')
+    # References are dashed and grey; few points are marked one by one.
     for q, (name, points, dashed) in enumerate(curves):
         colour = "#333333" if dashed else COLOURS[q % len(COLOURS)]
         path = " ".join(f"{ax(x):.1f},{ay(y):.1f}" for x, y in points)
@@ -173,6 +180,7 @@ def families(rows):
     """Rows of the same quantity and the same words, which differ in a number."""
     groups = {}
     for r in rows:
+        # Rows that differ in words are other families, rows that differ in a number are a curve.
         words = tuple(str(v) for k, v in sorted(r.items()) if k not in KNOWN and isinstance(v, str))
         groups.setdefault((r["quantity"],) + words, []).append(r)
     for key, members in groups.items():
@@ -275,6 +283,7 @@ def main():
     found, about = collect(folder), provenance()
     by_state = {s: [i["program"] for i in found if i["state"] == s]
                 for s in ("passed", "failed", "not run")}
+    # Only when all have run and passed is the exit code 0.
     summary = ", ".join(f"{len(names)} {state}" for state, names in by_state.items())
     result = dict(about, passed=by_state["passed"], failed=by_state["failed"],
                   not_run=by_state["not run"], programs=found)

@@ -28,6 +28,7 @@ def scales(folder):
     text = (folder / "run.yaml").read_text()
     number = {k: float(re.search(rf"^\s*{k}:\s*([-+.\deE]+)", text, re.M).group(1))
               for k in ("bulk_velocity",)}
+    # The first `height` behind `plate:` is the plate's own.
     plate = text[text.index("plate:"):]
     return number["bulk_velocity"], float(re.search(r"height:\s*([-+.\deE]+)", plate).group(1))
 
@@ -60,12 +61,14 @@ def main():
     fluid, solid = series(folder, "fluid"), series(folder, "plate")
     wanted = [float(t) * H / U for t in sys.argv[3:]] or [0.4 * H / U, 1.2 * H / U, 2.4 * H / U,
                                                           fluid[-1][0]]
+    # The nearest picture to each time that was asked for.
     picks = [min(range(len(fluid)), key=lambda q: abs(fluid[q][0] - t)) for t in wanted]
     script = [f"set terminal pngcairo size 1300,560 font ',10'; set output '{png}'",
               "set palette defined (0 '#2b4c9b', 0.35 '#bcd3e8', 0.45 '#f5f5f0', 0.7 '#f0a35e',"
               " 1 '#9b1c1c')", "set cbrange [-1.5:4]; unset key; set size ratio -1",
               "set xrange [0:4.5]; set yrange [0:1.5]; set xtics 0.5; set ytics 0.5",
               "set cblabel 'u/U_b'", "set multiplot layout 2,2"]
+    # Velocity as a map, the plate's particles as dots above it.
     for q in picks:
         script += ["$u << EOD", *velocity(fluid[q][1], U, H), "EOD",
                    "$p << EOD", *plate(solid[q][1], H), "EOD",

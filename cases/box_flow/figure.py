@@ -23,6 +23,7 @@ def vorticity(path):
     def u(c, i, j):
         return data.GetComponent(j * n[0] + i, c)
 
+    # Cells beside the sides have no neighbour on both sides and are left out.
     for j in range(1, n[1] - 1):
         for i in range(1, n[0] - 1):
             w = ((u(1, i + 1, j) - u(1, i - 1, j)) / (2 * h[0])
@@ -41,6 +42,7 @@ def main():
                for e in xml.parse(folder / "fluid.pvd").iter("DataSet")]
     last = entries[-1][0]
     wanted = [float(t) for t in sys.argv[3:]] or [last * q / 3 for q in range(4)]
+    # The nearest picture to each time that was asked for.
     picks = [min(entries, key=lambda e: abs(e[0] - t)) for t in wanted]
     script = [f"set terminal pngcairo size 1300,720 font ',11'; set output '{png}'",
               "set palette defined (-1 '#2b4c9b', -0.1 '#cfe0ef', 0 '#f7f7f4', 0.1 '#f6cfa8',"
@@ -48,6 +50,7 @@ def main():
               "set xlabel 'x'; set ylabel 'y'; set cblabel 'vorticity'", "set multiplot layout 2,2"]
     for time, name in picks:
         rows = list(vorticity(folder / name))
+        # Every panel has its own colours, symmetric about zero.
         most = max(abs(float(r.split()[2])) for r in rows if r)
         script += ["$w << EOD", *rows, "EOD", f"set cbrange [{-most}:{most}]",
                    f"set title 't = {time:.2f}'", "plot $w using 1:2:3 with image"]

@@ -33,6 +33,7 @@ def maps(folder, out):
              "set size ratio -1", "set cbrange [0:0.8]", "set cblabel 'damage'", "unset key",
              "set xlabel 'x [mm]'", "set ylabel 'y [mm]'",
              "set palette defined (0 '#f4f4f0', 0.3 '#7fb0dd', 0.8 '#0b2d5c')"]
+    # A panel per instant: damaged particles, coloured by damage.
     for step, title in SHOWN.items():
         lines.append("$p << E")
         lines += [f"{x:.3f} {y:.3f} {d:.3f}" for x, y, d in
@@ -47,6 +48,7 @@ def speeds(folders, out):
              "set xlabel 'time [us]'", "set ylabel 'speed of the tip over 2 us [m/s]'",
              "set xrange [0:60]", "set yrange [0:2500]",
              "set grid lc rgb '#dddddd'", "set key top right"]
+    # The speed is that of history.csv, over 2 us.
     for q, folder in enumerate(folders):
         with open(folder / "history.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

@@ -283,7 +283,6 @@ def main():
     found, about = collect(folder), provenance()
     by_state = {s: [i["program"] for i in found if i["state"] == s]
                 for s in ("passed", "failed", "not run")}
-    # Only when all have run and passed is the exit code 0.
     summary = ", ".join(f"{len(names)} {state}" for state, names in by_state.items())
     result = dict(about, passed=by_state["passed"], failed=by_state["failed"],
                   not_run=by_state["not run"], programs=found)
@@ -297,6 +296,7 @@ def main():
     for item in found:
         if item["state"] != "passed":
             print(f"  {item['state']}: {item['program']} {item['why'] or ''}".rstrip())
+    # Only when all have run and passed is the exit code 0.
     return 0 if not by_state["failed"] and not by_state["not run"] else 1
 
 

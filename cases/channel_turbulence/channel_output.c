@@ -1,4 +1,3 @@
-/* What turbulent channel flow writes: log, history.csv, profiles in wall units. */
 #include "channel_case.h"
 
 #include <stdio.h>

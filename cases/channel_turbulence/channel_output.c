@@ -1,3 +1,4 @@
+/* What turbulent channel flow writes: log, history.csv, profiles in wall units. */
 #include "channel_case.h"
 
 #include <stdio.h>

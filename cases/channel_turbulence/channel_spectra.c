@@ -1,3 +1,4 @@
+/* Two-point correlations and spectra as tables, in csv and HDF5. */
 #include "channel_case.h"
 
 #include <stdio.h>

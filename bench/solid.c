@@ -47,6 +47,7 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
   c.disorder = disorder;
   bw_status st = bw_pd_shape_fill(1, &block, c.ds, c.origin, false, &n, &site, &kind);
   BW_THEN(st, bw_pd_bond_create(comm, &c, n, site, kind, &pd));
+  /* Each bond is evaluated from both of its ends. */
   if (st == BW_OK) {
     const double bonds = 2.0 * (double)bw_pd_bond_account(pd).bonds;
     const double seconds = bw_bench_solid_seconds(comm, pd, STEPS, &st);

@@ -281,6 +281,7 @@ static bw_status study_wave(bw_bench *b, const bw_comm *comm)
     c.calibration = q < 5 ? BW_PD_CALIBRATION_NONE : BW_PD_CALIBRATION_LATTICE;
     bw_status st = wave_create(comm, c, (int[3]){length, length, length}, &w);
     double seconds = NAN;
+    /* Speed omega/k against the classical one; the wave is 32 spacings long. */
     const double error = st == BW_OK ? fabs(wave_frequency(&w) / w.k / speed - 1.0) : NAN;
     BW_THEN(st, wave_cost(w.pd, &seconds));
     snprintf(name, sizeof name, "wave/constants from %s/m %g", calibration[q / 5], c.horizon_ratio);
@@ -301,6 +302,7 @@ static bw_status oscillation(const bw_comm *comm, bw_pd_integrator integrator, d
   c.integrator = integrator;
   bw_status st = wave_create(comm, c, (int[3]){8, 1, 1}, &w);
   if (st == BW_OK) {
+    /* Against the lattice's own frequency: what is left is the integrator's error. */
     const double omega = wave_frequency(&w), end = PERIODS * TURN / omega;
     const int steps = (int)ceil(end / (share * bw_pd_bond_dt_max(w.pd)));
     for (int q = 0; st == BW_OK && q < steps; q++)

@@ -198,6 +198,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   uint8_t *kind = NULL;
   bw_status st = bw_pd_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n,
                                   &site, &kind);
+  /* Sites and kinds are copied into the solid, which divides them over the ranks. */
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);
@@ -259,6 +260,7 @@ static inline bw_status bending_look(bending_flow *f, bending_measure *m)
   bw_coupler_report r;
   BW_TRY(bw_coupler_measure(f->coupler, &r));
   const bw_pd_bond_ledger e = bw_pd_bond_account(f->solid);
+  /* The report is of the whole depth; per unit depth it compares with two dimensions. */
   *m = (bending_measure){.given = r.work_given / f->h,
                          .received = e.external / f->h,
                          .kinetic = e.kinetic / f->h,

@@ -77,6 +77,7 @@ static bw_pd_bond_config material(const specimen *p)
   c.integrator = (bw_pd_integrator)s->integrator;
   c.disorder = s->disorder;
   c.disorder_seed = s->disorder_seed;
+  /* Rows of a rotation in the plane. */
   c.axes[0][0] = e[0], c.axes[0][1] = e[1];
   c.axes[1][0] = -e[1], c.axes[1][1] = e[0];
   const double half[2] = {0.5 * shape->length, 0.5 * shape->height};

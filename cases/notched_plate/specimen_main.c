@@ -12,6 +12,7 @@ static bw_status advance(specimen *p, const bw_case *run, bw_history *history)
   bw_progress_config about = bw_progress_config_default();
   about.time_start = 0.0, about.time_end = p->config.time.end, about.step_end = steps;
   bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  /* The state at t = 0. */
   specimen_sample(p, history);
   while (st == BW_OK && !specimen_done(p) && !bw_stop_requested(p->comm)) {
     st = specimen_step(p);
@@ -33,6 +34,7 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
              "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = specimen_create(comm, config, &p);
   if (st == BW_OK) specimen_describe(&p, bw_case_log(run));
+  /* --check has built and described everything, and ends. */
   if (st == BW_OK && !args->check) {
     bw_stop_install();
     st = specimen_open_history(&p, run, &history);

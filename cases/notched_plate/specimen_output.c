@@ -123,6 +123,7 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   char text[3][16];
   bw_pd_crack_line line;
   specimen_fork fork;
+  /* Collective measures first, then the log of rank 0. */
   BW_TRY(specimen_fit(p, &line));
   BW_TRY(specimen_branches(p, &fork));
   bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",

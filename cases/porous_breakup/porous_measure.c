@@ -132,9 +132,11 @@ static bw_status measure_fragments(porous_run *p, double row[])
   bw_pd_fragment *piece = NULL;
   size_t n = 0, held = 0;
   BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece));
+  /* The piece that is held is no fragment. */
   for (size_t q = 0; p->config->medium.clamped_layers > 0 && q < n; q++)
     if (piece[q].label == 0) held = q;
   double detached = 0.0, largest = 0.0, fastest = 0.0;
+  /* How much has come off, the largest and the fastest piece. */
   for (size_t q = 0; q < n; q++) {
     const double *v = piece[q].velocity;
     if (q == held) continue;
@@ -154,6 +156,7 @@ static bw_status measure_solid(porous_run *p, double row[])
 {
   const size_t n = bw_pd_bond_count(p->solid);
   const bw_pd_bond_ledger e = bw_pd_bond_account(p->solid);
+  /* Warned once: from here on contact may have been overrun. */
   if (e.closest < BW_PD_TOO_CLOSE && !p->warned)
     bw_log_warn(bw_case_log(p->run),
                 "pieces hit each other so hard that particles came within %.2f of a spacing: they "

@@ -128,6 +128,7 @@ static bw_status image(const porous_config *q, medium_body *b)
   snprintf(b->key, sizeof b->key, "medium.image.solid = [%g, %g] of %s", m->solid[0], m->solid[1],
            m->file);
   BW_TRY(bw_pd_mask_read_image(m->file, m->solid[0], m->solid[1], &b->mask));
+  /* An image smaller than the medium would leave a part of it empty. */
   for (int d = 0; d < 3; d++) {
     if (!isnan(m->voxel)) b->mask->spacing[d] = m->voxel;
     const double have = b->mask->spacing[d] * (double)b->mask->size[d];
@@ -188,9 +189,11 @@ static bool way_through(labyrinth *l)
 {
   size_t queued = 0;
   bool through = false;
+  /* Every open cell of the inflow is entered ... */
   for (int k = 0; k < l->n[2]; k++)
     for (int j = 0; j < l->n[1]; j++)
       enter(l, (int[3]){0, j, k}, &queued);
+  /* ... and the front moves on over faces until it reaches the outflow. */
   for (size_t next = 0; next < queued && !through; next++) {
     const size_t cell = l->queue[next], row = cell / (size_t)l->n[0];
     const int at[3] = {(int)(cell % (size_t)l->n[0]), (int)(row % (size_t)l->n[1]),
@@ -211,6 +214,7 @@ static bw_status check_way(const porous_config *q, const char *key, int64_t n, c
   const size_t cells = (size_t)l.n[0] * (size_t)l.n[1] * (size_t)l.n[2];
   bw_status st = BW_ALLOCATE(&l.closed, cells);
   BW_THEN(st, BW_ALLOCATE(&l.queue, cells));
+  /* Particles sit on the fluid's cells: a site is a cell. */
   for (int64_t k = 0; st == BW_OK && k < n; k++) {
     const int32_t *at = site + 3 * k;
     if (at[1] < 0) continue; /* the slab */

@@ -131,6 +131,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   /* A solid at rest in a flow that settles: what most runs begin with. */
   c->held = c->watched = true;
   c->h = g->spacing[0];
+  /* Both ends of each bond are evaluated. */
   c->bonds = 2.0 * (double)bw_pd_bond_account(solid).bonds / bw_comm_size(bw_grid_comm(grid));
   st = create_parts(c);
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));

@@ -151,6 +151,7 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
   if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, bw_coupler__state_create(c, &c->kept)));
+  /* Read as a whole first: a bad file leaves fluid and solid as they were. */
   BW_TRY(read_state(c, &c->kept, ck));
   c->kept.filled = true;
   /* Work was saved as the sum of all ranks: one of them gets it. */

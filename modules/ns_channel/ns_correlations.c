@@ -123,6 +123,7 @@ void bw_ns_correlations_sample(bw_ns_correlations *c)
     for (size_t a = 0; a < 3; a++)
       correlate(c, c->field + a * section, c->now + (size_t)p * c->of_plane + a * one);
   }
+  /* The others hold zeros for a plane, so the sum makes all ranks alike. */
   bw_comm_sum(c->ns->comm, (int)size, c->now);
   for (size_t q = 0; q < size; q++)
     c->sum[q] += c->now[q];

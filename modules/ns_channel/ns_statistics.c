@@ -95,8 +95,9 @@ void bw_ns_statistics_sample(bw_ns_statistics *s)
   bw_ns_channel *ns = s->ns;
   bw_real *const u[3] = {ns->u[0], ns->u[1], s->no_w != NULL ? s->no_w : ns->u[2]};
   memset(s->now, 0, s->size * sizeof *s->now);
-  /* Sums over this rank's part of each plane, then over all ranks. */
+  /* Sums over this rank's part of each plane ... */
   bw_ns__moments(s->g, u, ns->p, s->rows, s->now);
+  /* ... and over all ranks, so that the state does not depend on their number. */
   bw_comm_sum(ns->comm, (int)s->size, s->now);
   const double share = 1.0 / ((double)s->g->n[0] * s->g->n[2]);
   for (size_t q = 0; q < s->size; q++)

@@ -6,9 +6,9 @@
 /* Some steps of a solid, as work to be timed. */
 typedef struct {
   bw_solid *pd; /* borrowed */
-  int steps;      /* per call */
-  double dt;      /* [T] */
-  bw_status st;   /* of all calls so far */
+  int steps;    /* per call */
+  double dt;    /* [T] */
+  bw_status st; /* of all calls so far */
 } bw_bench_solid;
 
 /* Takes the steps; context: a bw_bench_solid. Collective. */

@@ -34,7 +34,7 @@ typedef struct {
   int surface_correction, volume_fraction, family_reach, integrator; /* enums of bw_solid.h */
   double disorder;   /* of the particles off their sites, in spacings   default 0: a lattice */
   int disorder_seed; /* another one gives another cloud                 default 0 */
-  bool contact; /* repulsion between particles that no bond joins        default false */
+  bool contact;      /* repulsion between particles that no bond joins        default false */
 } specimen_solid;
 
 typedef enum { SPECIMEN_LEFT, SPECIMEN_RIGHT, SPECIMEN_BOTTOM, SPECIMEN_TOP } specimen_edge;

@@ -94,12 +94,13 @@ bw_timer *bw_coupler_timer(bw_coupler *c)
   return c->timer;
 }
 
-static bw_status create_arrays(bw_coupler *c)
+/* What has a row per particle. The surface can be no larger, so that it suffices until the set of
+ * particles changes. */
+static bw_status particle_arrays(bw_coupler *c)
 {
-  BW_TRY(bw_timer_create(BW_PART_COUNT, parts, &c->timer));
-  /* A row per particle suffices for ever: the surface can be no larger. */
   const size_t n = c->n = bw_solid_count(c->solid);
   double **vector[N_VECTORS];
+  c->revision = bw_solid_revision(c->solid);
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
@@ -108,9 +109,44 @@ static bw_status create_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
   /* Iterations repeat a step from a state that has to be kept. */
-  if (c->config.coupling_iterations > 1) BW_TRY(bw_coupler__iteration_create(c));
+  return c->config.coupling_iterations > 1 ? bw_coupler__iteration_create(c) : BW_OK;
+}
+
+static void release_particle_arrays(bw_coupler *c)
+{
+  double **vector[N_VECTORS];
+  list_vectors(c, vector);
+  for (int q = 0; q < N_VECTORS; q++)
+    bw_release(vector[q]);
+  bw_release(&c->flag);
+  bw_release(&c->particle);
+  bw_release(&c->particle_inside);
+  bw_release(&c->row);
+  bw_coupler__state_release(&c->kept);
+  bw_coupler__iteration_release(c);
+  bw_coupler__blocks_release(&c->blocks);
+  bw_coupler__bodies_release(c);
+}
+
+static bw_status create_arrays(bw_coupler *c)
+{
+  BW_TRY(bw_timer_create(BW_PART_COUNT, parts, &c->timer));
+  BW_TRY(particle_arrays(c));
   BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &c->p_mean));
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
+}
+
+bw_status bw_coupler__renew(bw_coupler *c)
+{
+  const bw_comm *comm = bw_solid_comm(c->solid);
+  release_particle_arrays(c);
+  /* The load of the step before is not known of particles that were not there: it is found anew. */
+  BW_TRY(bw_comm_agree(comm, particle_arrays(c)));
+  BW_TRY(bw_coupler__bodies_create(c));
+  if (c->block > 1) BW_TRY(bw_coupler__blocks_create(c));
+  c->n_surface = c->n_inside = 0;
+  c->inside_known = c->motion_known = false;
+  return BW_OK;
 }
 
 bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *fluid, bw_solid *solid,
@@ -153,21 +189,10 @@ void bw_coupler_destroy(bw_coupler **coupler)
 {
   bw_coupler *c = *coupler;
   if (c == NULL) return;
-  double **vector[N_VECTORS];
-  list_vectors(c, vector);
-  for (int q = 0; q < N_VECTORS; q++)
-    bw_release(vector[q]);
-  bw_release(&c->particle);
-  bw_release(&c->particle_inside);
-  bw_release(&c->row);
+  release_particle_arrays(c);
   bw_timer_destroy(&c->timer);
-  bw_release(&c->flag);
   bw_release(&c->p_mean);
   bw_release(&c->inside);
-  bw_coupler__state_release(&c->kept);
-  bw_coupler__iteration_release(c);
-  bw_coupler__blocks_release(&c->blocks);
-  bw_coupler__bodies_release(c);
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);
   bw_ibm_mdf_destroy(&c->ibm);

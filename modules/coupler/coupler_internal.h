@@ -57,6 +57,7 @@ struct bw_coupler {
   bw_probe *probe;
   bool held;
   size_t n;                /* particles of this rank */
+  int64_t revision;        /* of the solid that the arrays below are for */
   double h;                /* grid spacing [L] */
   double *F;               /* (n,3) fluid load on particles [M/(L^2 T^2)] */
   double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
@@ -101,6 +102,8 @@ struct bw_coupler {
   int64_t unconverged;
 };
 
+/* Everything with a row per particle anew, after the set of particles changed. Collective. */
+bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
 /* Velocity (n_surface,3) of points that far outside the surface particles' centres, and of the

@@ -170,6 +170,7 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
 {
   /* Who is surface, where, with which normal. */
   BW_TRY(bw_pd_interface_update(c->interface));
+  if (c->revision != bw_solid_revision(c->solid)) BW_TRY(bw_coupler__renew(c));
   /* Markers, roots, velocities of those inside the box. */
   place(c);
   if (c->block > 1) BW_TRY(bw_coupler__blocks_follow(c));

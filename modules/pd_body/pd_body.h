@@ -141,7 +141,7 @@ struct bw_pd_body {
   bw_pd_dampings damping;
   bool current;         /* copies and a are those of u, v */
   bool breakage;        /* bonds may break */
-  int64_t revision;     /* raised when the set of particles or their kinds changed */
+  int64_t revision;     /* see bw_pd_body_touch */
   const bw_pd_law *law; /* borrowed */
   void *state;          /* of the law */
   double frequency2;    /* bound of the squared largest frequency without damping [1/T^2] */
@@ -227,6 +227,9 @@ void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[]); /
 void bw_pd_body_set_force(bw_pd_body *pd, const double F[]);
 void bw_pd_body_set_prescribed(bw_pd_body *pd, const double V[]);
 void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double absolute);
+/* The set of particles or their surface has changed: whoever keeps lists of particles (contact,
+ * interface, coupler) makes them anew at its next update. On all ranks alike. Local. */
+void bw_pd_body_touch(bw_pd_body *pd);
 void bw_pd_body_adopt_prescribed(bw_pd_body *pd);   /* held.velocity from v */
 size_t bw_pd_body_list_bytes(const bw_pd_body *pd); /* of slots and blocks */
 

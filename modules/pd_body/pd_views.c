@@ -83,3 +83,9 @@ void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[])
   bw_pd_body_refresh(pd, false);
   pd->current = false;
 }
+
+void bw_pd_body_touch(bw_pd_body *pd)
+{
+  pd->revision++;
+  pd->current = false;
+}

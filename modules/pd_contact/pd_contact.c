@@ -24,6 +24,21 @@ static bw_pd_pair pair_law(const bw_pd_body *pd, int g, int h)
                       .closest = INFINITY};
 }
 
+/* What is as long as the body's lists. */
+static bw_status arrays_of(bw_pd_contact *c)
+{
+  const bw_pd_body *pd = c->pd;
+  for (int k = 0; k < 3; k++) {
+    bw_release(&c->u_built[k]);
+    BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
+  }
+  bw_release(&c->link);
+  BW_TRY(BW_ALLOCATE(&c->link, (size_t)pd->level->stencil.n));
+  c->revision = pd->revision;
+  c->built = false;
+  return BW_OK;
+}
+
 bw_status bw_pd_contact_create(bw_pd_body *pd, bw_pd_contact **out)
 {
   bw_pd_contact *c = NULL;
@@ -36,9 +51,7 @@ bw_status bw_pd_contact_create(bw_pd_body *pd, bw_pd_contact **out)
     for (int g = 0; g < pd->config.n_group; g++)
       for (int h = 0; h < pd->config.n_group; h++)
         c->law[g][h] = pair_law(pd, g, h);
-    for (int k = 0; k < 3; k++)
-      BW_THEN(st, BW_ALLOCATE(&c->u_built[k], pd->n));
-    BW_THEN(st, BW_ALLOCATE(&c->link, (size_t)pd->level->stencil.n));
+    st = arrays_of(c);
   }
   if (st != BW_OK) bw_pd_contact_destroy(&c);
   *out = c;
@@ -110,6 +123,8 @@ static void positions(bw_pd_body *pd, bw_pd_contact *c)
 bw_status bw_pd_contact_update(bw_pd_contact *c)
 {
   bw_pd_body *pd = c->pd;
+  /* Another set of particles: nothing that was listed holds. */
+  if (c->revision != pd->revision) BW_TRY(bw_comm_agree(pd->comm, arrays_of(c)));
   int64_t needed = !c->built || moved(pd, c);
   bw_comm_max_int(pd->comm, 1, &needed);
   if (needed) {

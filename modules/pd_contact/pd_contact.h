@@ -29,6 +29,7 @@ struct bw_pd_contact {
   double closest;     /* least distance of a pair over its reach, in the forces so far */
   bw_pd_pair law[BW_PD_GROUPS][BW_PD_GROUPS]; /* owner's group, other's */
   bool built;
+  int64_t revision;    /* of the body that the arrays are for */
   bw_real *u_built[3]; /* (n) displacement at the last search */
 
   size_t n_mine, n_theirs, n_sent;

@@ -147,6 +147,7 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
+  if (pi->revision != bw_solid_revision(pi->pd)) BW_TRY(bw_pd_interface__rebuild(pi));
   const bw_pd_motion now = bw_solid_get_motion(pi->pd, false);
   /* What broke, then what opened: both may make or end a surface. */
   const bool broken = follow_changes(pi, &now), shown = follow_gaps(pi, &now);

@@ -155,25 +155,14 @@ static bw_status build(bw_pd_interface *pi)
   return allocate_arrays(pi);
 }
 
-bw_status bw_pd_interface_create(bw_solid *pd, const bw_pd_interface_config *config,
-                                 bw_pd_interface **out)
+/* All that follows from the set of particles. Collective. */
+static bw_status establish(bw_pd_interface *pi)
 {
-  *out = NULL;
-  bw_pd_interface *pi = NULL;
-  bw_status st = bw_comm_agree(bw_solid_comm(pd), BW_ALLOCATE(&pi, 1));
-  if (st == BW_OK) {
-    pi->pd = pd;
-    pi->config = *config;
-    pi->n = bw_solid_count(pd);
-    pi->n_extended = bw_solid_get_extended(pd).n;
-    st = build(pi);
-  }
-  /* Collective from here on. */
-  st = bw_comm_agree(bw_solid_comm(pd), st);
-  if (st != BW_OK) {
-    bw_pd_interface_destroy(&pi);
-    return st;
-  }
+  bw_solid *pd = pi->pd;
+  pi->revision = bw_solid_revision(pd);
+  pi->n = bw_solid_count(pd);
+  pi->n_extended = bw_solid_get_extended(pd).n;
+  BW_TRY(bw_comm_agree(bw_solid_comm(pd), build(pi)));
   bw_solid_get_reference(pd, pi->X0);
   place_walls(pi);
   /* The reference shape first, as if nothing had broken ... */
@@ -182,14 +171,11 @@ bw_status bw_pd_interface_create(bw_solid *pd, const bw_pd_interface_config *con
   /* ... then the present one, which may be that of a restart. */
   memset(pi->stale, true, pi->n * sizeof *pi->stale);
   pi->fresh_start = true;
-  *out = pi;
-  return bw_pd_interface_update(pi);
+  return BW_OK;
 }
 
-void bw_pd_interface_destroy(bw_pd_interface **pi)
+static void release_all(bw_pd_interface *p)
 {
-  if (pi == NULL || *pi == NULL) return;
-  bw_pd_interface *p = *pi;
   bw_pd_interface__stencil_release(&p->stencil);
   void **array[] = {(void **)&p->surface,     (void **)&p->first,       (void **)&p->outside,
                     (void **)&p->leans,       (void **)&p->broken,      (void **)&p->fresh,
@@ -207,6 +193,39 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
     bw_release(array[q]);
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
     bw_release(&p->told[pass]);
+}
+
+bw_status bw_pd_interface__rebuild(bw_pd_interface *pi)
+{
+  const bw_pd_interface asked = {.pd = pi->pd, .config = pi->config};
+  release_all(pi);
+  *pi = asked;
+  return establish(pi);
+}
+
+bw_status bw_pd_interface_create(bw_solid *pd, const bw_pd_interface_config *config,
+                                 bw_pd_interface **out)
+{
+  *out = NULL;
+  bw_pd_interface *pi = NULL;
+  bw_status st = bw_comm_agree(bw_solid_comm(pd), BW_ALLOCATE(&pi, 1));
+  if (st == BW_OK) {
+    pi->pd = pd;
+    pi->config = *config;
+    st = establish(pi);
+  }
+  if (st != BW_OK) {
+    bw_pd_interface_destroy(&pi);
+    return st;
+  }
+  *out = pi;
+  return bw_pd_interface_update(pi);
+}
+
+void bw_pd_interface_destroy(bw_pd_interface **pi)
+{
+  if (pi == NULL || *pi == NULL) return;
+  release_all(*pi);
   bw_release(pi);
 }
 

@@ -53,6 +53,7 @@ struct bw_pd_interface {
   bw_solid *pd; /* borrowed */
   bw_pd_interface_config config;
   bw_pd_interface__stencil stencil;
+  int64_t revision;     /* of the solid that all this is for */
   size_t n, n_extended; /* own particles; own and copies */
   double opening;       /* mean distance that opens a sector [L] */
   double area_total;    /* of the reference shape [L^2] */
@@ -107,6 +108,9 @@ struct bw_pd_interface {
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
+
+/* Everything anew, after the set of particles changed. Collective. */
+bw_status bw_pd_interface__rebuild(bw_pd_interface *pi) BW_MUST_CHECK;
 
 /* Who is around particle h: fills state and near; `reference`: all bonds intact. Directions across
  * a wall it leans on are filled with images. */

@@ -179,8 +179,8 @@ void bw_solid_sum_extended(bw_solid *pd, double *all);
 /* Bytes of this rank's bond lists (slots and blocks). Local. */
 size_t bw_solid_list_bytes(const bw_solid *pd);
 
-/* Raised when particles were retired or changed: whoever keeps lists of particles makes them anew.
- * The same on all ranks. Local. */
+/* Raised when the set of particles or their surface has changed otherwise than by motion and breaking:
+ * whoever keeps lists of particles makes them anew. The same on all ranks. Local. */
 int64_t bw_solid_revision(const bw_solid *pd);
 
 /* Counts bond-breaking events of this rank so far (pre-cracks and set_bits too, which may also

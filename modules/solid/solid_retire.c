@@ -19,7 +19,6 @@ static void renew(bw_solid *s)
         block->gone |= (uint8_t)(1u << lane);
   }
   bw_pd_body_fill_extended(pd, 1, pd->points.kind, pd->points.kind);
-  pd->revision++;
   if (s->contact != NULL) bw_pd_contact_forget(s->contact);
 }
 

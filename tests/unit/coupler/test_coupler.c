@@ -3,6 +3,7 @@
  * TEST  ranks=1,2,3 timeout=3600 */
 #include "cube_scene.h"
 #include "ledger.h"
+#include "pd_body.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -290,7 +291,34 @@ START_TEST(bad_configurations_are_refused_by_name)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(markers_sit_where_the_retraction_says),
+/* Who keeps lists of particles makes them anew when the solid says that its particles have changed:
+ * where they have not, nothing differs. The twin's solid says so after the second of four steps. */
+START_TEST(another_set_of_particles_is_followed)
+{
+  double force[2][3];
+  size_t n_surface[2];
+  for (int twin = 0; twin < 2; twin++) {
+    scene s = build(0.5, 1.0);
+    bw_coupler_hold_solid(s.coupler, false);
+    for (int q = 0; q < 4; q++) {
+      if (twin == 1 && q == 2) bw_pd_body_touch(bw_solid_body(s.solid));
+      bw_check_ok(bw_coupler_step(s.coupler, 1e-3));
+    }
+    ck_assert_int_eq(s.coupler->revision, twin);
+    bw_coupler_report r;
+    bw_check_ok(bw_coupler_measure(s.coupler, &r));
+    memcpy(force[twin], r.force_reaction, sizeof r.force_reaction);
+    n_surface[twin] = s.coupler->n_surface;
+    destroy(&s);
+  }
+  ck_assert_uint_eq(n_surface[0], n_surface[1]);
+  for (int d = 0; d < 3; d++)
+    bw_check_near(force[1][d], force[0][d], ROUND_OFF * (1 + fabs(force[0][0])));
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(another_set_of_particles_is_followed),
+                                      BW_TEST(markers_sit_where_the_retraction_says),
                                       BW_TEST(linear_pressure_lifts_the_body),
                                       BW_TEST(blocks_share_a_marker_and_its_force),
                                       BW_TEST(the_load_has_the_markers_moment_and_power),

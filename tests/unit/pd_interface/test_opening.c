@@ -2,6 +2,7 @@
  * BUILD modules=shape
  * TEST ranks=1,2,3,4 */
 #include "body.h"
+#include "pd_body.h"
 
 /* A block cut by a crack between y = 5 and y = 6 (no face there before it opens). */
 typedef struct {
@@ -253,7 +254,36 @@ START_TEST(following_agrees_with_looking_anew)
 }
 END_TEST
 
+/* When the solid says that its set of particles has changed everything is told anew: of the same
+ * particles the same. */
+START_TEST(another_set_of_particles_is_told_anew)
+{
+  cracked k = cracked_create(false);
+  open_crack(&k, 4.0, 0.3);
+  const bw_pd_surface before = bw_pd_interface_surface(k.b.pi);
+  double *N = NULL, *A = NULL;
+  bw_check_ok(BW_ALLOCATE(&N, 3 * before.n));
+  bw_check_ok(BW_ALLOCATE(&A, before.n));
+  memcpy(N, before.N, 3 * before.n * sizeof *N);
+  memcpy(A, before.A, before.n * sizeof *A);
+  bw_pd_body_touch(bw_solid_body(k.b.pd));
+  ck_assert_int_eq(bw_solid_revision(k.b.pd), 1);
+  bw_check_ok(bw_pd_interface_update(k.b.pi));
+  const bw_pd_surface after = bw_pd_interface_surface(k.b.pi);
+  ck_assert_uint_eq(after.n, before.n);
+  for (size_t q = 0; q < after.n; q++) {
+    bw_check_near(after.A[q], A[q], 1e3 * BW_REAL_EPSILON);
+    for (size_t d = 0; d < 3; d++)
+      bw_check_near(after.N[3 * q + d], N[3 * q + d], 1e3 * BW_REAL_EPSILON);
+  }
+  bw_release(&N);
+  bw_release(&A);
+  cracked_destroy(&k);
+}
+END_TEST
+
 static const bw_check_test tests[] = {
+    BW_TEST(another_set_of_particles_is_told_anew),
     BW_TEST(crack_faces_appear_when_the_gap_is_wide_enough),
     BW_TEST(crack_faces_have_opposite_normals_and_their_area),
     BW_TEST(rows_agree_with_the_solid),

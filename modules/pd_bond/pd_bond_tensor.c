@@ -260,8 +260,9 @@ bw_status bw_pd_bond__tensor(bw_pd_body *pd)
   if (st == BW_OK) {
     solve(pd, &v, next);
     store(pd, &v);
-    st = bw_pd_bond__full_family(pd); /* the energy of a crack holds the factors */
-    bw_pd_bond__calibrate(pd);
+    st = bw_comm_agree(pd->comm,
+                       bw_pd_bond__full_family(pd)); /* a crack's energy holds the factors */
+    if (st == BW_OK) bw_pd_bond__calibrate(pd);
   }
   for (int k = 0; k < MOST; k++) {
     bw_pd_body_release_storage_array(&v.at[k]);

@@ -290,7 +290,8 @@ static bw_status step_rk3(bw_solid *s, double dt)
 bw_status bw_solid__begin(bw_solid *s)
 {
   impose(s);
-  return s->body->current ? BW_OK : bw_solid__evaluate(s, false);
+  /* A failure of one rank is one of all before anybody moves. */
+  return s->body->current ? BW_OK : bw_solid_evaluate(s);
 }
 
 void bw_solid__end(bw_solid *s)

@@ -234,6 +234,8 @@ START_TEST(a_book_that_cannot_be_made_is_an_error_on_all_ranks)
   pd_set(pd, first_one_below, NULL);
   for (int q = 0; q < 2; q++) {
     bw_check_status(bw_solid_account(pd, &ledger), BW_EDIVERGED);
+    /* Nor does a rank step alone while the others know better. */
+    bw_check_status(bw_solid_step(pd, 1e-3 * bw_solid_dt_max(pd)), BW_EDIVERGED);
     ck_assert_ptr_nonnull(strstr(bw_last_message(), "through the wall"));
     ck_assert_double_eq(ledger.kinetic, -1); /* as it was */
   }

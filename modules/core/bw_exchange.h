@@ -4,7 +4,8 @@
  * (values to where they are needed) and back (answers to where the items came from). Counts
  * travel in the set-up only. Items to this rank itself are copied, not sent. The send buffer
  * grows to the largest set ever moved (running out of memory there ends the run); nothing else is
- * allocated after create. One partner gets at most 2 GiB per move.
+ * allocated after create. Any number of bytes may go to one partner: what is longer than
+ * bw_comm_message_limit travels in several messages.
  * Life     create -> { forward, backward }* -> destroy. */
 #pragma once
 #include "bw_comm.h"

@@ -89,7 +89,7 @@ void bw_ns_statistics_sample(bw_ns_statistics *s)
   bw_real *const u[3] = {ns->u[0], ns->u[1], s->no_w != NULL ? s->no_w : ns->u[2]};
   memset(s->now, 0, s->size * sizeof *s->now);
   bw_ns__moments(s->g, u, ns->p, s->rows, s->now);
-  bw_comm_sum(ns->comm, (int)s->size, s->now);
+  bw_comm_sum(ns->comm, s->size, s->now);
   const double share = 1.0 / ((double)s->g->n[0] * s->g->n[2]);
   for (size_t q = 0; q < s->size; q++)
     s->now[q] *= share;

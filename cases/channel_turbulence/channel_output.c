@@ -1,3 +1,4 @@
+#include "bw_folder.h"
 #include "channel_case.h"
 
 #include <stdio.h>
@@ -194,7 +195,7 @@ bw_status channel_profiles(channel_flow *f, const bw_case *run)
   bw_status st = BW_ALLOCATE(&work, (size_t)CENTRES * (size_t)(f->config->cells[1] + 1));
   for (int q = 0; q < 3 && st == BW_OK && bw_comm_rank(comm) == 0; q++) {
     char *path = NULL;
-    st = bw_case_path(run, names[q], &path);
+    st = bw_path_join(bw_case_args_of(run)->out, names[q], &path);
     FILE *out = st == BW_OK ? fopen(path, "w") : NULL;
     if (st == BW_OK && out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
     if (out != NULL) {

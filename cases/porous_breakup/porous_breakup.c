@@ -18,7 +18,7 @@ static bw_status run_phase(porous_run *p)
   about.time_start = bw_ns_channel_time(p->fluid);
   about.time_end = about.time_start + (double)(f->steps - p->step) * f->time_step;
   porous_enter_phase(p);
-  bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
+  bw_status st = bw_comm_agree(p->comm, bw_progress_create(bw_case_log(p->run), &about, &line));
   for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
     bw_coupler_watch(p->coupler, porous_sample_due(p));
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));

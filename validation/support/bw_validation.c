@@ -153,6 +153,11 @@ int bw_validation_main(int argc, char **argv, const char *name, bw_status (*run)
     fclose(v.file);
     printf("%s: %d of %d claims hold\n", name, v.rows - v.failed, v.rows);
   }
+  if (st != BW_OK && v.comm != NULL && bw_comm_size(v.comm) > 1) {
+    /* maybe on this rank alone, while others wait for it */
+    fprintf(stderr, "%s: %s\n", name, bw_last_message());
+    bw_comm_abort(v.comm, (int)st);
+  }
   const int code = bw_finish(&v.comm, st);
   return code != 0 ? code : v.failed > 0 || v.rows == 0;
 }

@@ -18,17 +18,24 @@
   X(BW_EDIVERGED, 6, "the solution is not finite or an iteration did not converge")                \
   X(BW_EUSAGE, 7, "the command line was not understood")
 
+#define BW_MUST_CHECK         __attribute__((warn_unused_result))
+#define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
+
+/* The attribute on the type covers static functions and pointers to functions as well; clang alone
+ * knows it (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
+#ifdef __clang__
+typedef enum BW_MUST_CHECK {
+#else
 typedef enum {
+#endif
 #define X(name, value, text) name = value,
   BW_STATUS_LIST(X)
 #undef X
 } bw_status;
 
-#define BW_MUST_CHECK         __attribute__((warn_unused_result))
-#define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
-
 /* Record where and why, return `code` unchanged. Use through BW_FAIL. Local. */
-bw_status bw_fail(bw_status code, const char *file, int line, const char *fmt, ...) BW_PRINTF(4, 5);
+bw_status bw_fail(bw_status code, const char *file, int line, const char *fmt, ...)
+    BW_PRINTF(4, 5) BW_MUST_CHECK;
 
 /* Text of a status code; static storage. Local. */
 const char *bw_status_text(bw_status code);

@@ -128,5 +128,10 @@ int bw_bench_main(int argc, char **argv, const char *name, bw_status (*run)(bw_b
     fputs("\n]\n", b.file);
     fclose(b.file);
   }
+  if (st != BW_OK && b.comm != NULL && bw_comm_size(b.comm) > 1) {
+    /* maybe on this rank alone, while others wait for it */
+    fprintf(stderr, "%s: %s\n", name, bw_last_message());
+    bw_comm_abort(b.comm, (int)st);
+  }
   return bw_finish(&b.comm, st);
 }

@@ -178,6 +178,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   uint8_t *kind = NULL;
   bw_status st = bw_pd_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, f->ds, s.origin, true, &n,
                                   &site, &kind);
+  st = bw_comm_agree(f->comm, st);
   BW_THEN(st, bw_pd_bond_create(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);
   bw_release(&kind);

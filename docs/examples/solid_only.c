@@ -28,9 +28,11 @@ static bw_status pull(const bw_comm *world)
   uint8_t *kind;
   double *V = NULL;
   bw_pd_bond *bar;
-  BW_TRY(bw_pd_shape_fill(4, shapes, config.ds, config.origin, true, &n, &site, &kind));
+  /* what one rank alone may miss, as memory, ranks agree on before they go on together */
+  BW_TRY(bw_comm_agree(
+      world, bw_pd_shape_fill(4, shapes, config.ds, config.origin, true, &n, &site, &kind)));
   BW_TRY(bw_pd_bond_create(world, &config, n, site, kind, &bar));
-  BW_TRY(BW_ALLOCATE(&V, 3 * bw_pd_bond_count(bar)));
+  BW_TRY(bw_comm_agree(world, BW_ALLOCATE(&V, 3 * bw_pd_bond_count(bar))));
   bw_pd_bond_get_reference(bar, V);
   for (size_t i = 0; i < bw_pd_bond_count(bar); i++) {
     V[3 * i] = V[3 * i] > 0.030 ? 1.0 : 0.0; /* only grips listen */

@@ -150,7 +150,9 @@ int bw_validation_main(int argc, char **argv, const char *name, bw_status (*run)
   BW_THEN(st, run(&v));
   if (v.file != NULL) {
     fputs("\n]\n", v.file);
-    fclose(v.file);
+    const bool whole = !ferror(v.file);
+    if (fclose(v.file) != 0 || !whole)
+      BW_THEN(st, BW_FAIL(BW_EIO, "%s/%s.json could not be written to the end", v.folder, name));
     printf("%s: %d of %d claims hold\n", name, v.rows - v.failed, v.rows);
   }
   if (st != BW_OK && v.comm != NULL && bw_comm_size(v.comm) > 1) {

@@ -199,6 +199,7 @@ static inline bw_status bending_make_solid(bending_flow *f)
   const bw_shape_lattice lattice = bw_shape_lattice_straight(f->ds, s.origin, true);
   bw_status st =
       bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, &lattice, 0, 1, &n, &site, &kind, NULL);
+  st = bw_comm_agree(f->comm, st);
   /* Sites and kinds are copied into the solid, which divides them over the ranks. */
   BW_THEN(st, bw_solid_create_same(f->comm, &s, n, site, kind, &f->solid));
   bw_release(&site);

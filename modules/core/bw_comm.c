@@ -20,7 +20,13 @@ struct bw_comm {
 static bw_status wrap(MPI_Comm parent, size_t limit, bw_comm **out)
 {
   bw_comm *c = NULL;
-  BW_TRY(BW_ALLOCATE(&c, 1));
+  const int mine = BW_ALLOCATE(&c, 1);
+  int worst = mine;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, parent);
+  if (worst != BW_OK) {
+    bw_release(&c);
+    return (bw_status)worst;
+  }
   MPI_Comm_dup(parent, &c->mpi);
   MPI_Comm_rank(c->mpi, &c->rank);
   MPI_Comm_size(c->mpi, &c->size);

@@ -1,6 +1,7 @@
 /* Fragments that lie over many ranks, against a search through all bonds on one: labels, sums, the order of
  * the list, and that no rank holds more pieces than particles.
- * TEST ranks=1,2,3,4 */
+ * TEST ranks=1,2,3,4
+ * BUILD modules=shape */
 #include "body.h"
 
 #include <math.h>

@@ -29,6 +29,7 @@ bool bw_shape__space(int count, const bw_shape shape[], int dims, bw_shape__exte
     bw_shape__extent all, finite;
     all.lower[d] = finite.lower[d] = INFINITY;
     all.upper[d] = finite.upper[d] = -INFINITY;
+    bool endless = false;
     for (int q = 0; q < count; q++) {
       const bool within = shape[q].outside && shape[q].remove;
       if (shape[q].remove && !within) continue;
@@ -41,9 +42,13 @@ bool bw_shape__space(int count, const bw_shape shape[], int dims, bw_shape__exte
       }
       if (shape[q].outside) e.lower[d] = -INFINITY, e.upper[d] = INFINITY;
       unite(&all, &e, d);
-      if (isfinite(e.lower[d])) unite(&finite, &e, d);
+      if (isfinite(e.lower[d]))
+        unite(&finite, &e, d);
+      else
+        endless = true;
     }
-    cut[d] = isinf(all.lower[d]) || isinf(all.upper[d]);
+    /* Only where no other shape ends it may an endless one end where it is cut to a shape. */
+    cut[d] = endless && isfinite(finite.lower[d]);
     space->lower[d] = cut[d] ? finite.lower[d] : all.lower[d];
     space->upper[d] = cut[d] ? finite.upper[d] : all.upper[d];
     ends = ends && isfinite(space->lower[d]) && isfinite(space->upper[d]);

@@ -163,6 +163,7 @@ bw_status bw_shape__check(int number, const bw_shape *s, int dims)
              "shape %d: kind %d is none of the %d shapes there are", number, (int)s->kind,
              (int)BW_SHAPE_COUNT);
   const bw_shape__row *row = &bw_shape__rows[s->kind];
+  /* Only what this kind reads is looked at; the rest may hold anything. */
   for (int d = 0; d < dims; d++) {
     if (row->needs_box)
       BW_REQUIRE(isfinite(s->lower[d]) && isfinite(s->upper[d]) && s->upper[d] > s->lower[d],
@@ -186,6 +187,7 @@ bw_status bw_shape__check(int number, const bw_shape *s, int dims)
   if (row->needs_axis)
     BW_REQUIRE(s->axis >= 0 && s->axis <= 2, BW_EINPUT,
                "shape %d (%s): axis = %d has to be 0, 1 or 2", number, row->name, s->axis);
+  /* Frames are for all kinds. */
   if (s->frame != NULL) {
     char what[64];
     snprintf(what, sizeof what, "shape %d (%s): frame", number, row->name);

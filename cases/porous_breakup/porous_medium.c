@@ -167,19 +167,17 @@ static bw_status choose(const porous_medium *m, medium_way *way)
   return BW_OK;
 }
 
-/* Is the outflow reached from the inflow, from cell to cell over their faces? Every rank holds the
- * whole list and gives an equal piece of it. Collective. */
+/* Is the outflow reached from the inflow, from cell to cell over their faces? Collective. */
 static bw_status check_way(const bw_comm *comm, const porous_config *q, const char *key, int64_t n,
-                           const int32_t *site)
+                           const int32_t site[])
 {
-  const int rank = bw_comm_rank(comm), size = bw_comm_size(comm);
-  const int64_t first = n * rank / size, end = n * (rank + 1) / size;
   const int *cells = q->domain.cells;
   const bw_shape_way_box channel = {
       .cells = {cells[0], cells[1], cells[2]}, .axis = 0, .periodic = {false, false, true}};
   bw_shape_way way;
-  /* The slab under the wall lies outside the channel and is left out. */
-  BW_TRY(bw_shape_find_way(comm, &channel, end - first, site + 3 * first, &way));
+  /* Particles sit on the fluid's cells: a site is a cell. The slab under the wall lies outside the
+   * channel and is left out. */
+  BW_TRY(bw_shape_find_way(comm, &channel, n, site, &way));
   BW_REQUIRE(way.through, BW_EINPUT,
              "%s: nothing flows through, as no way one cell (%g m) wide joins inflow and "
              "outflow; take larger pores",
@@ -187,19 +185,20 @@ static bw_status check_way(const bw_comm *comm, const porous_config *q, const ch
   return BW_OK;
 }
 
-static bw_status fill(const porous_config *q, medium_way way, medium_body *b, int64_t *n,
+/* This rank's part of the body. Collective. */
+static bw_status fill(const bw_comm *comm, const porous_config *q, medium_body *b, int64_t *n,
                       int32_t **site, uint8_t **kind)
 {
   static const double origin[3] = {0.0, 0.0, 0.0};
-  BW_TRY(way(q, b));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
   /* The slab comes last: it is under the box and takes nothing from it. */
   if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
-  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
-  BW_TRY(bw_shape_fill(b->count, b->shape, &lattice, 0, 1, n, site, kind, NULL));
+  BW_TRY(bw_shape_fill_shared(comm, b->count, b->shape, &lattice, n, site, kind, NULL));
   int64_t above = 0;
   /* The slab alone is no medium. */
   for (int64_t k = 0; k < *n; k++)
     above += (*site)[3 * k + 1] >= 0;
+  bw_comm_sum_int(comm, 1, &above);
   BW_REQUIRE(above > 0, BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores",
              b->key, spacing(q));
   return BW_OK;
@@ -211,10 +210,11 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
   medium_way way = NULL;
   medium_body body = {0};
   *site = NULL, *kind = NULL;
-  /* Every rank makes the same list. */
+  /* All ranks describe the same body, of which each fills a part. */
   bw_status st = choose(&q->medium, &way);
-  BW_THEN(st, fill(q, way, &body, n, site, kind));
+  BW_THEN(st, way(q, &body));
   st = bw_comm_agree(comm, st); /* a file may fail on one rank alone */
+  BW_THEN(st, fill(comm, q, &body, n, site, kind));
   BW_THEN(st, check_way(comm, q, body.key, *n, *site));
   bw_release(&body.shape);
   bw_shape_mask_destroy(&body.mask);

@@ -36,8 +36,8 @@ static bw_status box(const bw_comm *comm, const int size[3], double m, bool cont
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
-  bw_status st = bw_shape_fill(1, &block, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, pd));
+  bw_status st = bw_shape_fill_shared(comm, 1, &block, &lattice, &n, &site, &kind, NULL);
+  BW_THEN(st, bw_solid_create(comm, &c, &(bw_pd_sites){n, site, kind, NULL}, pd));
   bw_release(&site);
   bw_release(&kind);
   return st;

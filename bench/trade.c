@@ -202,20 +202,23 @@ static void wave_destroy(wave_body *w)
 static bw_status wave_create(const bw_comm *comm, bw_solid_config c, const int size[3],
                              wave_body *w)
 {
+  const int64_t rank = bw_comm_rank(comm), ranks = bw_comm_size(comm);
   const int64_t all = (int64_t)size[0] * size[1] * size[2];
+  const int64_t first = all * rank / ranks, n = all * (rank + 1) / ranks - first;
   int32_t *site = NULL;
   *w = (wave_body){0};
   c.ds = 1.0, c.rho = DENSITY, c.E = YOUNG;
   for (int d = 0; d < 3; d++)
     c.period[d] = size[d];
-  bw_status st = BW_ALLOCATE(&site, 3 * (size_t)all);
-  /* A block that is periodic in all directions has no surface. */
-  for (int64_t q = 0; st == BW_OK && q < all; q++) {
-    site[3 * q] = (int32_t)(q % size[0]);
-    site[3 * q + 1] = (int32_t)(q / size[0] % size[1]);
-    site[3 * q + 2] = (int32_t)(q / size[0] / size[1]);
+  bw_status st = bw_comm_agree(comm, BW_ALLOCATE(&site, 3 * (size_t)n));
+  /* A block that is periodic in all directions has no surface. Each rank gives its part of it. */
+  for (int64_t q = 0; st == BW_OK && q < n; q++) {
+    const int64_t id = first + q;
+    site[3 * q] = (int32_t)(id % size[0]);
+    site[3 * q + 1] = (int32_t)(id / size[0] % size[1]);
+    site[3 * q + 2] = (int32_t)(id / size[0] / size[1]);
   }
-  BW_THEN(st, bw_solid_create_same(comm, &c, all, site, NULL, &w->pd));
+  BW_THEN(st, bw_solid_create(comm, &c, &(bw_pd_sites){n, site, NULL, NULL}, &w->pd));
   bw_release(&site);
   BW_TRY(st);
   w->n = bw_solid_count(w->pd);

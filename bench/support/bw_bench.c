@@ -133,7 +133,14 @@ int bw_bench_main(int argc, char **argv, const char *name, bw_status (*run)(bw_b
   BW_THEN(st, run(&b));
   if (b.file != NULL) {
     fputs("\n]\n", b.file);
-    fclose(b.file);
+    const bool whole = !ferror(b.file);
+    if (fclose(b.file) != 0 || !whole)
+      BW_THEN(st, BW_FAIL(BW_EIO, "%s.json could not be written to the end", name));
+  }
+  if (st != BW_OK && b.comm != NULL && bw_comm_size(b.comm) > 1) {
+    /* maybe on this rank alone, while others wait for it */
+    fprintf(stderr, "%s: %s\n", name, bw_last_message());
+    bw_comm_abort(b.comm, (int)st);
   }
   return bw_finish(&b.comm, st);
 }

@@ -30,8 +30,8 @@ static inline bw_status bw_bench_porous(const bw_comm *comm, double G0, bw_solid
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, c.origin, false);
-  bw_status st = bw_shape_fill(3, body, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, solid));
+  bw_status st = bw_shape_fill_shared(comm, 3, body, &lattice, &n, &site, &kind, NULL);
+  BW_THEN(st, bw_solid_create(comm, &c, &(bw_pd_sites){n, site, kind, NULL}, solid));
   bw_release(&site);
   bw_release(&kind);
   return st;

@@ -197,10 +197,10 @@ static inline bw_status bending_make_solid(bending_flow *f)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(f->ds, s.origin, true);
-  bw_status st =
-      bw_shape_fill(p->clamped_layers > 0 ? 2 : 1, body, &lattice, 0, 1, &n, &site, &kind, NULL);
-  /* Sites and kinds are copied into the solid, which divides them over the ranks. */
-  BW_THEN(st, bw_solid_create_same(f->comm, &s, n, site, kind, &f->solid));
+  bw_status st = bw_shape_fill_shared(f->comm, p->clamped_layers > 0 ? 2 : 1, body, &lattice, &n,
+                                      &site, &kind, NULL);
+  /* Each rank gives its part; the solid brings every particle to the rank that owns it. */
+  BW_THEN(st, bw_solid_create(f->comm, &s, &(bw_pd_sites){n, site, kind, NULL}, &f->solid));
   bw_release(&site);
   bw_release(&kind);
   if (st != BW_OK) return st;

@@ -28,7 +28,8 @@ static bw_status advance(bending_run *p)
   bw_progress_config about = bw_progress_config_default();
   about.step_start = p->step, about.step_end = end;
   about.time_start = (double)p->step * time->step, about.time_end = time->end;
-  bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
+  bw_status st =
+      bw_comm_agree(p->flow.comm, bw_progress_create(bw_case_log(p->run), &about, &line));
   while (st == BW_OK && p->step < end && !bw_stop_requested(p->flow.comm)) {
     /* The plate is held while the flow starts, then let go. */
     bw_coupler_hold_solid(p->flow.coupler, p->step < release);

@@ -32,7 +32,7 @@ static bw_status run_to_end(box_run *b)
   bw_progress_config about = bw_progress_config_default();
   about.time_unit = "T", about.step_start = b->steps;
   about.time_start = bw_ns_channel_time(b->fluid), about.time_end = b->config->time.end;
-  bw_status st = bw_progress_create(bw_case_log(b->run), &about, &line);
+  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(b->run), &about, &line));
   for (bool stop = false; st == BW_OK && !stop && b->intervals < end;) {
     /* Samples, pictures and checkpoints happen between
      * intervals only, so a restart repeats every step. */

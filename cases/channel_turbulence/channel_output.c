@@ -1,4 +1,5 @@
 /* What turbulent channel flow writes: log, history.csv, profiles in wall units. */
+#include "bw_folder.h"
 #include "channel_case.h"
 
 #include <stdio.h>
@@ -203,7 +204,7 @@ bw_status channel_profiles(channel_flow *f, const bw_case *run)
   /* All ranks hold the sums; one writes. */
   for (int q = 0; q < 3 && st == BW_OK && bw_comm_rank(comm) == 0; q++) {
     char *path = NULL;
-    st = bw_case_path(run, names[q], &path);
+    st = bw_path_join(bw_case_args_of(run)->out, names[q], &path);
     FILE *out = st == BW_OK ? fopen(path, "w") : NULL;
     if (st == BW_OK && out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
     if (out != NULL) {

@@ -1,4 +1,5 @@
 /* Two-point correlations and spectra as tables, in csv and HDF5. */
+#include "bw_folder.h"
 #include "channel_case.h"
 
 #include <stdio.h>
@@ -73,12 +74,13 @@ static void write_table(FILE *out, const channel_flow *f, int table, double u_ta
   fputc('\n', out);
 }
 
+/* Rank 0. */
 static bw_status write_file(const channel_flow *f, const bw_case *run, int table, double u_tau,
                             double *column)
 {
   char *path = NULL, name[32];
   snprintf(name, sizeof name, "%s.csv", tables[table].name);
-  BW_TRY(bw_case_path(run, name, &path));
+  BW_TRY(bw_path_join(bw_case_args_of(run)->out, name, &path));
   bw_status st = BW_OK;
   FILE *out = fopen(path, "w");
   if (out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);

@@ -44,7 +44,7 @@ static bw_status run_to_end(channel_flow *f, const channel_case *c, const bw_cas
   bw_progress_config about = bw_progress_config_default();
   about.time_unit = "h/U_b", about.step_start = f->steps;
   about.time_start = (double)f->intervals * interval, about.time_end = (double)end * interval;
-  bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(run), &about, &line));
   for (bool stop = false; st == BW_OK && !stop && f->intervals < end;) {
     /* One interval; everything else happens between two. */
     st = channel_advance(f);

@@ -35,7 +35,7 @@ static inline void body_flow_destroy(body_flow *f)
 static inline bw_status body_flow_ready(body_flow *f, double dt)
 {
   f->dt = dt;
-  return bw_field_create(f->grid, &f->pressure);
+  return bw_comm_agree(bw_grid_comm(f->grid), bw_field_create(f->grid, &f->pressure));
 }
 
 /* A box of cubic cells. */

@@ -13,7 +13,7 @@ static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_end = c->until.latest, about.time_unit = "d/U_b";
-  bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(run), &about, &line));
   double t = 0.0, last = HUGE_VAL;
   for (bool steady = false; st == BW_OK && !steady && t < c->until.latest;) {
     /* A sample per interval; steady is when two of them agree. */

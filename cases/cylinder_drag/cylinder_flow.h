@@ -138,7 +138,7 @@ static inline bw_status cylinder_make_body(const bw_comm *comm, cylinder_flow *f
 static inline bw_status cylinder_make_probes(const bw_comm *comm, cylinder_flow *f)
 {
   BW_TRY(cylinder_surface(comm, f, 0.5, &f->wall)); /* nominal surface, d = 1 */
-  BW_TRY(BW_ALLOCATE(&f->traction, 3 * f->wall.n));
+  BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&f->traction, 3 * f->wall.n)));
   f->area = acos(-1.0) / (double)body_circle_size(0.5, f->h) * f->h;
   /* Both profiles read the same flow. */
   for (int p = 0; p < 2; p++) {

@@ -87,32 +87,39 @@ static bw_solid_config material(const specimen *p)
   return c;
 }
 
-/* Sites of the plate, x fastest; written when site is not NULL. Returns how many. */
-static int64_t scan(const specimen *p, const bw_solid_config *c, int32_t *site, uint8_t *loads,
-                    uint8_t *kind)
+/* Where the middle of a site lies in the plane. */
+static void place_of(const bw_solid_config *c, int i, int j, double x[2])
+{
+  const double at[2] = {(i + 0.5) * c->ds, (j + 0.5) * c->ds};
+  for (int d = 0; d < 2; d++)
+    x[d] = c->origin[d] + at[0] * c->axes[0][d] + at[1] * c->axes[1][d];
+}
+
+/* This rank's part of the plate's sites: an equal part of the rows along x, all of which are
+ * numbered with y before z. Written when site is not NULL. Returns how many. Local. */
+static int64_t scan(const specimen *p, const bw_solid_config *c, int32_t *site, uint8_t *kind)
 {
   const specimen_shape *s = &p->config.shape;
   const int columns = (int)lround(s->length / p->ds), rows = (int)lround(s->height / p->ds);
   /* A turned lattice needs sites far beyond its own rows and columns to cover the corners. */
   const int over = s->lattice_angle == 0.0 ? 0 : columns + rows;
   const int layers = c->geometry == BW_PD_3D ? (int)lround(s->thickness / p->ds) : 1;
+  const int64_t rank = bw_comm_rank(p->comm), ranks = bw_comm_size(p->comm);
+  const int64_t in_layer = rows + 2 * (int64_t)over, all = layers * in_layer;
   int64_t n = 0;
-  for (int k = 0; k < layers; k++)
-    for (int j = -over; j < rows + over; j++)
-      for (int i = -over; i < columns + over; i++) {
-        const double at[2] = {(i + 0.5) * p->ds, (j + 0.5) * p->ds};
-        double x[3] = {0.0, 0.0, 0.0};
-        for (int d = 0; d < 2; d++)
-          x[d] = c->origin[d] + at[0] * c->axes[0][d] + at[1] * c->axes[1][d];
-        /* Outside the plate, or in a hole. */
-        if (!inside(p, x)) continue;
-        if (site != NULL) {
-          site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
-          loads[n] = loads_at(p, x);
-          kind[n] = kind_of(p, loads[n]);
-        }
-        n++;
+  for (int64_t row = all * rank / ranks; row < all * (rank + 1) / ranks; row++)
+    for (int i = -over; i < columns + over; i++) {
+      const int j = (int)(row % in_layer) - over, k = (int)(row / in_layer);
+      double x[3] = {0.0, 0.0, 0.0};
+      place_of(c, i, j, x);
+      /* Outside the plate, or in a hole. */
+      if (!inside(p, x)) continue;
+      if (site != NULL) {
+        site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
+        kind[n] = kind_of(p, loads_at(p, x));
       }
+      n++;
+    }
   return n;
 }
 
@@ -131,37 +138,50 @@ static bw_status cut_notches(specimen *p)
   return BW_OK;
 }
 
-/* The rows of this rank's particles from those of all. Collective. */
-static bw_status own_loads(specimen *p, const uint8_t all[])
+/* Which loads act on this rank's particles. Those of a cloud are off their sites, by less than half a
+ * spacing, so that the site is the nearest one; it, not the particle, decides. Collective. */
+static bw_status own_loads(specimen *p, const bw_solid_config *c)
 {
+  double *X = NULL;
   p->n = bw_solid_count(p->solid);
-  BW_TRY(bw_comm_agree(p->comm, BW_ALLOCATE(&p->loads, p->n)));
-  for (size_t h = 0; h < p->n; h++)
-    p->loads[h] = all[bw_solid_id(p->solid)[h]];
-  return BW_OK;
+  bw_status st = BW_ALLOCATE(&p->loads, p->n);
+  BW_THEN(st, BW_ALLOCATE(&X, 3 * p->n));
+  st = bw_comm_agree(p->comm, st);
+  if (st == BW_OK) bw_solid_get_reference(p->solid, X);
+  for (size_t h = 0; st == BW_OK && h < p->n; h++) {
+    const double r[2] = {X[3 * h] - c->origin[0], X[3 * h + 1] - c->origin[1]};
+    int site[2];
+    for (int a = 0; a < 2; a++)
+      site[a] = (int)floor((r[0] * c->axes[a][0] + r[1] * c->axes[a][1]) / c->ds);
+    double x[3] = {0.0, 0.0, 0.0};
+    place_of(c, site[0], site[1], x);
+    p->loads[h] = loads_at(p, x);
+  }
+  bw_release(&X);
+  return st;
 }
 
 static bw_status make_solid(specimen *p)
 {
   const bw_solid_config c = material(p);
-  /* Counted first, then listed. */
-  const int64_t n = scan(p, &c, NULL, NULL, NULL);
-  BW_REQUIRE(n > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
+  /* Counted first, then listed: each rank lists its part alone. */
+  const int64_t n = scan(p, &c, NULL, NULL);
+  int64_t all = n;
+  bw_comm_sum_int(p->comm, 1, &all);
+  BW_REQUIRE(all > 0, BW_EINPUT, "the plate holds no particle: shape.thickness = %g, spacing %g",
              p->config.shape.thickness, p->ds);
   int32_t *site = NULL;
-  uint8_t *loads = NULL, *kind = NULL;
+  uint8_t *kind = NULL;
   bw_status st = BW_ALLOCATE(&site, 3 * (size_t)n);
-  BW_THEN(st, BW_ALLOCATE(&loads, (size_t)n));
   BW_THEN(st, BW_ALLOCATE(&kind, (size_t)n));
   st = bw_comm_agree(p->comm, st);
-  if (st == BW_OK) (void)scan(p, &c, site, loads, kind);
-  /* Every rank has the whole list; the solid divides it. */
-  BW_THEN(st, bw_solid_create_same(p->comm, &c, n, site, kind, &p->solid));
-  BW_THEN(st, own_loads(p, loads));
-  BW_THEN(st, cut_notches(p));
+  if (st == BW_OK) (void)scan(p, &c, site, kind);
+  /* The solid brings every particle to the rank that owns it. */
+  BW_THEN(st, bw_solid_create(p->comm, &c, &(bw_pd_sites){n, site, kind, NULL}, &p->solid));
   bw_release(&site);
-  bw_release(&loads);
   bw_release(&kind);
+  BW_THEN(st, own_loads(p, &c));
+  BW_THEN(st, cut_notches(p));
   return st;
 }
 

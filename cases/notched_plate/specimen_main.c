@@ -11,7 +11,7 @@ static bw_status advance(specimen *p, const bw_case *run, bw_history *history)
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_start = 0.0, about.time_end = p->config.time.end, about.step_end = steps;
-  bw_status st = bw_progress_create(bw_case_log(run), &about, &line);
+  bw_status st = bw_comm_agree(p->comm, bw_progress_create(bw_case_log(run), &about, &line));
   /* The state at t = 0. */
   BW_THEN(st, specimen_sample(p, history));
   while (st == BW_OK && !specimen_done(p) && !bw_stop_requested(p->comm)) {
@@ -42,7 +42,8 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
     /* The crack as it is at the end, and what was found of it. */
     BW_THEN(st, specimen_crack_file(&p, run));
     BW_THEN(st, specimen_summary(&p, bw_case_log(run)));
-    BW_THEN(st, bw_history_close(comm, &history));
+    const bw_status closed = bw_history_close(comm, &history);
+    BW_THEN(st, closed);
   }
   specimen_destroy(&p);
   return st;

@@ -19,7 +19,7 @@ static bw_status run_phase(porous_run *p)
   about.time_end = about.time_start + (double)(f->steps - p->step) * f->time_step;
   /* What the solid may do in this phase. */
   porous_enter_phase(p);
-  bw_status st = bw_progress_create(bw_case_log(p->run), &about, &line);
+  bw_status st = bw_comm_agree(p->comm, bw_progress_create(bw_case_log(p->run), &about, &line));
   for (bool done = p->step >= f->steps; st == BW_OK && !done && !p->stopped;) {
     /* Probes are read only in steps that are measured. */
     bw_coupler_watch(p->coupler, porous_sample_due(p));

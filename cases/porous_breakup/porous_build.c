@@ -61,7 +61,8 @@ static bw_status build_solid(porous_run *p)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   bw_status st = porous_medium_sites(p->comm, q, &n, &site, &kind);
-  BW_THEN(st, bw_solid_create_same(p->comm, &solid, n, site, kind, &p->solid));
+  /* Each rank gives its part; the solid brings every particle to the rank that owns it. */
+  BW_THEN(st, bw_solid_create(p->comm, &solid, &(bw_pd_sites){n, site, kind, NULL}, &p->solid));
   bw_release(&site);
   bw_release(&kind);
   return st;

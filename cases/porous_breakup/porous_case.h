@@ -82,9 +82,9 @@ const porous_phase *porous_phase_of(const porous_config *q, int phase);
 extern const char *const porous_phase_name[PHASE_COUNT];
 
 /* ---- the medium (porous_medium.c) ---- */
-/* Its particles on sites of the grid's cells, with the slab that holds it: site (n,3), kind (n),
- * the caller's (bw_release). Refused when nothing is left of it or nothing flows through.
- * Collective. */
+/* This rank's part of its particles on sites of the grid's cells, with the slab that holds it:
+ * site (n,3), kind (n), the caller's (bw_release). Refused when nothing is left of it or nothing
+ * flows through. Collective. */
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 

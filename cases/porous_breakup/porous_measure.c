@@ -129,26 +129,27 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
  */
 static bw_status measure_fragments(porous_run *p, double row[])
 {
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0, held = 0;
-  BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece));
-  /* The piece that is held is no fragment. */
-  for (size_t q = 0; p->config->medium.clamped_layers > 0 && q < n; q++)
-    if (piece[q].label == 0) held = q;
-  double detached = 0.0, largest = 0.0, fastest = 0.0;
-  /* How much has come off, the largest and the fastest piece. */
-  for (size_t q = 0; q < n; q++) {
-    const double *v = piece[q].velocity;
-    if (q == held) continue;
-    detached += (double)piece[q].particles;
-    largest = fmax(largest, (double)piece[q].particles);
-    fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  bw_pd_fragments all;
+  BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &all));
+  /* The piece that is held is no fragment: the one with particle 0 in it, or else the largest. */
+  const bool clamped = p->config->medium.clamped_layers > 0;
+  const int64_t held = clamped || all.total == 0 ? 0 : all.largest[0].label;
+  double detached = 0.0, most[2] = {0.0, 0.0}; /* most particles, highest speed */
+  /* How much has come off, the largest and the fastest piece: of this rank's, then of all. */
+  for (size_t q = 0; q < all.n; q++) {
+    const double *v = all.own[q].velocity;
+    if (all.own[q].label == held) continue;
+    detached += (double)all.own[q].particles;
+    most[0] = fmax(most[0], (double)all.own[q].particles);
+    most[1] = fmax(most[1], sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   }
-  row[COL_FRAGMENTS] = n > 0 ? (double)(n - 1) : 0.0;
+  bw_comm_sum(p->comm, 1, &detached);
+  bw_comm_max(p->comm, 2, most);
+  row[COL_FRAGMENTS] = all.total > 0 ? (double)(all.total - 1) : 0.0;
   row[COL_DETACHED] = detached / (double)bw_solid_total(p->solid);
-  row[COL_LARGEST] = largest;
-  row[COL_FRAGMENT_SPEED] = fastest / p->config->fluid.bulk_velocity;
-  bw_release(&piece);
+  row[COL_LARGEST] = most[0];
+  row[COL_FRAGMENT_SPEED] = most[1] / p->config->fluid.bulk_velocity;
+  bw_pd_fragment_release(&all);
   return BW_OK;
 }
 

@@ -2,6 +2,7 @@
  * a slab under the lower wall that holds it. */
 #include "bw_memory.h"
 #include "bw_shape_pack.h"
+#include "bw_shape_way.h"
 #include "porous_case.h"
 
 #include <math.h>
@@ -166,86 +167,41 @@ static bw_status choose(const porous_medium *m, medium_way *way)
   return BW_OK;
 }
 
-/* The channel's cells: 0 empty, 1 not to be entered (solid, or been there). */
-typedef struct {
-  int n[3];
-  uint8_t *closed;
-  size_t *queue;
-} labyrinth;
-
-static void enter(labyrinth *l, const int at[3], size_t *queued)
+/* Is the outflow reached from the inflow, from cell to cell over their faces? Collective. */
+static bw_status check_way(const bw_comm *comm, const porous_config *q, const char *key, int64_t n,
+                           const int32_t site[])
 {
-  const int z = (at[2] + l->n[2]) % l->n[2]; /* the span is periodic */
-  if (at[0] < 0 || at[0] >= l->n[0] || at[1] < 0 || at[1] >= l->n[1]) return;
-  const size_t cell =
-      ((size_t)z * (size_t)l->n[1] + (size_t)at[1]) * (size_t)l->n[0] + (size_t)at[0];
-  if (l->closed[cell]) return;
-  l->closed[cell] = 1;
-  l->queue[(*queued)++] = cell;
+  const int *cells = q->domain.cells;
+  const bw_shape_way_box channel = {
+      .cells = {cells[0], cells[1], cells[2]}, .axis = 0, .periodic = {false, false, true}};
+  bw_shape_way way;
+  /* Particles sit on the fluid's cells: a site is a cell. The slab under the wall lies outside the
+   * channel and is left out. */
+  BW_TRY(bw_shape_find_way(comm, &channel, n, site, &way));
+  BW_REQUIRE(way.through, BW_EINPUT,
+             "%s: nothing flows through, as no way one cell (%g m) wide joins inflow and "
+             "outflow; take larger pores",
+             key, spacing(q));
+  return BW_OK;
 }
 
-/* Is the outflow reached from the inflow, from cell to cell over their faces? */
-static bool way_through(labyrinth *l)
-{
-  size_t queued = 0;
-  bool through = false;
-  /* Every open cell of the inflow is entered ... */
-  for (int k = 0; k < l->n[2]; k++)
-    for (int j = 0; j < l->n[1]; j++)
-      enter(l, (int[3]){0, j, k}, &queued);
-  /* ... and the front moves on over faces until it reaches the outflow. */
-  for (size_t next = 0; next < queued && !through; next++) {
-    const size_t cell = l->queue[next], row = cell / (size_t)l->n[0];
-    const int at[3] = {(int)(cell % (size_t)l->n[0]), (int)(row % (size_t)l->n[1]),
-                       (int)(row / (size_t)l->n[1])};
-    through = at[0] == l->n[0] - 1;
-    for (int side = 0; side < 6; side++) {
-      int to[3] = {at[0], at[1], at[2]};
-      to[side / 2] += side % 2 == 0 ? 1 : -1;
-      enter(l, to, &queued);
-    }
-  }
-  return through;
-}
-
-static bw_status check_way(const porous_config *q, const char *key, int64_t n, const int32_t *site)
-{
-  labyrinth l = {.n = {q->domain.cells[0], q->domain.cells[1], q->domain.cells[2]}};
-  const size_t cells = (size_t)l.n[0] * (size_t)l.n[1] * (size_t)l.n[2];
-  bw_status st = BW_ALLOCATE(&l.closed, cells);
-  BW_THEN(st, BW_ALLOCATE(&l.queue, cells));
-  /* Particles sit on the fluid's cells: a site is a cell. */
-  for (int64_t k = 0; st == BW_OK && k < n; k++) {
-    const int32_t *at = site + 3 * k;
-    if (at[1] < 0) continue; /* the slab */
-    l.closed[((size_t)at[2] * (size_t)l.n[1] + (size_t)at[1]) * (size_t)l.n[0] + (size_t)at[0]] = 1;
-  }
-  if (st == BW_OK && !way_through(&l))
-    st = BW_FAIL(BW_EINPUT,
-                 "%s: nothing flows through, as no way one cell (%g m) wide joins inflow and "
-                 "outflow; take larger pores",
-                 key, spacing(q));
-  bw_release(&l.closed);
-  bw_release(&l.queue);
-  return st;
-}
-
-static bw_status fill(const porous_config *q, medium_way way, medium_body *b, int64_t *n,
+/* This rank's part of the body. Collective. */
+static bw_status fill(const bw_comm *comm, const porous_config *q, medium_body *b, int64_t *n,
                       int32_t **site, uint8_t **kind)
 {
   static const double origin[3] = {0.0, 0.0, 0.0};
-  BW_TRY(way(q, b));
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
   /* The slab comes last: it is under the box and takes nothing from it. */
   if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
-  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
-  BW_TRY(bw_shape_fill(b->count, b->shape, &lattice, 0, 1, n, site, kind, NULL));
+  BW_TRY(bw_shape_fill_shared(comm, b->count, b->shape, &lattice, n, site, kind, NULL));
   int64_t above = 0;
   /* The slab alone is no medium. */
   for (int64_t k = 0; k < *n; k++)
     above += (*site)[3 * k + 1] >= 0;
+  bw_comm_sum_int(comm, 1, &above);
   BW_REQUIRE(above > 0, BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores",
              b->key, spacing(q));
-  return check_way(q, b->key, *n, *site);
+  return BW_OK;
 }
 
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
@@ -254,10 +210,13 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
   medium_way way = NULL;
   medium_body body = {0};
   *site = NULL, *kind = NULL;
-  /* Every rank makes the same list. */
+  /* All ranks describe the same body, of which each fills a part. */
   bw_status st = choose(&q->medium, &way);
-  BW_THEN(st, fill(q, way, &body, n, site, kind));
+  BW_THEN(st, way(q, &body));
+  st = bw_comm_agree(comm, st); /* a file may fail on one rank alone */
+  BW_THEN(st, fill(comm, q, &body, n, site, kind));
+  BW_THEN(st, check_way(comm, q, body.key, *n, *site));
   bw_release(&body.shape);
   bw_shape_mask_destroy(&body.mask);
-  return bw_comm_agree(comm, st); /* a file may fail on one rank alone */
+  return st;
 }

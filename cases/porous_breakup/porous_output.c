@@ -44,8 +44,6 @@ static bw_status write_solid(porous_run *p, const char *path)
   double *X = NULL, *V = NULL, *U = NULL, *damage = NULL;
   int64_t *piece = NULL;
   porous_tensors t = {0};
-  bw_pd_fragment *fragments = NULL;
-  size_t n_fragments = 0;
   bw_status st = BW_ALLOCATE(&X, 3 * n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&U, 3 * n));
@@ -53,8 +51,7 @@ static bw_status write_solid(porous_run *p, const char *path)
   BW_THEN(st, BW_ALLOCATE(&piece, n));
   /* What follows is collective. */
   st = bw_comm_agree(p->comm, st);
-  BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), piece, &n_fragments,
-                                        &fragments));
+  BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), piece, NULL));
   BW_THEN(st, porous_tensors_make(p, &t));
   /* Present places; U holds the reference shape until it is taken off. */
   if (st == BW_OK) {
@@ -79,7 +76,6 @@ static bw_status write_solid(porous_run *p, const char *path)
   bw_release(&U);
   bw_release(&damage);
   bw_release(&piece);
-  bw_release(&fragments);
   porous_tensors_release(&t);
   return st;
 }
@@ -185,29 +181,35 @@ bw_status porous_after_step(porous_run *p)
   return BW_OK;
 }
 
+static void write_pieces(void *context, size_t n, const bw_pd_fragment piece[])
+{
+  FILE *f = context;
+  for (size_t q = 0; f != NULL && q < n; q++) {
+    const double *c = piece[q].centre, *v = piece[q].velocity;
+    fprintf(f, "%lld,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", (long long)piece[q].particles,
+            piece[q].mass, c[0], c[1], c[2], v[0], v[1], v[2]);
+  }
+}
+
 /* fragments.csv: the pieces at the end, largest first. */
 bw_status porous_fragments_csv(porous_run *p)
 {
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0;
+  bw_pd_fragments pieces;
   char *path = NULL;
-  bw_status st = bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &n, &piece);
+  FILE *f = NULL;
+  bw_status st = bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &pieces);
   BW_THEN(st, bw_case_path(p->run, "fragments.csv", &path));
-  /* All ranks have the list; one writes. */
+  /* No rank holds all pieces: rank 0 is handed some at a time and writes them. */
   if (st == BW_OK && bw_comm_rank(p->comm) == 0) {
-    FILE *f = fopen(path, "w");
+    f = fopen(path, "w");
     if (f == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
-    if (f != NULL) {
-      fputs("particles[-],mass[kg],x[m],y[m],z[m],u[m/s],v[m/s],w[m/s]\n", f);
-      for (size_t q = 0; q < n; q++) {
-        const double *c = piece[q].centre, *v = piece[q].velocity;
-        fprintf(f, "%lld,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", (long long)piece[q].particles,
-                piece[q].mass, c[0], c[1], c[2], v[0], v[1], v[2]);
-      }
-      if (fclose(f) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
-    }
+    if (f != NULL) fputs("particles[-],mass[kg],x[m],y[m],z[m],u[m/s],v[m/s],w[m/s]\n", f);
   }
-  bw_release(&piece);
+  st = bw_comm_agree(p->comm, st);
+  BW_THEN(st, bw_pd_fragment_visit(p->comm, &pieces, write_pieces, f));
+  if (f != NULL && fclose(f) != 0 && st == BW_OK)
+    st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
+  bw_pd_fragment_release(&pieces);
   bw_release(&path);
   return bw_comm_agree(p->comm, st);
 }

@@ -29,9 +29,10 @@ static bw_status pull(const bw_comm *world)
   double *V = NULL;
   bw_solid *bar;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(config.ds, config.origin, true);
-  BW_TRY(bw_shape_fill(4, shapes, &lattice, 0, 1, &n, &site, &kind, NULL));
+  /* What one rank alone may miss, as memory, ranks agree on before they go on together. */
+  BW_TRY(bw_comm_agree(world, bw_shape_fill(4, shapes, &lattice, 0, 1, &n, &site, &kind, NULL)));
   BW_TRY(bw_solid_create_same(world, &config, n, site, kind, &bar));
-  BW_TRY(BW_ALLOCATE(&V, 3 * bw_solid_count(bar)));
+  BW_TRY(bw_comm_agree(world, BW_ALLOCATE(&V, 3 * bw_solid_count(bar))));
   bw_solid_get_reference(bar, V);
   for (size_t i = 0; i < bw_solid_count(bar); i++) {
     V[3 * i] = V[3 * i] > 0.030 ? 1.0 : 0.0; /* only grips listen */

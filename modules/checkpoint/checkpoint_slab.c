@@ -80,16 +80,33 @@ static uint64_t checksum(const bw_checkpoint *ck, const bw_checkpoint__slab *sla
   return hash;
 }
 
-/* Move the share between memory and the open data set, all ranks in one operation. */
-static bool transfer(hid_t set, const bw_checkpoint__slab *slab, const void *from, void *to)
+/* Layers of the slowest direction that this share moves in one operation: what MPI's counts of bytes
+ * can say for any share, and at least one layer. */
+static hsize_t layers_at_once(const bw_checkpoint *ck, const bw_checkpoint__slab *slab)
 {
-  const hsize_t n = bw_checkpoint__elements(slab);
-  const hid_t memory = H5Screate_simple(1, &n, NULL), file = H5Dget_space(set);
+  hsize_t layer = slab->bytes;
+  for (int d = 1; d < slab->dimensions; d++)
+    layer *= slab->size[d]; /* that of the whole: all ranks find the same */
+  const hsize_t most = layer > 0 ? bw_comm_message_limit(ck->comm) / layer : 1;
+  return most > 0 ? most : 1;
+}
+
+/* Move layers first .. first + n of the share between memory and the open data set, all ranks in one
+ * operation. */
+static bool transfer_layers(hid_t set, const bw_checkpoint__slab *slab, hsize_t first, hsize_t n,
+                            const unsigned char *from, unsigned char *to)
+{
+  bw_checkpoint__slab part = *slab;
+  part.start[0] += first;
+  part.count[0] = n;
+  const hsize_t moved = bw_checkpoint__elements(&part);
+  const hid_t memory = H5Screate_simple(1, &moved, NULL), file = H5Dget_space(set);
   const hid_t together = H5Pcreate(H5P_DATASET_XFER);
   bool ok = memory >= 0 && file >= 0 && together >= 0 &&
             H5Pset_dxpl_mpio(together, H5FD_MPIO_COLLECTIVE) >= 0;
-  if (ok && n > 0)
-    ok = H5Sselect_hyperslab(file, H5S_SELECT_SET, slab->start, NULL, slab->count, NULL) >= 0;
+  /* An empty share takes part with an empty selection. */
+  if (ok && moved > 0)
+    ok = H5Sselect_hyperslab(file, H5S_SELECT_SET, part.start, NULL, part.count, NULL) >= 0;
   else if (ok)
     ok = H5Sselect_none(memory) >= 0 && H5Sselect_none(file) >= 0;
   /* No early way out: the others wait in the transfer. */
@@ -100,6 +117,30 @@ static bool transfer(hid_t set, const bw_checkpoint__slab *slab, const void *fro
   if (together >= 0) H5Pclose(together);
   if (file >= 0) H5Sclose(file);
   if (memory >= 0) H5Sclose(memory);
+  return ok;
+}
+
+/* Move the share between memory and the open data set. Every rank makes as many operations as the one
+ * with the most layers needs: nearly always one. */
+static bool transfer(const bw_checkpoint *ck, hid_t set, const bw_checkpoint__slab *slab,
+                     const unsigned char *from, unsigned char *to)
+{
+  const hsize_t most = layers_at_once(ck, slab), mine = slab->count[0];
+  const size_t layer = mine > 0 ? bw_checkpoint__elements(slab) / (size_t)mine * slab->bytes : 0;
+  int64_t rounds = 1;
+  if (slab->size[0] > most) { /* known to all, as sizes are */
+    rounds = (int64_t)((mine + most - 1) / most);
+    bw_comm_max_int(ck->comm, 1, &rounds);
+  }
+  bool ok = true;
+  for (int64_t q = 0; q < rounds; q++) {
+    const hsize_t begin = (hsize_t)q * most, first = begin < mine ? begin : mine;
+    const hsize_t n = mine - first < most ? mine - first : most;
+    const size_t at = (size_t)first * layer;
+    ok = transfer_layers(set, slab, first, n, from != NULL ? from + at : NULL,
+                         to != NULL ? to + at : NULL) &&
+         ok;
+  }
   return ok;
 }
 
@@ -129,7 +170,7 @@ static bw_status put(bw_checkpoint *ck, const char *name, const bw_checkpoint__s
 {
   /* Collective, hence before the first refusal; all ranks then find the same below. */
   const uint64_t sum = checksum(ck, slab, data);
-  const char nothing = 0;
+  const unsigned char nothing = 0;
   BW_REQUIRE(ck->part != NULL, BW_EINPUT, "checkpoint %s is open for reading: cannot put '%s'",
              ck->path, name);
   BW_REQUIRE(!bw_checkpoint_has(ck, name), BW_EINPUT,
@@ -145,7 +186,7 @@ static bw_status put(bw_checkpoint *ck, const char *name, const bw_checkpoint__s
      * collective. */
     bool ok = bw_checkpoint__put_attribute(set, kind_attribute, slab->kind) &&
               bw_checkpoint__put_attribute(set, checksum_name, sum);
-    if (!is_empty(slab)) ok = transfer(set, slab, data != NULL ? data : &nothing, NULL) && ok;
+    if (!is_empty(slab)) ok = transfer(ck, set, slab, data != NULL ? data : &nothing, NULL) && ok;
     if (!ok)
       st = BW_FAIL(BW_EIO, "checkpoint %s: cannot write the data set '%s' (is the disk full?)",
                    ck->part, name);
@@ -262,8 +303,8 @@ static bw_status check_all(const bw_checkpoint *ck, const char *name, hid_t set,
 static bw_status read_share(bw_checkpoint *ck, const char *name, hid_t set,
                             const bw_checkpoint__slab *slab, void *data)
 {
-  char nothing = 0;
-  const bool ok = is_empty(slab) || transfer(set, slab, NULL, data != NULL ? data : &nothing);
+  unsigned char nothing = 0;
+  const bool ok = is_empty(slab) || transfer(ck, set, slab, NULL, data != NULL ? data : &nothing);
   BW_REQUIRE(ok, BW_EIO, "checkpoint %s: data set '%s' cannot be read; use an earlier one",
              ck->path, name);
   return BW_OK;

@@ -109,7 +109,9 @@ bw_log *bw_case_log(const bw_case *run)
 
 bw_status bw_case_path(const bw_case *run, const char *name, char **path)
 {
-  return bw_path_join(run->out, name, path);
+  const bw_status st = bw_comm_agree(run->args.comm, bw_path_join(run->out, name, path));
+  if (st != BW_OK) bw_release(path);
+  return st;
 }
 
 bw_status bw_case_end(const bw_comm *comm, bw_case **run, bw_status mine)

@@ -62,7 +62,8 @@ const bw_case_args *bw_case_args_of(const bw_case *run);
 /* The log of the case; borrowed, valid until bw_case_end. Local. */
 bw_log *bw_case_log(const bw_case *run);
 
-/* *path = a file in the output folder, allocated, owned by the caller (bw_release). Local. */
+/* *path = a file in the output folder, allocated, owned by the caller (bw_release).
+ * Collective. */
 bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
 
 /* Ranks agree on `mine`; end time and status are added to run.yaml; *run is freed (NULL inside is

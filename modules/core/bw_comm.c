@@ -1,5 +1,6 @@
 #include "bw_comm_mpi.h"
 #include "bw_memory.h"
+#include "bw_message.h"
 #include "core_internal.h"
 
 #include <limits.h>
@@ -7,18 +8,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { TAG_GATHER = 73 };
+static const size_t LIMIT = (size_t)1 << 30; /* bytes of a message: below INT_MAX, MPI's count */
+
 struct bw_comm {
   MPI_Comm mpi;
   int rank, size;
+  size_t limit;
 };
 
-static bw_status wrap(MPI_Comm parent, bw_comm **out)
+static bw_status wrap(MPI_Comm parent, size_t limit, bw_comm **out)
 {
   bw_comm *c = NULL;
-  BW_TRY(BW_ALLOCATE(&c, 1));
+  const int mine = BW_ALLOCATE(&c, 1);
+  int worst = mine;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, parent);
+  if (worst != BW_OK) {
+    bw_release(&c);
+    return (bw_status)worst;
+  }
   MPI_Comm_dup(parent, &c->mpi);
   MPI_Comm_rank(c->mpi, &c->rank);
   MPI_Comm_size(c->mpi, &c->size);
+  c->limit = limit;
   *out = c;
   return BW_OK;
 }
@@ -26,7 +38,7 @@ static bw_status wrap(MPI_Comm parent, bw_comm **out)
 bw_status bw_init(int *argc, char ***argv, bw_comm **world)
 {
   MPI_Init(argc, argv);
-  return wrap(MPI_COMM_WORLD, world);
+  return wrap(MPI_COMM_WORLD, LIMIT, world);
 }
 
 int bw_finish(bw_comm **world, bw_status mine)
@@ -52,7 +64,16 @@ void bw_comm_abort(const bw_comm *comm, int code)
 
 bw_status bw_comm_self(bw_comm **out)
 {
-  return wrap(MPI_COMM_SELF, out);
+  return wrap(MPI_COMM_SELF, LIMIT, out);
+}
+
+bw_status bw_comm_copy(const bw_comm *comm, size_t limit, bw_comm **out)
+{
+  *out = NULL;
+  BW_REQUIRE(limit <= INT_MAX, BW_EINPUT,
+             "comm: messages of %zu bytes are longer than MPI's counts (%d); take fewer", limit,
+             INT_MAX);
+  return bw_comm_agree(comm, wrap(comm->mpi, limit > 0 ? limit : comm->limit, out));
 }
 
 void bw_comm_destroy(bw_comm **comm)
@@ -72,6 +93,11 @@ int bw_comm_size(const bw_comm *comm)
   return comm->size;
 }
 
+size_t bw_comm_message_limit(const bw_comm *comm)
+{
+  return comm->limit;
+}
+
 MPI_Comm bw_comm_mpi(const bw_comm *comm)
 {
   return comm->mpi;
@@ -79,46 +105,60 @@ MPI_Comm bw_comm_mpi(const bw_comm *comm)
 
 bw_status bw_comm_agree(const bw_comm *comm, bw_status mine)
 {
+  /* One reduction finds both: the largest code and, with its sign turned, the lowest rank that
+   * failed. */
   int failed_rank = mine == BW_OK ? INT_MAX : comm->rank;
   int in[2] = {(int)mine, -failed_rank}, out[2];
   MPI_Allreduce(in, out, 2, MPI_INT, MPI_MAX, comm->mpi);
+  /* The usual way out: nothing failed anywhere, and no message has to travel. */
   if (out[0] == BW_OK) return BW_OK;
   failed_rank = -out[1];
   char text[BW_MESSAGE_SIZE];
+  /* All ranks take over the message of that rank, so that whoever prints it says what happened. */
   snprintf(text, sizeof text, "%s", bw_last_message());
   MPI_Bcast(text, sizeof text, MPI_CHAR, failed_rank, comm->mpi);
   bw_core__set_message(text);
   return (bw_status)out[0];
 }
 
-void bw_comm_sum(const bw_comm *comm, int n, double x[])
+/* x[n] of numbers of 8 bytes, reduced in place, a message's worth at a time. */
+static void reduce(const bw_comm *comm, size_t n, void *x, MPI_Datatype type, MPI_Op operation)
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_DOUBLE, MPI_SUM, comm->mpi);
+  const size_t most = comm->limit > 8 ? comm->limit / 8 : 1;
+  for (size_t at = 0; at < n; at += most) {
+    const int count = (int)(n - at < most ? n - at : most);
+    MPI_Allreduce(MPI_IN_PLACE, (unsigned char *)x + 8 * at, count, type, operation, comm->mpi);
+  }
 }
 
-void bw_comm_max(const bw_comm *comm, int n, double x[])
+void bw_comm_sum(const bw_comm *comm, size_t n, double x[])
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_DOUBLE, MPI_MAX, comm->mpi);
+  reduce(comm, n, x, MPI_DOUBLE, MPI_SUM);
 }
 
-void bw_comm_min(const bw_comm *comm, int n, double x[])
+void bw_comm_max(const bw_comm *comm, size_t n, double x[])
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_DOUBLE, MPI_MIN, comm->mpi);
+  reduce(comm, n, x, MPI_DOUBLE, MPI_MAX);
 }
 
-void bw_comm_sum_int(const bw_comm *comm, int n, int64_t x[])
+void bw_comm_min(const bw_comm *comm, size_t n, double x[])
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_INT64_T, MPI_SUM, comm->mpi);
+  reduce(comm, n, x, MPI_DOUBLE, MPI_MIN);
 }
 
-void bw_comm_max_int(const bw_comm *comm, int n, int64_t x[])
+void bw_comm_sum_int(const bw_comm *comm, size_t n, int64_t x[])
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_INT64_T, MPI_MAX, comm->mpi);
+  reduce(comm, n, x, MPI_INT64_T, MPI_SUM);
 }
 
-void bw_comm_xor(const bw_comm *comm, int n, uint64_t x[])
+void bw_comm_max_int(const bw_comm *comm, size_t n, int64_t x[])
 {
-  MPI_Allreduce(MPI_IN_PLACE, x, n, MPI_UINT64_T, MPI_BXOR, comm->mpi);
+  reduce(comm, n, x, MPI_INT64_T, MPI_MAX);
+}
+
+void bw_comm_xor(const bw_comm *comm, size_t n, uint64_t x[])
+{
+  reduce(comm, n, x, MPI_UINT64_T, MPI_BXOR);
 }
 
 int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x)
@@ -128,59 +168,126 @@ int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x)
   return comm->rank == 0 ? 0 : below;
 }
 
-void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data)
+/* `root`'s bytes on all ranks. */
+static void broadcast(const bw_comm *comm, int root, size_t bytes, unsigned char *data)
 {
-  BW_ASSERT(bytes <= INT_MAX);
-  MPI_Bcast(data, (int)bytes, MPI_BYTE, 0, comm->mpi);
+  size_t n = 0;
+  for (size_t at = 0; at < bytes; at += n) {
+    n = bytes - at < comm->limit ? bytes - at : comm->limit;
+    MPI_Bcast(data + at, (int)n, MPI_BYTE, root, comm->mpi);
+  }
 }
 
-/* Byte counts of all ranks and where each one's bytes start. The sum must fit an MPI count. */
-static bw_status layout(const bw_comm *comm, size_t bytes, int **counts, int **starts,
-                        size_t *total)
+void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data)
 {
-  bw_status st = BW_ALLOCATE(counts, (size_t)comm->size);
-  BW_THEN(st, BW_ALLOCATE(starts, (size_t)comm->size));
+  broadcast(comm, 0, bytes, data);
+}
+
+/* Where the bytes of each rank lie in what is gathered. */
+typedef struct {
+  uint64_t *bytes; /* (size) */
+  size_t total;    /* of all ranks */
+  int *counts,
+      *starts; /* (size) the same for one MPI call, where the limit of a message allows it */
+} layout;
+
+static void forget(layout *l)
+{
+  bw_release(&l->bytes);
+  bw_release(&l->counts);
+  bw_release(&l->starts);
+}
+
+static bw_status lay_out(const bw_comm *comm, size_t bytes, layout *l)
+{
+  const size_t ranks = (size_t)comm->size;
+  bw_status st = BW_ALLOCATE(&l->bytes, ranks);
+  BW_THEN(st, BW_ALLOCATE(&l->counts, ranks));
+  BW_THEN(st, BW_ALLOCATE(&l->starts, ranks));
   BW_TRY(bw_comm_agree(comm, st));
-  int64_t sum = (int64_t)bytes;
-  bw_comm_sum_int(comm, 1, &sum);
-  BW_REQUIRE(sum <= INT_MAX, BW_EMEM, "gathering %lld bytes on one rank: 2 GiB is the limit",
-             (long long)sum);
-  const int mine = (int)bytes;
-  MPI_Allgather(&mine, 1, MPI_INT, *counts, 1, MPI_INT, comm->mpi);
-  for (int r = 1; r < comm->size; r++)
-    (*starts)[r] = (*starts)[r - 1] + (*counts)[r - 1];
-  *total = (size_t)sum;
+  const uint64_t mine = bytes;
+  MPI_Allgather(&mine, 1, MPI_UINT64_T, l->bytes, 1, MPI_UINT64_T, comm->mpi);
+  for (size_t r = 0; r < ranks; r++) { /* all ranks find the same */
+    BW_REQUIRE(l->bytes[r] <= SIZE_MAX - l->total, BW_EMEM,
+               "gathering %zu bytes of rank %zu after %zu: more than an address can name",
+               (size_t)l->bytes[r], r, l->total);
+    l->total += (size_t)l->bytes[r];
+  }
+  /* The counts of one MPI call are int; beyond the limit they are left at 0 and nobody looks at
+   * them. */
+  for (size_t r = 0, at = 0; r < ranks && l->total <= comm->limit; r++) {
+    l->counts[r] = (int)l->bytes[r];
+    l->starts[r] = (int)at;
+    at += (size_t)l->bytes[r];
+  }
   return BW_OK;
+}
+
+/* Too much for one call: every rank tells the others its bytes, one after the other. */
+static void allgather_long(const bw_comm *comm, const layout *l, const void *mine,
+                           unsigned char *out)
+{
+  for (int r = 0; r < comm->size; r++) {
+    const size_t n = (size_t)l->bytes[r];
+    if (r == comm->rank && n > 0) memcpy(out, mine, n);
+    broadcast(comm, r, n, out);
+    out += n;
+  }
 }
 
 bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
                             void **out)
 {
-  int *counts = NULL, *starts = NULL;
+  layout l = {0};
   *out = NULL;
-  bw_status st = layout(comm, bytes, &counts, &starts, total);
-  BW_THEN(st, bw_allocate(*total, 1, out));
+  bw_status st = lay_out(comm, bytes, &l);
+  BW_THEN(st, bw_allocate(l.total, 1, out));
+  /* Nobody begins to send what one rank has no room for. */
   st = bw_comm_agree(comm, st);
-  if (st == BW_OK)
-    MPI_Allgatherv(mine, (int)bytes, MPI_BYTE, *out, counts, starts, MPI_BYTE, comm->mpi);
-  bw_release(&counts);
-  bw_release(&starts);
+  if (st == BW_OK && l.total > comm->limit)
+    allgather_long(comm, &l, mine, *out);
+  else if (st == BW_OK)
+    MPI_Allgatherv(mine, (int)bytes, MPI_BYTE, *out, l.counts, l.starts, MPI_BYTE, comm->mpi);
+  *total = l.total;
+  forget(&l);
   return st;
+}
+
+/* Too much for one call: rank 0 receives from one rank after the other. */
+static void gather_long(const bw_comm *comm, const layout *l, const void *mine, unsigned char *out)
+{
+  const bw_message_way way = {comm->mpi, TAG_GATHER, comm->limit};
+  const size_t own = (size_t)l->bytes[comm->rank];
+  MPI_Request request;
+  /* Rank 0 asks in the order of the ranks: each waits for its turn. */
+  if (comm->rank != 0) {
+    for (size_t piece = 0; bw_message_send(&way, 0, own, mine, piece, &request) > 0; piece++)
+      MPI_Wait(&request, MPI_STATUS_IGNORE);
+    return;
+  }
+  if (own > 0) memcpy(out, mine, own);
+  for (int r = 1; r < comm->size; r++) {
+    out += (size_t)l->bytes[r - 1];
+    const size_t n = (size_t)l->bytes[r];
+    for (size_t piece = 0; bw_message_receive(&way, r, n, out, piece, &request) > 0; piece++)
+      MPI_Wait(&request, MPI_STATUS_IGNORE);
+  }
 }
 
 bw_status bw_comm_gather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
                          void **out)
 {
-  int *counts = NULL, *starts = NULL;
+  layout l = {0};
   *out = NULL;
-  bw_status st = layout(comm, bytes, &counts, &starts, total);
-  if (comm->rank == 0) BW_THEN(st, bw_allocate(*total, 1, out));
+  bw_status st = lay_out(comm, bytes, &l);
+  if (comm->rank == 0) BW_THEN(st, bw_allocate(l.total, 1, out));
   st = bw_comm_agree(comm, st);
-  if (st == BW_OK)
-    MPI_Gatherv(mine, (int)bytes, MPI_BYTE, *out, counts, starts, MPI_BYTE, 0, comm->mpi);
-  if (comm->rank != 0) *total = 0;
-  bw_release(&counts);
-  bw_release(&starts);
+  if (st == BW_OK && l.total > comm->limit)
+    gather_long(comm, &l, mine, *out);
+  else if (st == BW_OK)
+    MPI_Gatherv(mine, (int)bytes, MPI_BYTE, *out, l.counts, l.starts, MPI_BYTE, 0, comm->mpi);
+  *total = comm->rank == 0 ? l.total : 0;
+  forget(&l);
   return st;
 }
 

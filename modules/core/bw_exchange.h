@@ -4,21 +4,25 @@
  * (values to where they are needed) and back (answers to where the items came from). Counts
  * travel in the set-up only. Items to this rank itself are copied, not sent. The send buffer
  * grows to the largest set ever moved (running out of memory there ends the run); nothing else is
- * allocated after create. One partner gets at most 2 GiB per move.
+ * allocated after create. Any number of bytes may go to one partner: what is longer than
+ * bw_comm_message_limit travels in several messages.
  * Life     create -> { forward, backward }* -> destroy. */
 #pragma once
 #include "bw_comm.h"
 
 BW_BEGIN_DECLS
 
+/* The plan, with its buffer. */
 typedef struct bw_exchange bw_exchange;
 
 /* Item i of this rank (0 <= i < n) goes to rank destination[i]; one item may be listed for
  * several ranks by listing it several times. The array is copied. `comm` is borrowed until
- * destroy. Ranks with n = 0 take part. Collective. */
+ * destroy. Ranks with n = 0 take part. BW_EMEM, agreed by all ranks; *out is NULL then. Collective. */
 bw_status bw_exchange_create(const bw_comm *comm, size_t n, const int destination[],
                              bw_exchange **out) BW_MUST_CHECK;
-void bw_exchange_destroy(bw_exchange **plan); /* Local. */
+
+/* Free *plan and set it to NULL; NULL inside is fine. Local. */
+void bw_exchange_destroy(bw_exchange **plan);
 
 size_t bw_exchange_sent(const bw_exchange *plan);     /* n of create. Local. */
 size_t bw_exchange_received(const bw_exchange *plan); /* items that arrive here. Local. */

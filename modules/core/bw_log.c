@@ -32,7 +32,8 @@ bw_log_config bw_log_config_default(void)
                          .err = stderr,
                          .terminal = -1,
                          .plain_seconds = 10.0,
-                         .redraw_seconds = 0.2};
+                         .redraw_seconds = 0.2,
+                         .clock = bw_wall_time};
 }
 
 bw_status bw_log_create(const bw_comm *comm, const bw_log_config *config, bw_log **out)
@@ -89,6 +90,11 @@ void bw_log_warn(bw_log *log, const char *fmt, ...)
   fflush(log->config.err);
 }
 
+static double now_of(const bw_log *log)
+{
+  return log != NULL ? log->config.clock() : bw_wall_time();
+}
+
 bw_progress_config bw_progress_config_default(void)
 {
   return (bw_progress_config){
@@ -101,7 +107,8 @@ bw_status bw_progress_create(bw_log *log, const bw_progress_config *config, bw_p
   BW_TRY(BW_ALLOCATE(&p, 1));
   p->log = log;
   p->config = config != NULL ? *config : bw_progress_config_default();
-  p->wall_start = p->wall_shown = bw_wall_time();
+  /* The first interval begins now, so that set-up before it does not count as slow steps. */
+  p->wall_start = p->wall_shown = now_of(log);
   p->time = p->time_shown = p->config.time_start;
   p->step = p->step_shown = p->config.step_start;
   *out = p;
@@ -175,7 +182,8 @@ void bw_progress_update(bw_progress *p, int64_t step, double time, const char *f
 {
   if (p == NULL || p->log == NULL || !p->log->speaks || p->log->config.quiet) return;
   const bw_log_config *c = &p->log->config;
-  const double now = bw_wall_time();
+  const double now = now_of(p->log);
+  /* The last state is kept even when no line is due: finish shows it. */
   p->step = step;
   p->time = time;
   /* Nothing below this line is done more often than a reader can follow. */
@@ -203,7 +211,7 @@ void bw_progress_finish(bw_progress **progress)
   /* The last line is plain on a terminal too, and stays. */
   if (p->log != NULL && p->log->speaks && !p->log->config.quiet) {
     char spent[32], tail[48];
-    const double seconds = bw_wall_time() - p->wall_start;
+    const double seconds = now_of(p->log) - p->wall_start;
     format_duration(spent, sizeof spent, seconds);
     snprintf(tail, sizeof tail, "took %s", spent);
     p->watched[0] = '\0'; /* may be older than the last step */

@@ -20,6 +20,8 @@ typedef struct {
                             -1 ask the system (default) */
   double plain_seconds;  /* between plain progress lines [s]; default 10 */
   double redraw_seconds; /* between redraws on a terminal [s]; default 0.2 */
+  double (*clock)(void); /* [s] from an arbitrary origin; default bw_wall_time. A test has its own,
+                            so that it does not depend on how busy the machine is. */
 } bw_log_config;
 
 /* The defaults named above. Local. */

@@ -21,13 +21,6 @@ BW_BEGIN_DECLS
   X(BW_EDIVERGED, 6, "the solution is not finite or an iteration did not converge")                \
   X(BW_EUSAGE, 7, "the command line was not understood")
 
-/* What a function returns, and what a program exits with (see BW_STATUS_LIST). */
-typedef enum {
-#define X(name, value, text) name = value,
-  BW_STATUS_LIST(X)
-#undef X
-} bw_status;
-
 /* Behind a declaration: a caller that drops the status is warned by the compiler. */
 #define BW_MUST_CHECK __attribute__((warn_unused_result))
 
@@ -35,9 +28,23 @@ typedef enum {
  * against the format, which is argument number `fmt`. */
 #define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
 
+/* What a function returns, and what a program exits with (see BW_STATUS_LIST). The attribute on the
+ * type covers static functions and pointers to functions as well; clang alone knows it
+ * (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
+#ifdef __clang__
+typedef enum BW_MUST_CHECK {
+#else
+typedef enum {
+#endif
+#define X(name, value, text) name = value,
+  BW_STATUS_LIST(X)
+#undef X
+} bw_status;
+
 /* Record the message (printf's format, cut at 4095 bytes) as this thread's last one and return
  * `code` unchanged. `file` and `line` say where, for a debugger. Use through BW_FAIL. Local. */
-bw_status bw_fail(bw_status code, const char *file, int line, const char *fmt, ...) BW_PRINTF(4, 5);
+bw_status bw_fail(bw_status code, const char *file, int line, const char *fmt, ...)
+    BW_PRINTF(4, 5) BW_MUST_CHECK;
 
 /* Text of a status code, never NULL; static storage. Local. */
 const char *bw_status_text(bw_status code);

@@ -63,11 +63,19 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   s->filled = true;
 }
 
+/* All ranks have room to keep a state, or none has. */
+static bw_status make_room(bw_coupler *c)
+{
+  if (c->kept.rows != NULL) return BW_OK;
+  const bw_status st = bw_comm_agree(bw_grid_comm(bw_ns_channel_grid(c->fluid)),
+                                     bw_coupler__state_create(c, &c->kept));
+  if (st != BW_OK) bw_coupler__state_release(&c->kept);
+  return st;
+}
+
 bw_status bw_coupler_keep(bw_coupler *c)
 {
-  if (c->kept.rows == NULL)
-    BW_TRY(bw_comm_agree(bw_grid_comm(bw_ns_channel_grid(c->fluid)),
-                         bw_coupler__state_create(c, &c->kept)));
+  BW_TRY(make_room(c));
   bw_coupler__state_capture(c, &c->kept);
   return BW_OK;
 }
@@ -150,7 +158,7 @@ bw_status bw_coupler_save_kept(bw_coupler *c, bw_checkpoint *ck)
 bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
-  if (c->kept.rows == NULL) BW_TRY(bw_comm_agree(comm, bw_coupler__state_create(c, &c->kept)));
+  BW_TRY(make_room(c));
   /* Read as a whole first: a bad file leaves fluid and solid as they were. */
   BW_TRY(read_state(c, &c->kept, ck));
   c->kept.filled = true;

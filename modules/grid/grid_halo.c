@@ -5,6 +5,7 @@
  * ghosts beyond a physical boundary: those are values like any other, and a halo cell over the edge
  * of a block and of the box is its neighbour's ghost. */
 #include "bw_memory.h"
+#include "bw_message.h"
 #include "grid_internal.h"
 
 #include <string.h>
@@ -84,6 +85,14 @@ static const bw_real *unpack(const bw_grid_view *v, const box *b, const bw_real 
   return from;
 }
 
+static void pack_fields(const bw_grid_view *v, int d, int side, int count, bw_real *const field[],
+                        bw_real *to)
+{
+  const box b = owned_layers(v, d, side);
+  for (int q = 0; q < count; q++)
+    to = pack(v, &b, field[q], to);
+}
+
 /* Rows of `to` become rows of `from` (boxes of one shape inside one field). */
 static void copy_box(const bw_grid_view *v, const box *from, const box *to, bw_real *f)
 {
@@ -107,31 +116,48 @@ static void wrap(const bw_grid_view *v, int d, bw_real *f)
   }
 }
 
-/* One message each way per neighbour. The tag is the side of the halo it fills, so that two
- * messages between the same pair of ranks cannot be confused. */
+/* Bytes of what `count` fields send to the neighbour on one side, or receive from it; 0 without one. */
+static size_t bytes_across(const bw_grid *g, int d, int side, int count)
+{
+  const box b = owned_layers(&g->view, d, side); /* of the shape of the halo there */
+  if (g->neighbour[d][side] == MPI_PROC_NULL) return 0;
+  return volume(&b) * (size_t)count * sizeof(bw_real);
+}
+
+/* The tag is the side of the halo that a message fills, so that two messages between the same pair
+ * of ranks cannot be confused. */
+static bw_message_way way(const bw_grid *g, int tag)
+{
+  return (bw_message_way){g->mpi, tag, bw_comm_message_limit(g->comm)};
+}
+
+/* One message each way per neighbour, in pieces where it is longer than one can be. */
 static void cross(bw_grid *g, int d, int count, bw_real *const field[])
 {
   const bw_grid_view *v = &g->view;
   MPI_Request request[4];
-  int n = 0;
-  for (int side = BELOW; side <= ABOVE; side++) {
-    if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
-    const box b = halo_layers(v, d, side);
-    MPI_Irecv(g->receive[side], (int)(volume(&b) * (size_t)count * sizeof(bw_real)), MPI_BYTE,
-              g->neighbour[d][side], side, g->mpi, &request[n++]);
+  /* All fields behind each other are one message each way. Receives are posted before anything is
+   * sent, so that no message has to wait in a buffer. */
+  for (size_t piece = 0, n = 1; n > 0; piece++) {
+    n = 0;
+    for (int side = BELOW; side <= ABOVE; side++) {
+      const bw_message_way in = way(g, side);
+      n += (size_t)bw_message_receive(&in, g->neighbour[d][side], bytes_across(g, d, side, count),
+                                      g->receive[side], piece, &request[n]);
+    }
+    for (int side = BELOW; side <= ABOVE; side++) {
+      const bw_message_way out = way(g, 1 - side);
+      const size_t bytes = bytes_across(g, d, side, count);
+      if (piece == 0 && bytes > 0) pack_fields(v, d, side, count, field, g->send[side]);
+      if (bw_message_send(&out, g->neighbour[d][side], bytes, g->send[side], piece, &request[n])) {
+        bw_grid__count(&g->halo, bw_message_piece(bytes, out.limit, piece));
+        n++;
+      }
+    }
+    if (n > 0) MPI_Waitall((int)n, request, MPI_STATUSES_IGNORE);
   }
-  for (int side = BELOW; side <= ABOVE; side++) {
-    if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
-    const box b = owned_layers(v, d, side);
-    bw_real *to = g->send[side];
-    for (int q = 0; q < count; q++)
-      to = pack(v, &b, field[q], to);
-    const size_t bytes = volume(&b) * (size_t)count * sizeof(bw_real);
-    MPI_Isend(g->send[side], (int)bytes, MPI_BYTE, g->neighbour[d][side], 1 - side, g->mpi,
-              &request[n++]);
-    bw_grid__count(&g->halo, bytes);
-  }
-  MPI_Waitall(n, request, MPI_STATUSES_IGNORE);
+  /* All messages are here; the fields are taken apart in the order in which the neighbour put
+   * them. */
   for (int side = BELOW; side <= ABOVE; side++) {
     if (g->neighbour[d][side] == MPI_PROC_NULL) continue;
     const box b = halo_layers(v, d, side);
@@ -170,23 +196,44 @@ static box layer(const bw_grid_view *v, int d, int at)
   return b;
 }
 
+/* The top layer of the block to the neighbour above, who takes it for the layer below its own. */
+static void cross_upwards(bw_grid *g, int d, bw_real *f)
+{
+  const bw_grid_view *v = &g->view;
+  const bw_message_way up = way(g, BELOW);
+  const box top = layer(v, d, v->m[d]), below = layer(v, d, 0);
+  const size_t bytes = volume(&top) * sizeof(bw_real); /* the same all along the line of blocks */
+  const size_t out = g->neighbour[d][ABOVE] != MPI_PROC_NULL ? bytes : 0;
+  const size_t in = g->neighbour[d][BELOW] != MPI_PROC_NULL ? bytes : 0;
+  MPI_Request request[2];
+  /* Beyond a physical boundary there is no neighbour: the face there belongs to the boundary
+   * condition. */
+  if (out > 0) pack(v, &top, f, g->send[ABOVE]);
+  for (size_t piece = 0, n = 1; n > 0; piece++) {
+    n = (size_t)bw_message_receive(&up, g->neighbour[d][BELOW], in, g->receive[BELOW], piece,
+                                   &request[0]);
+    if (bw_message_send(&up, g->neighbour[d][ABOVE], out, g->send[ABOVE], piece, &request[n])) {
+      bw_grid__count(&g->halo, bw_message_piece(bytes, up.limit, piece));
+      n++;
+    }
+    if (n > 0) MPI_Waitall((int)n, request, MPI_STATUSES_IGNORE);
+  }
+  if (in > 0) unpack(v, &below, g->receive[BELOW], f);
+}
+
 void bw_halo_update_faces(bw_grid *g, bw_real *const u[3])
 {
   const bw_grid_view *v = &g->view;
   for (int d = 0; d < 3; d++) {
-    const box top = layer(v, d, v->m[d]), below = layer(v, d, 0);
-    const size_t bytes = volume(&top) * sizeof(bw_real);
     if (v->halo[d] == 0) continue;
-    if (wrapped(v, d)) copy_box(v, &top, &below, u[d]);
-    if (!crosses(v, d)) continue;
-    if (g->neighbour[d][ABOVE] != MPI_PROC_NULL) {
-      pack(v, &top, u[d], g->send[ABOVE]);
-      bw_grid__count(&g->halo, bytes);
+    /* The divergence in cell 1 reads the component on face 0, which is the top face of the
+     * block below (or, where one block spans a periodic direction, its own): values travel
+     * upwards only. */
+    if (wrapped(v, d)) {
+      const box top = layer(v, d, v->m[d]), below = layer(v, d, 0);
+      copy_box(v, &top, &below, u[d]);
     }
-    MPI_Sendrecv(g->send[ABOVE], (int)bytes, MPI_BYTE, g->neighbour[d][ABOVE], BELOW,
-                 g->receive[BELOW], (int)bytes, MPI_BYTE, g->neighbour[d][BELOW], BELOW, g->mpi,
-                 MPI_STATUS_IGNORE);
-    if (g->neighbour[d][BELOW] != MPI_PROC_NULL) unpack(v, &below, g->receive[BELOW], u[d]);
+    if (crosses(v, d)) cross_upwards(g, d, u[d]);
   }
 }
 
@@ -223,8 +270,7 @@ bw_status bw_grid__halo_create(bw_grid *g)
       const box b = owned_layers(&g->view, d, side);
       if (crosses(&g->view, d) && volume(&b) > largest) largest = volume(&b);
     }
-  BW_REQUIRE(largest * BW_GRID__BATCH * sizeof(bw_real) < 2147483647u, BW_EINPUT,
-             "grid: a halo message of %zu cells is too long for MPI; use more ranks", largest);
+  /* Nothing is divided: no message is ever sent and no buffer needed. */
   if (largest == 0) return BW_OK;
   for (int side = BELOW; side <= ABOVE; side++) {
     BW_TRY(BW_ALLOCATE(&g->send[side], largest * BW_GRID__BATCH));

@@ -1,5 +1,6 @@
 /* What the ranks of one row of blocks (a line through the division in y or z) exchange. */
 #include "bw_memory.h"
+#include "bw_message.h"
 #include "grid_internal.h"
 
 enum { TAG_SWAP = 8 };
@@ -28,23 +29,27 @@ void bw_grid_swap(bw_grid *g, int d, const size_t send_start[], const size_t sen
                   bw_real *receive)
 {
   const bw_grid_view *v = &g->view;
-  const MPI_Datatype real = sizeof(bw_real) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT;
   const int r = v->ranks[d], me = v->coord[d];
-  int n = 0;
-  for (int q = 1; q < r; q++) {
-    const int p = (me + r - q) % r;
-    if (receive_count[p] > 0)
-      MPI_Irecv(receive + receive_start[p], (int)receive_count[p], real, p, TAG_SWAP, g->line[d],
-                &g->request[n++]);
+  const bw_message_way way = {g->line[d], TAG_SWAP, bw_comm_message_limit(g->comm)};
+  for (size_t piece = 0, n = 1; n > 0; piece++) { /* nearly always all is in the first pieces */
+    n = 0;
+    /* Receives first, in the order in which the partners send to this rank. */
+    for (int q = 1; q < r; q++) {
+      const int p = (me + r - q) % r;
+      n += (size_t)bw_message_receive(&way, p, receive_count[p] * sizeof *receive,
+                                      receive + receive_start[p], piece, &g->request[n]);
+    }
+    for (int q = 1; q < r; q++) { /* everyone starts with another partner */
+      const int p = (me + q) % r;
+      const size_t bytes = send_count[p] * sizeof *send;
+      if (bw_message_send(&way, p, bytes, send + send_start[p], piece, &g->request[n]) == 0)
+        continue;
+      bw_grid__count(&g->swap, bw_message_piece(bytes, way.limit, piece));
+      n++;
+    }
+    /* When no pieces are left `receive` is complete and `send` may be changed again. */
+    if (n > 0) MPI_Waitall((int)n, g->request, MPI_STATUSES_IGNORE);
   }
-  for (int q = 1; q < r; q++) { /* everyone starts with another partner */
-    const int p = (me + q) % r;
-    if (send_count[p] == 0) continue;
-    MPI_Isend(send + send_start[p], (int)send_count[p], real, p, TAG_SWAP, g->line[d],
-              &g->request[n++]);
-    bw_grid__count(&g->swap, send_count[p] * sizeof(bw_real));
-  }
-  MPI_Waitall(n, g->request, MPI_STATUSES_IGNORE);
 }
 
 void bw_grid_line_sum(bw_grid *g, int d, int n, double x[])

@@ -76,7 +76,7 @@ static void gather(bw_ns_correlations *c, int row)
         c->field[(size_t)a * section + (size_t)(k + g->lo[2] - 1) * (size_t)n + (size_t)(i - 1)] =
             (double)c->ns->u[a][bw_at(g, i, j, k)];
   for (size_t a = 0; a < 3; a++)
-    bw_comm_sum(c->ns->comm, (int)section, c->field + a * section);
+    bw_comm_sum(c->ns->comm, section, c->field + a * section);
 }
 
 static double dot(int n, const double *restrict a, const double *restrict b)
@@ -124,7 +124,7 @@ void bw_ns_correlations_sample(bw_ns_correlations *c)
       correlate(c, c->field + a * section, c->now + (size_t)p * c->of_plane + a * one);
   }
   /* The others hold zeros for a plane, so the sum makes all ranks alike. */
-  bw_comm_sum(c->ns->comm, (int)size, c->now);
+  bw_comm_sum(c->ns->comm, size, c->now);
   for (size_t q = 0; q < size; q++)
     c->sum[q] += c->now[q];
   c->samples++;

@@ -98,7 +98,7 @@ void bw_ns_statistics_sample(bw_ns_statistics *s)
   /* Sums over this rank's part of each plane ... */
   bw_ns__moments(s->g, u, ns->p, s->rows, s->now);
   /* ... and over all ranks, so that the state does not depend on their number. */
-  bw_comm_sum(ns->comm, (int)s->size, s->now);
+  bw_comm_sum(ns->comm, s->size, s->now);
   const double share = 1.0 / ((double)s->g->n[0] * s->g->n[2]);
   for (size_t q = 0; q < s->size; q++)
     s->now[q] *= share;

@@ -4,16 +4,12 @@
  * none changes: as many exchanges as a piece crosses borders of ranks. Beside the label goes the
  * image a particle is in: the multiple of the periods that brings it to the piece's own place. */
 #include "bw_memory.h"
-#include "bw_pd_interface.h"
+#include "pd_fragment_internal.h"
 #include "pd_interface_internal.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-typedef struct {
-  int64_t label;
-  int32_t image[3]; /* X + image period is beside the label's particle */
-} tag;
+typedef bw_pd_fragment__tag tag;
 
 typedef struct {
   int32_t own, copy;
@@ -30,13 +26,6 @@ typedef struct {
   cross_bond *cross;
   double *X, *V, *all_X; /* (n,3), (n,3), (n_all,3) not shifted */
 } joiner;
-
-/* What a rank knows of one piece, in two rounds: sums, then moments about the common centre. */
-typedef struct {
-  int64_t label, particles;
-  int64_t order; /* keeps sums in order of ranks */
-  double X[3], V[3], L[3], I[6];
-} piece;
 
 static int32_t root_of(int32_t parent[], int32_t h)
 {
@@ -98,7 +87,7 @@ static void find_images(joiner *j, const bw_real *acting)
 static void spread_labels(joiner *j, const int64_t id[])
 {
   for (size_t h = 0; h < j->n; h++)
-    j->of_root[h].label = INT64_MAX;
+    j->of_root[h] = (tag){.label = INT64_MAX, .rank = bw_comm_rank(bw_solid_comm(j->pd))};
   for (size_t h = 0; h < j->n; h++) {
     tag *t = &j->of_root[root_of(j->parent, (int32_t)h)];
     if (id[h] < t->label) t->label = id[h];
@@ -115,191 +104,13 @@ static void spread_labels(joiner *j, const int64_t id[])
       const tag *theirs = &j->all[c->copy];
       if (theirs->label >= mine->label) continue;
       mine->label = theirs->label;
+      mine->rank = theirs->rank;
       for (int d = 0; d < 3; d++)
         mine->image[d] = theirs->image[d] - c->image[d];
       changed = 1;
     }
     bw_comm_max_int(bw_solid_comm(j->pd), 1, &changed);
   }
-}
-
-static int by_label(const void *a, const void *b)
-{
-  const piece *p = a, *q = b;
-  if (p->label != q->label) return p->label < q->label ? -1 : 1;
-  return (p->order > q->order) - (p->order < q->order);
-}
-
-static int by_size(const void *a, const void *b)
-{
-  const bw_pd_fragment *p = a, *q = b;
-  if (p->particles != q->particles) return p->particles > q->particles ? -1 : 1;
-  return (p->label > q->label) - (p->label < q->label);
-}
-
-/* Sort and add up pieces of the same label; returns how many are left. */
-static size_t merge(size_t n, piece list[])
-{
-  if (n == 0) return 0;
-  for (size_t q = 0; q < n; q++)
-    list[q].order = (int64_t)q;
-  qsort(list, n, sizeof *list, by_label);
-  size_t last = 0;
-  for (size_t q = 1; q < n; q++) {
-    if (list[q].label != list[last].label) {
-      list[++last] = list[q];
-      continue;
-    }
-    piece *sum = &list[last];
-    sum->particles += list[q].particles;
-    for (int d = 0; d < 3; d++) {
-      sum->X[d] += list[q].X[d];
-      sum->V[d] += list[q].V[d];
-      sum->L[d] += list[q].L[d];
-    }
-    for (int d = 0; d < 6; d++)
-      sum->I[d] += list[q].I[d];
-  }
-  return last + 1;
-}
-
-static piece *find(size_t n, piece list[], int64_t label)
-{
-  const piece key = {.label = label};
-  size_t low = 0, high = n;
-  while (low + 1 < high) {
-    const size_t middle = (low + high) / 2;
-    if (list[middle].label <= key.label)
-      low = middle;
-    else
-      high = middle;
-  }
-  return &list[low];
-}
-
-/* All ranks' pieces, merged, in place of this rank's. Collective. */
-static bw_status share(const bw_comm *comm, size_t *n, piece **list)
-{
-  size_t bytes = 0;
-  void *all = NULL;
-  BW_TRY(bw_comm_allgather(comm, *n * sizeof(piece), *list, &bytes, &all));
-  bw_release(list);
-  *list = all;
-  *n = merge(bytes / sizeof(piece), *list);
-  return BW_OK;
-}
-
-static void placed(const joiner *j, size_t h, double x[3])
-{
-  for (size_t d = 0; d < 3; d++)
-    x[d] = j->X[3 * h + d] + (double)j->own[h].image[d] * j->period[d];
-}
-
-/* The pieces of this rank's particles with their sums of positions and velocities. */
-static bw_status sum_pieces(const joiner *j, const double V[], size_t *n, piece **out)
-{
-  size_t roots = 0;
-  for (size_t h = 0; h < j->n; h++)
-    roots += (size_t)j->parent[h] == h;
-  BW_TRY(BW_ALLOCATE(out, roots));
-  size_t k = 0;
-  for (size_t h = 0; h < j->n; h++)
-    if ((size_t)j->parent[h] == h) (*out)[k++].label = j->own[h].label;
-  *n = merge(roots, *out);
-  for (size_t h = 0; h < j->n; h++) {
-    piece *p = find(*n, *out, j->own[h].label);
-    double x[3];
-    placed(j, h, x);
-    p->particles++;
-    for (size_t d = 0; d < 3; d++)
-      p->X[d] += x[d], p->V[d] += V[3 * h + d];
-  }
-  return BW_OK;
-}
-
-/* Angular momentum and inertia (xx yy zz xy xz yz) about the pieces' centres, per unit mass of a
- * particle; `mean` holds the centres and velocities of all pieces. */
-static bw_status sum_moments(const joiner *j, const double V[], size_t n_mean, piece mean[],
-                             size_t *n, piece **out)
-{
-  BW_TRY(BW_ALLOCATE(out, n_mean));
-  for (size_t q = 0; q < n_mean; q++)
-    (*out)[q].label = mean[q].label;
-  for (size_t h = 0; h < j->n; h++) {
-    const piece *c = find(n_mean, mean, j->own[h].label);
-    piece *p = &(*out)[c - mean];
-    double x[3], v[3];
-    placed(j, h, x);
-    for (size_t d = 0; d < 3; d++)
-      x[d] -= c->X[d], v[d] = V[3 * h + d] - c->V[d];
-    p->L[0] += x[1] * v[2] - x[2] * v[1];
-    p->L[1] += x[2] * v[0] - x[0] * v[2];
-    p->L[2] += x[0] * v[1] - x[1] * v[0];
-    p->I[0] += x[1] * x[1] + x[2] * x[2];
-    p->I[1] += x[0] * x[0] + x[2] * x[2];
-    p->I[2] += x[0] * x[0] + x[1] * x[1];
-    p->I[3] -= x[0] * x[1];
-    p->I[4] -= x[0] * x[2];
-    p->I[5] -= x[1] * x[2];
-    p->particles++;
-  }
-  size_t kept = 0; /* those with particles here */
-  for (size_t q = 0; q < n_mean; q++)
-    if ((*out)[q].particles > 0) (*out)[kept++] = (*out)[q];
-  *n = kept;
-  return BW_OK;
-}
-
-/* spin of I spin = L. An axis without inertia (a rod's own) has L = 0 as well; the part 1e-10 of
- * the trace added to I makes that 0/0 a 0 and changes the others by 1e-10. */
-static void solve_spin(const piece *p, double spin[3])
-{
-  const double more = 1e-10 * (p->I[0] + p->I[1] + p->I[2]);
-  const double a = p->I[0] + more, b = p->I[1] + more, c = p->I[2] + more;
-  const double d = p->I[3], e = p->I[4], f = p->I[5];
-  const double inverse[3][3] = {{b * c - f * f, e * f - d * c, d * f - e * b},
-                                {e * f - d * c, a * c - e * e, d * e - a * f},
-                                {d * f - e * b, d * e - a * f, a * b - d * d}};
-  const double det = a * inverse[0][0] + d * inverse[0][1] + e * inverse[0][2];
-  for (int q = 0; q < 3; q++)
-    spin[q] =
-        det > 0.0
-            ? (inverse[q][0] * p->L[0] + inverse[q][1] * p->L[1] + inverse[q][2] * p->L[2]) / det
-            : 0.0;
-}
-
-static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fragment **out)
-{
-  const bw_comm *comm = bw_solid_comm(j->pd);
-  const double mass = bw_solid_settings(j->pd)->rho * bw_solid_volume(j->pd);
-  size_t n_mean = 0, n_moment = 0;
-  piece *mean = NULL, *moment = NULL;
-  bw_status st = bw_comm_agree(comm, sum_pieces(j, V, &n_mean, &mean));
-  BW_THEN(st, bw_comm_agree(comm, share(comm, &n_mean, &mean)));
-  for (size_t q = 0; st == BW_OK && q < n_mean; q++)
-    for (int d = 0; d < 3; d++) {
-      mean[q].X[d] /= (double)mean[q].particles;
-      mean[q].V[d] /= (double)mean[q].particles;
-    }
-  if (st == BW_OK) st = bw_comm_agree(comm, sum_moments(j, V, n_mean, mean, &n_moment, &moment));
-  BW_THEN(st, bw_comm_agree(comm, share(comm, &n_moment, &moment)));
-  BW_THEN(st, bw_comm_agree(comm, BW_ALLOCATE(out, n_mean)));
-  for (size_t q = 0; st == BW_OK && q < n_mean; q++) { /* the same labels in the same order */
-    bw_pd_fragment *f = &(*out)[q];
-    f->label = mean[q].label;
-    f->particles = mean[q].particles;
-    f->mass = mass * (double)mean[q].particles;
-    memcpy(f->centre, mean[q].X, sizeof f->centre);
-    memcpy(f->velocity, mean[q].V, sizeof f->velocity);
-    solve_spin(&moment[q], f->spin);
-  }
-  if (st == BW_OK) {
-    qsort(*out, n_mean, sizeof **out, by_size);
-    *n = n_mean;
-  }
-  bw_release(&mean);
-  bw_release(&moment);
-  return st;
 }
 
 static bw_status prepare(joiner *j)
@@ -316,11 +127,36 @@ static bw_status prepare(joiner *j)
   return join_own(j);
 }
 
-bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t *n,
-                                    bw_pd_fragment **fragment)
+static void forget(joiner *j)
 {
-  *n = 0;
-  *fragment = NULL;
+  bw_release(&j->parent);
+  bw_release(&j->own);
+  bw_release(&j->of_root);
+  bw_release(&j->all);
+  bw_release(&j->cross);
+  bw_release(&j->X);
+  bw_release(&j->V);
+  bw_release(&j->all_X);
+}
+
+static bw_status measure(joiner *j, bw_pd_fragments *out)
+{
+  bw_pd_fragment__particles p = {.comm = bw_solid_comm(j->pd),
+                                 .n = j->n,
+                                 .tag = j->own,
+                                 .parent = j->parent,
+                                 .X = j->X,
+                                 .V = j->V,
+                                 .mass = bw_solid_settings(j->pd)->rho * bw_solid_volume(j->pd)};
+  memcpy(p.period, j->period, sizeof p.period);
+  BW_TRY(bw_pd_fragment__measure(&p, out));
+  bw_pd_fragment__find_largest(p.comm, out);
+  return BW_OK;
+}
+
+bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], bw_pd_fragments *out)
+{
+  if (out != NULL) *out = (bw_pd_fragments){0};
   const bw_pd_extended all = bw_solid_get_extended(pi->pd);
   joiner j = {.pd = pi->pd, .n = pi->n, .n_all = all.n};
   memcpy(j.period, bw_solid_settings(pi->pd)->period, sizeof j.period);
@@ -332,15 +168,8 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], size_t
     spread_labels(&j, bw_solid_id(pi->pd));
     for (size_t h = 0; label != NULL && h < j.n; h++)
       label[h] = j.own[h].label;
-    st = measure(&j, j.V, n, fragment);
+    if (out != NULL) st = measure(&j, out);
   }
-  bw_release(&j.parent);
-  bw_release(&j.own);
-  bw_release(&j.of_root);
-  bw_release(&j.all);
-  bw_release(&j.cross);
-  bw_release(&j.X);
-  bw_release(&j.V);
-  bw_release(&j.all_X);
+  forget(&j);
   return st;
 }

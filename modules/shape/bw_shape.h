@@ -4,7 +4,8 @@
  * lies inside are particles: half-open in a box (lower <= x < upper, so that n ds hold n sites),
  * the surface included in balls; ties within 1e-9 do not depend on rounding. The last shape that
  * holds a site decides, also on its particle kind and group. An endless shape that is added ends
- * where the other added ones end. An extension is one row in the table of shape_table.c.
+ * where the other added ones end; if none of them does, where it is cut to a shape (a shape removed
+ * with `outside`). An extension is one row in the table of shape_table.c.
  * Pore lattices (simple cubic, body-centred, face-centred) are overlapping spherical pores of
  * `radius` on a lattice of `pitch` anchored at `centre`.
  *

@@ -101,6 +101,7 @@ static bw_status hold_masks(const region *g, row_range rows)
   const int64_t k[2] = {rows.first / across, (rows.first + rows.count - 1) / across};
   int64_t box[2][3] = {{g->lo[0], g->lo[1], g->lo[2] + k[0]},
                        {g->hi[0] - 1, g->hi[1] - 1, g->lo[2] + k[1]}};
+  /* Within one layer of sites the rows need only their own piece of it. */
   if (k[0] == k[1]) {
     box[0][1] = g->lo[1] + rows.first % across;
     box[1][1] = box[0][1] + rows.count - 1;
@@ -108,6 +109,7 @@ static bw_status hold_masks(const region *g, row_range rows)
   for (int q = 0; q < g->count; q++) {
     const bw_shape *s = &g->shape[q];
     if (s->kind != BW_SHAPE_MASK || s->mask->source == NULL) continue;
+    /* Depth in the mask is linear in the place, so that corners bound it, turned or not. */
     double least = INFINITY, most = -INFINITY;
     for (int corner = 0; corner < 8; corner++) {
       const int64_t at[3] = {box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]};
@@ -250,6 +252,7 @@ static bw_status share_rows(const bw_comm *comm, const region *g, row_range *min
   BW_THEN(st, BW_ALLOCATE(&cut, (size_t)size + 1));
   st = bw_comm_agree(comm, st);
   int64_t all = 0;
+  /* From here on the ranks go on together, or not at all. */
   if (st == BW_OK) {
     const int64_t counted = all = count_rows(g, rows, inside);
     bw_comm_sum_int(comm, 1, &all);

@@ -116,12 +116,14 @@ bw_status bw_shape_pack_spheres(const bw_shape_pack_config *c, int *balls, int *
   *balls = *count = 0;
   *shape = NULL;
   BW_TRY(check(c, &box));
+  /* The smallest balls would be the most; each may have seven images over periodic sides. */
   const double most = ceil(c->fraction * box / ball_volume(c, c->radius_min)) + 1;
   BW_TRY(BW_ALLOCATE(&all, 8 * (size_t)most));
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
   bw_status st = rng != NULL ? BW_OK : BW_FAIL(BW_EMEM, "pack: no memory for random numbers");
   if (rng != NULL) gsl_rng_set(rng, (unsigned long)c->seed);
   int n = 0;
+  /* The fraction is reached by the ball that steps over it. */
   while (st == BW_OK && filled < c->fraction * box) {
     if (place(c, rng, n, all))
       filled += ball_volume(c, all[n++].radius);
@@ -136,6 +138,7 @@ bw_status bw_shape_pack_spheres(const bw_shape_pack_config *c, int *balls, int *
     bw_release(&all);
     return st;
   }
+  /* Images come after the balls, so that those are the first of the list. */
   *balls = *count = n;
   for (int q = 0; q < n; q++)
     *count = images(c, q, *count, all);

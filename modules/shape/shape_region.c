@@ -14,23 +14,46 @@ bw_shape_lattice bw_shape_lattice_straight(double ds, const double origin[3], bo
                             .planar = planar};
 }
 
-/* The union of the finite extents of what is added; an endless shape ends where the others end. */
-static bw_status find_space(region *g)
+static void unite(bw_shape__extent *e, const bw_shape__extent *with, int d)
 {
-  for (int d = 0; d < g->dims; d++) {
-    double lower = INFINITY, upper = -INFINITY;
-    for (int q = 0; q < g->count; q++) {
-      const bw_shape__extent e = bw_shape__bounds(&g->shape[q], g->dims);
-      if (g->shape[q].remove || g->shape[q].outside || !isfinite(e.lower[d])) continue;
-      lower = fmin(lower, e.lower[d]);
-      upper = fmax(upper, e.upper[d]);
+  e->lower[d] = fmin(e->lower[d], with->lower[d]);
+  e->upper[d] = fmax(e->upper[d], with->upper[d]);
+}
+
+bool bw_shape__space(int count, const bw_shape shape[], int dims, bw_shape__extent *space,
+                     bool cut[3])
+{
+  bool ends = true;
+  for (int d = 0; d < dims; d++) {
+    /* `all` counts endless shapes as such, `finite` leaves them out. */
+    bw_shape__extent all, finite;
+    all.lower[d] = finite.lower[d] = INFINITY;
+    all.upper[d] = finite.upper[d] = -INFINITY;
+    bool endless = false;
+    for (int q = 0; q < count; q++) {
+      const bool within = shape[q].outside && shape[q].remove;
+      if (shape[q].remove && !within) continue;
+      bw_shape__extent e = bw_shape__bounds(&shape[q], dims);
+      if (within) {
+        /* What lies outside is taken away from all that came before, not from what follows. */
+        all.lower[d] = fmax(all.lower[d], e.lower[d]);
+        all.upper[d] = fmin(all.upper[d], e.upper[d]);
+        continue;
+      }
+      if (shape[q].outside) e.lower[d] = -INFINITY, e.upper[d] = INFINITY;
+      unite(&all, &e, d);
+      if (isfinite(e.lower[d]))
+        unite(&finite, &e, d);
+      else
+        endless = true;
     }
-    BW_REQUIRE(upper > lower, BW_EINPUT,
-               "shapes: nothing that is added ends in direction %d; add a box to cut from", d);
-    g->space.lower[d] = lower;
-    g->space.upper[d] = upper;
+    /* Only where no other shape ends it may an endless one end where it is cut to a shape. */
+    cut[d] = endless && isfinite(finite.lower[d]);
+    space->lower[d] = cut[d] ? finite.lower[d] : all.lower[d];
+    space->upper[d] = cut[d] ? finite.upper[d] : all.upper[d];
+    ends = ends && isfinite(space->lower[d]) && isfinite(space->upper[d]);
   }
-  return BW_OK;
+  return ends;
 }
 
 /* Least and most of (x - origin).axis/ds over the corners of the space. */
@@ -99,7 +122,11 @@ bw_status bw_shape__region_make(int count, const bw_shape shape[], const bw_shap
   if (g->turned) BW_TRY(bw_shape__check_axes("lattice", (const double(*)[3])g->axes, g->dims));
   for (int q = 0; q < count; q++)
     BW_TRY(bw_shape__check(q, &shape[q], g->dims));
-  BW_TRY(find_space(g));
+  bool cut[3];
+  const bool ends = bw_shape__space(count, shape, g->dims, &g->space, cut);
+  for (int d = 0; d < g->dims && !ends; d++)
+    BW_REQUIRE(isfinite(g->space.lower[d]), BW_EINPUT,
+               "shapes: nothing that is added ends in direction %d; add a box to cut from", d);
   return find_sites(g);
 }
 

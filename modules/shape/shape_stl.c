@@ -68,6 +68,7 @@ static bw_status read_surface(const char *path, surface *s)
 {
   FILE *file = fopen(path, "rb");
   BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", path);
+  /* A binary file tells its number of triangles at byte 80; whether it is one its length tells. */
   unsigned char head[84];
   uint32_t count = 0;
   const bool long_enough = fread(head, 1, sizeof head, file) == sizeof head;
@@ -88,6 +89,7 @@ static bw_status read_surface(const char *path, surface *s)
                  path, length, count);
   }
   fclose(file);
+  /* "solid" at the start and no facet: most likely a binary file that was cut off. */
   if (st == BW_OK && s->n == 0)
     st = BW_FAIL(BW_EINPUT,
                  "%s: holds no triangle as text, and as a binary file its %ld bytes are not those "
@@ -171,6 +173,7 @@ bw_status bw_shape_mask_read_stl(const char *path, double scale, double spacing,
   BW_REQUIRE(scale > 0 && isfinite(scale) && spacing > 0 && isfinite(spacing), BW_EINPUT,
              "%s: scale = %g and spacing = %g must be positive", path, scale, spacing);
   bw_status st = read_surface(path, &s);
+  /* The box of cells that holds all corners, and not so many that `scale` must be wrong. */
   int64_t size[3] = {0};
   double lower[3] = {0};
   const double cell[3] = {spacing, spacing, spacing};

@@ -67,16 +67,16 @@ static extent bounds_cylinder(const bw_shape *s)
   return e;
 }
 
-/* Pores of one cubic lattice: basis (count,3) in units of the pitch. The nearest image of each
- * basis point is enough, also where pores overlap. */
-static bool inside_pores(const bw_shape *s, int dims, int count, const double basis[][3],
+/* Pores of one cubic lattice. The nearest image of each basis point is enough, also where pores
+ * overlap. */
+static bool inside_pores(const bw_shape *s, int dims, const bw_shape__basis *basis,
                          const double x[3])
 {
   bool in = false;
-  for (int q = 0; q < count; q++) {
+  for (int q = 0; q < basis->count; q++) {
     double squared = 0.0;
     for (int d = 0; d < dims; d++) {
-      double z = (x[d] - s->centre[d]) / s->pitch - basis[q][d];
+      double z = (x[d] - s->centre[d]) / s->pitch - basis->at[q][d];
       z -= round(z);
       squared += z * z * s->pitch * s->pitch;
     }
@@ -85,26 +85,27 @@ static bool inside_pores(const bw_shape *s, int dims, int count, const double ba
   return in;
 }
 
+static const bw_shape__basis SC = {1, {{0.0, 0.0, 0.0}}};
+static const bw_shape__basis BCC = {2, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}}};
+static const bw_shape__basis FCC = {
+    4, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}}};
+
 static bool inside_sc(const bw_shape *s, int dims, double tie, const double x[3])
 {
   (void)tie;
-  static const double basis[1][3] = {{0.0, 0.0, 0.0}};
-  return inside_pores(s, dims, 1, basis, x);
+  return inside_pores(s, dims, &SC, x);
 }
 
 static bool inside_bcc(const bw_shape *s, int dims, double tie, const double x[3])
 {
   (void)tie;
-  static const double basis[2][3] = {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}};
-  return inside_pores(s, dims, 2, basis, x);
+  return inside_pores(s, dims, &BCC, x);
 }
 
 static bool inside_fcc(const bw_shape *s, int dims, double tie, const double x[3])
 {
   (void)tie;
-  static const double basis[4][3] = {
-      {0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}};
-  return inside_pores(s, dims, 4, basis, x);
+  return inside_pores(s, dims, &FCC, x);
 }
 
 static extent bounds_endless(const bw_shape *s)
@@ -131,17 +132,24 @@ static extent bounds_mask(const bw_shape *s)
 }
 
 const bw_shape__row bw_shape__rows[BW_SHAPE_COUNT] = {
-    [BW_SHAPE_BOX] = {"box", inside_box, bounds_box, .needs_box = true},
-    [BW_SHAPE_SPHERE] = {"sphere", inside_sphere, bounds_sphere, .needs_radius = true},
-    [BW_SHAPE_CYLINDER] = {"cylinder", inside_cylinder, bounds_cylinder, .needs_radius = true,
-                           .needs_axis = true},
-    [BW_SHAPE_PORES_SC] = {"pores_sc", inside_sc, bounds_endless, .needs_radius = true,
-                           .needs_pitch = true},
-    [BW_SHAPE_PORES_BCC] = {"pores_bcc", inside_bcc, bounds_endless, .needs_radius = true,
-                            .needs_pitch = true},
-    [BW_SHAPE_PORES_FCC] = {"pores_fcc", inside_fcc, bounds_endless, .needs_radius = true,
-                            .needs_pitch = true},
-    [BW_SHAPE_MASK] = {"mask", inside_mask, bounds_mask, .needs_mask = true},
+    [BW_SHAPE_BOX] = {"box", inside_box, bounds_box, bw_shape__distance_box, bw_shape__charts_box,
+                      .needs_box = true},
+    [BW_SHAPE_SPHERE] = {"sphere", inside_sphere, bounds_sphere, bw_shape__distance_sphere,
+                         bw_shape__charts_sphere, .needs_radius = true},
+    [BW_SHAPE_CYLINDER] = {"cylinder", inside_cylinder, bounds_cylinder,
+                           bw_shape__distance_cylinder, bw_shape__charts_cylinder,
+                           .needs_radius = true, .needs_axis = true, .endless = true},
+    [BW_SHAPE_PORES_SC] = {"pores_sc", inside_sc, bounds_endless, bw_shape__distance_pores,
+                           bw_shape__charts_pores, &SC, .needs_radius = true, .needs_pitch = true,
+                           .endless = true},
+    [BW_SHAPE_PORES_BCC] = {"pores_bcc", inside_bcc, bounds_endless, bw_shape__distance_pores,
+                            bw_shape__charts_pores, &BCC, .needs_radius = true, .needs_pitch = true,
+                            .endless = true},
+    [BW_SHAPE_PORES_FCC] = {"pores_fcc", inside_fcc, bounds_endless, bw_shape__distance_pores,
+                            bw_shape__charts_pores, &FCC, .needs_radius = true, .needs_pitch = true,
+                            .endless = true},
+    [BW_SHAPE_MASK] = {"mask", inside_mask, bounds_mask, bw_shape__distance_mask,
+                       bw_shape__charts_mask, .needs_mask = true},
 };
 
 const char *bw_shape_name(bw_shape_kind kind)
@@ -155,6 +163,7 @@ bw_status bw_shape__check(int number, const bw_shape *s, int dims)
              "shape %d: kind %d is none of the %d shapes there are", number, (int)s->kind,
              (int)BW_SHAPE_COUNT);
   const bw_shape__row *row = &bw_shape__rows[s->kind];
+  /* Only what this kind reads is looked at; the rest may hold anything. */
   for (int d = 0; d < dims; d++) {
     if (row->needs_box)
       BW_REQUIRE(isfinite(s->lower[d]) && isfinite(s->upper[d]) && s->upper[d] > s->lower[d],
@@ -178,6 +187,7 @@ bw_status bw_shape__check(int number, const bw_shape *s, int dims)
   if (row->needs_axis)
     BW_REQUIRE(s->axis >= 0 && s->axis <= 2, BW_EINPUT,
                "shape %d (%s): axis = %d has to be 0, 1 or 2", number, row->name, s->axis);
+  /* Frames are for all kinds. */
   if (s->frame != NULL) {
     char what[64];
     snprintf(what, sizeof what, "shape %d (%s): frame", number, row->name);

@@ -148,18 +148,19 @@ static bw_status make_scene(const bw_comm *comm, const scene_set_up *b, scene *s
 static bw_status measure(const bw_comm *comm, const scene_set_up *b, double *out, double *wide)
 {
   scene s;
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0;
+  bw_pd_fragments piece = {0};
   bw_status st = make_scene(comm, b, &s);
   const double end = 4.0 * HEIGHTS * HEIGHTS / (4.0 * acos(-1.0) * acos(-1.0));
   for (double t = 0.0; st == BW_OK && t < end; t += s.dt)
     st = bw_coupler_step(s.coupler, s.dt);
   if (st == BW_OK) *wide = 2.0 * s.h * sqrt((double)bw_solid_total(s.solid) / acos(-1.0));
-  BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(s.coupler), NULL, &n, &piece));
-  if (st == BW_OK && n != 1) st = BW_FAIL(BW_EDIVERGED, "the cylinder fell into %zu pieces", n);
-  if (st == BW_OK) *out = b->motion == COUETTE ? -piece->spin[2] / RE : piece->velocity[0] / RE;
+  BW_THEN(st, bw_pd_interface_fragments(bw_coupler_edit_interface(s.coupler), NULL, &piece));
+  if (st == BW_OK && piece.total != 1)
+    st = BW_FAIL(BW_EDIVERGED, "the cylinder fell into %lld pieces", (long long)piece.total);
+  const bw_pd_fragment *body = &piece.largest[0];
+  if (st == BW_OK) *out = b->motion == COUETTE ? -body->spin[2] / RE : body->velocity[0] / RE;
   if (b->motion == FALL) *out *= b->speed;
-  bw_release(&piece);
+  bw_pd_fragment_release(&piece);
   scene_destroy(&s);
   return st;
 }

@@ -150,8 +150,15 @@ int bw_validation_main(int argc, char **argv, const char *name, bw_status (*run)
   BW_THEN(st, run(&v));
   if (v.file != NULL) {
     fputs("\n]\n", v.file);
-    fclose(v.file);
+    const bool whole = !ferror(v.file);
+    if (fclose(v.file) != 0 || !whole)
+      BW_THEN(st, BW_FAIL(BW_EIO, "%s/%s.json could not be written to the end", v.folder, name));
     printf("%s: %d of %d claims hold\n", name, v.rows - v.failed, v.rows);
+  }
+  if (st != BW_OK && v.comm != NULL && bw_comm_size(v.comm) > 1) {
+    /* maybe on this rank alone, while others wait for it */
+    fprintf(stderr, "%s: %s\n", name, bw_last_message());
+    bw_comm_abort(v.comm, (int)st);
   }
   const int code = bw_finish(&v.comm, st);
   return code != 0 ? code : v.failed > 0 || v.rows == 0;

@@ -110,14 +110,14 @@ static void get_fields(const char *path, const bw_grid *grid)
 }
 
 /* Written by blocks of y; read by blocks of z, as chosen by the grid, and by one rank alone. */
-static void fields_on_other_partitions(int nz, const char *name)
+static void fields_on_other_partitions(const bw_comm *comm, int nz, const char *name)
 {
   char path[512];
   ck_path(path, name);
   const int size = bw_comm_size(bw_check_world());
   const int parts[][2] = {{size, 1}, {nz > 1 ? 1 : size, nz > 1 ? size : 1}, {0, 0}};
   for (int q = 0; q < 3; q++) {
-    bw_grid *grid = make_grid(bw_check_world(), nz, parts[q][0], parts[q][1]);
+    bw_grid *grid = make_grid(comm, nz, parts[q][0], parts[q][1]);
     if (q == 0) put_fields(path, grid);
     get_fields(path, grid);
     bw_grid_destroy(&grid);
@@ -132,23 +132,22 @@ static void fields_on_other_partitions(int nz, const char *name)
 
 START_TEST(fields_in_three_dimensions)
 {
-  fields_on_other_partitions(NZ, "fields.h5");
+  fields_on_other_partitions(bw_check_world(), NZ, "fields.h5");
 }
 END_TEST
 
 START_TEST(fields_in_two_dimensions)
 {
-  fields_on_other_partitions(1, "flat.h5");
+  fields_on_other_partitions(bw_check_world(), 1, "flat.h5");
 }
 END_TEST
 
 /* Rank r puts the ids that leave r modulo the ranks; the last of several ranks puts none. */
-START_TEST(tables_by_other_ids)
+static void tables_by_ids(const bw_comm *comm, const bw_comm *reader, const char *name)
 {
   enum { TOTAL = 1001 };
   char path[512];
-  ck_path(path, "tables.h5");
-  const bw_comm *comm = bw_check_world();
+  ck_path(path, name);
   const int me = bw_comm_rank(comm), size = bw_comm_size(comm);
   const int writers = size > 1 ? size - 1 : 1;
   int64_t *id = NULL;
@@ -179,7 +178,7 @@ START_TEST(tables_by_other_ids)
   n = size > 1 && me == 0 ? 0 : 400;
   for (size_t i = 0; i < n; i++)
     id[i] = (int64_t)(((size_t)me * 37 + i * i * 13 + 5) % TOTAL);
-  bw_check_ok(bw_checkpoint_open(comm, path, &ck));
+  bw_check_ok(bw_checkpoint_open(reader, path, &ck));
   bw_check_ok(bw_checkpoint_get_table(ck, "x", TOTAL, n, id, 2, BW_CK_DOUBLE, x));
   bw_check_ok(bw_checkpoint_get_table(ck, "flag", TOTAL, n, id, 1, BW_CK_UINT8, flag));
   bw_check_ok(bw_checkpoint_get_table(ck, "count", TOTAL, n, id, 3, BW_CK_INT32, count));
@@ -196,6 +195,25 @@ START_TEST(tables_by_other_ids)
   bw_release(&x);
   bw_release(&flag);
   bw_release(&count);
+}
+
+START_TEST(tables_by_other_ids)
+{
+  tables_by_ids(bw_check_world(), bw_check_world(), "tables.h5");
+}
+END_TEST
+
+/* Shares that are moved in many operations, and by some ranks in fewer than by others. 200 bytes are 12
+ * rows of a table of 1001, or one layer of a field. What was written so is read in one operation as
+ * well, and the other way round. */
+START_TEST(in_many_operations)
+{
+  bw_comm *cut = NULL;
+  bw_check_ok(bw_comm_copy(bw_check_world(), 200, &cut));
+  fields_on_other_partitions(cut, NZ, "fields.h5"); /* one rank alone reads them in one */
+  tables_by_ids(cut, bw_check_world(), "tables.h5");
+  tables_by_ids(bw_check_world(), cut, "tables.h5");
+  bw_comm_destroy(&cut);
 }
 END_TEST
 
@@ -251,8 +269,11 @@ START_TEST(a_good_file_is_not_replaced_by_a_bad_one)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(numbers_texts_and_names),       BW_TEST(fields_in_three_dimensions),
-    BW_TEST(fields_in_two_dimensions),      BW_TEST(tables_by_other_ids),
-    BW_TEST(one_rank_reads_what_all_wrote), BW_TEST(a_good_file_is_not_replaced_by_a_bad_one)};
+static const bw_check_test tests[] = {BW_TEST(numbers_texts_and_names),
+                                      BW_TEST(fields_in_three_dimensions),
+                                      BW_TEST(fields_in_two_dimensions),
+                                      BW_TEST(tables_by_other_ids),
+                                      BW_TEST(in_many_operations),
+                                      BW_TEST(one_rank_reads_what_all_wrote),
+                                      BW_TEST(a_good_file_is_not_replaced_by_a_bad_one)};
 BW_CHECK_MAIN("checkpoint", tests)

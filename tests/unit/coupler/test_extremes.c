@@ -100,11 +100,10 @@ START_TEST(all_bonds_broken)
   const bw_solid_ledger e = ledger_of(s.solid);
   ck_assert_int_eq(e.broken, e.bonds);
   check_bounded(&s);
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0;
-  bw_check_ok(bw_pd_interface_fragments(bw_coupler_edit_interface(s.coupler), NULL, &n, &piece));
-  ck_assert_uint_eq(n, 16);
-  bw_release(&piece);
+  bw_pd_fragments piece;
+  bw_check_ok(bw_pd_interface_fragments(bw_coupler_edit_interface(s.coupler), NULL, &piece));
+  ck_assert_int_eq(piece.total, 16);
+  bw_pd_fragment_release(&piece);
   bodies_destroy(&s);
 }
 END_TEST

@@ -9,7 +9,17 @@ typedef struct {
   int periodic; /* bits: x, y, z */
   int halo;
   int ranks[2];
+  const bw_comm *comm; /* NULL: the world */
 } grid_case;
+
+/* The ranks of the world, with messages of at most so many bytes: not a whole number of bw_reals. */
+enum { GRID_SHORT_MESSAGE = 101 };
+static inline bw_comm *grid_short_messages(void)
+{
+  bw_comm *comm = NULL;
+  bw_check_ok(bw_comm_copy(bw_check_world(), GRID_SHORT_MESSAGE, &comm));
+  return comm;
+}
 
 /* Non-cubic, odd, 2D; every combination of periodic directions; both halo widths. */
 static inline grid_case grid_case_number(int q)
@@ -51,6 +61,6 @@ static inline bw_grid *grid_case_create(const grid_case *c)
   g.ranks[0] = c->ranks[0];
   g.ranks[1] = c->ranks[1];
   bw_grid *grid = NULL;
-  bw_check_ok(bw_grid_create(bw_check_world(), &g, &grid));
+  bw_check_ok(bw_grid_create(c->comm != NULL ? c->comm : bw_check_world(), &g, &grid));
   return grid;
 }

@@ -1,4 +1,4 @@
-/* Halo update: every halo cell gets its image, the rest stays.
+/* Halo update: every halo cell gets its image, the rest stays; also where messages are cut.
  * TEST ranks=1,2,3,4 */
 #include "grid_cases.h"
 
@@ -35,6 +35,7 @@ static void check_update(const grid_case *c, int count)
   bw_grid *grid = grid_case_create(c);
   const bw_grid_view *v = bw_grid_look(grid);
   bw_real *f[6];
+  bw_grid_sent halo, swap;
   int image[3];
   for (int q = 0; q < count; q++) {
     bw_check_ok(bw_field_create(grid, &f[q]));
@@ -43,6 +44,9 @@ static void check_update(const grid_case *c, int count)
         (bw_real)(image_of(v, at, image) ? untouched : code(image) + 10000.0 * q);
   }
   bw_halo_update(grid, count, f);
+  bw_grid_traffic(grid, &halo, &swap);
+  ck_assert_uint_eq(halo.bytes, (size_t)count * bw_halo_volume(grid));
+  if (c->comm != NULL) ck_assert_uint_le(halo.bytes, (size_t)halo.messages * GRID_SHORT_MESSAGE);
   for (int q = 0; q < count; q++) {
     FOR_STORAGE(v, at)
     {
@@ -59,11 +63,16 @@ static void check_update(const grid_case *c, int count)
 
 START_TEST(update_fills_every_halo_cell_with_its_image)
 {
+  bw_comm *cut = grid_short_messages();
   for (int q = 0; q < GRID_CASES; q++)
     for (int way = 0; way < GRID_WAYS; way++) {
       grid_case c = grid_case_number(q);
-      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_update(&c, 1 + q % 6);
+      if (!grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) continue;
+      check_update(&c, 1 + q % 6);
+      c.comm = cut;
+      check_update(&c, 1 + q % 6);
     }
+  bw_comm_destroy(&cut);
 }
 END_TEST
 
@@ -125,11 +134,16 @@ static void check_faces(const grid_case *c)
 
 START_TEST(faces_are_those_of_update)
 {
+  bw_comm *cut = grid_short_messages();
   for (int q = 0; q < GRID_CASES; q++)
     for (int way = 0; way < GRID_WAYS; way++) {
       grid_case c = grid_case_number(q);
-      if (grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) check_faces(&c);
+      if (!grid_case_divide(&c, way, bw_comm_size(bw_check_world()))) continue;
+      check_faces(&c);
+      c.comm = cut;
+      check_faces(&c);
     }
+  bw_comm_destroy(&cut);
 }
 END_TEST
 

@@ -12,10 +12,10 @@ static double code(int c, int j, int k)
   return 1 + c + 300.0 * j + 9000.0 * k;
 }
 
-/* periodic: bits x, y, z. */
-static bw_grid *make(const int n[3], int way, int periodic, bool *fits)
+/* comm: NULL for the world. periodic: bits x, y, z. */
+static bw_grid *make(const bw_comm *comm, const int n[3], int way, int periodic, bool *fits)
 {
-  grid_case c = {.n = {n[0], n[1], n[2]}, .periodic = periodic, .halo = 1};
+  grid_case c = {.n = {n[0], n[1], n[2]}, .periodic = periodic, .halo = 1, .comm = comm};
   *fits = grid_case_divide(&c, way, bw_comm_size(bw_check_world()));
   return *fits ? grid_case_create(&c) : NULL;
 }
@@ -55,10 +55,10 @@ static double halve_blocks(bw_transpose *t, const bw_grid_view *v)
   return seen;
 }
 
-static void check_round_trip(const int n[3], int columns, int way)
+static void check_round_trip(const bw_comm *comm, const int n[3], int columns, int way)
 {
   bool fits;
-  bw_grid *grid = make(n, way, 0, &fits);
+  bw_grid *grid = make(comm, n, way, 0, &fits);
   if (!fits) return;
   const bw_grid_view *v = bw_grid_look(grid);
   bw_transpose *t = NULL;
@@ -77,25 +77,33 @@ static void check_round_trip(const int n[3], int columns, int way)
         ck_assert_double_eq((double)row[c], code(c, v->lo[1] + j, v->lo[2] + k) / 2);
     }
   ck_assert_int_eq(bw_transpose_volume(t) == 0, v->ranks[2] == 1);
+  bw_grid_sent halo, swap;
+  bw_grid_traffic(grid, &halo, &swap);
+  ck_assert_uint_eq(swap.bytes, bw_transpose_volume(t));
+  if (comm != NULL) ck_assert_uint_le(swap.bytes, (size_t)swap.messages * GRID_SHORT_MESSAGE);
   bw_transpose_destroy(&t);
   bw_grid_destroy(&grid);
 }
 
 START_TEST(rows_become_columns_and_return)
 {
-  for (int way = 0; way < GRID_WAYS; way++) {
-    check_round_trip((const int[]){4, 9, 7}, 46, way);
-    check_round_trip((const int[]){4, 5, 12}, 2, way); /* ranks without columns */
-    check_round_trip((const int[]){4, 8, 1}, 290, way);
-    check_round_trip((const int[]){4, 8, 4}, 64, way);
-  }
+  bw_comm *cut = grid_short_messages();
+  for (int way = 0; way < GRID_WAYS; way++)
+    for (int q = 0; q < 2; q++) {
+      const bw_comm *comm = q == 0 ? NULL : cut;
+      check_round_trip(comm, (const int[]){4, 9, 7}, 46, way);
+      check_round_trip(comm, (const int[]){4, 5, 12}, 2, way); /* ranks without columns */
+      check_round_trip(comm, (const int[]){4, 8, 1}, 290, way);
+      check_round_trip(comm, (const int[]){4, 8, 4}, 64, way);
+    }
+  bw_comm_destroy(&cut);
 }
 END_TEST
 
 START_TEST(bad_grain_is_refused)
 {
   bool fits;
-  bw_grid *grid = make((const int[]){4, 8, 8}, 0, false, &fits);
+  bw_grid *grid = make(NULL, (const int[]){4, 8, 8}, 0, false, &fits);
   bw_transpose *t = NULL;
   bw_check_status(bw_transpose_create(grid, 7, 2, &t), BW_EINPUT);
   ck_assert_ptr_null(t);
@@ -150,7 +158,7 @@ static void check_lines(int d, int rows, size_t lines, bool cyclic, int way)
 {
   bool fits;
   const int n[3] = {2, d == 1 ? rows : 4, d == 2 ? rows : 1};
-  bw_grid *grid = make(n, way, cyclic ? 1 << d : 0, &fits);
+  bw_grid *grid = make(NULL, n, way, cyclic ? 1 << d : 0, &fits);
   if (!fits) return;
   const bw_grid_view *v = bw_grid_look(grid);
   double lower[40], diagonal[40], upper[40];

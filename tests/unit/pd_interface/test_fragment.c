@@ -40,13 +40,12 @@ static void check(body *b, int count, const motion piece[], double rho)
   }
   bw_solid_set_state(b->pd, X, V);
   bw_check_ok(bw_pd_interface_update(b->pi));
-  size_t pieces = 0;
-  bw_pd_fragment *list = NULL;
-  bw_check_ok(bw_pd_interface_fragments(b->pi, label, &pieces, &list));
-  ck_assert_uint_eq(pieces, (size_t)count);
-  double all = 0.0;
+  bw_pd_fragments all;
+  bw_check_ok(bw_pd_interface_fragments(b->pi, label, &all));
+  ck_assert_int_eq(all.total, count);
+  double particles = 0.0;
   for (int q = 0; q < count; q++) { /* pieces are given in the order of the list */
-    const bw_pd_fragment *f = &list[q];
+    const bw_pd_fragment *f = &all.largest[q];
     bw_check_near((double)f->particles, piece[q].particles, 0);
     bw_check_near(f->mass, rho * piece[q].particles, 1e-12);
     for (size_t d = 0; d < 3; d++) {
@@ -54,17 +53,17 @@ static void check(body *b, int count, const motion piece[], double rho)
       bw_check_near(f->velocity[d], piece[q].velocity[d], 2e-6);
       bw_check_near(f->spin[d], piece[q].spin[d], 2e-6);
     }
-    all += (double)f->particles;
+    particles += (double)f->particles;
     double mine = 0.0;
     for (size_t h = 0; h < n; h++)
       mine += label[h] == f->label;
     ck_assert_double_eq(body_sum(mine), piece[q].particles);
   }
-  ck_assert_double_eq(all, (double)b->n);
+  ck_assert_double_eq(particles, (double)b->n);
   bw_release(&X);
   bw_release(&V);
   bw_release(&label);
-  bw_release(&list);
+  bw_pd_fragment_release(&all);
 }
 
 /* Four bodies too far apart for bonds: block, long bar over all ranks, rod of two, single one. */
@@ -103,13 +102,12 @@ START_TEST(broken_bonds_part_a_body)
   const bw_solid_config c = body_config(true);
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
   body b = body_create(1, shape, &c, &ic);
-  size_t pieces = 0;
-  bw_pd_fragment *list = NULL;
-  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));
-  ck_assert_uint_eq(pieces, 1);
-  ck_assert_int_eq(list[0].label, 0);
-  ck_assert_int_eq(list[0].particles, 200);
-  bw_release(&list);
+  bw_pd_fragments all;
+  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &all));
+  ck_assert_int_eq(all.total, 1);
+  ck_assert_int_eq(all.largest[0].label, 0);
+  ck_assert_int_eq(all.largest[0].particles, 200);
+  bw_pd_fragment_release(&all);
   const double from[3] = {-1, 6, 0}, to[3] = {21, 6, 0};
   bw_check_ok(bw_solid_precrack(b.pd, from, to, NULL));
   check(&b, 2, piece, 1.0);
@@ -143,20 +141,19 @@ START_TEST(a_piece_across_the_seam_is_whole)
       V[3 * h + d] = v[d] + spin[(d + 1) % 3] * r[(d + 2) % 3] - spin[(d + 2) % 3] * r[(d + 1) % 3];
   }
   bw_solid_set_state(b.pd, X, V);
-  size_t pieces = 0;
-  bw_pd_fragment *list = NULL;
-  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));
-  ck_assert_uint_eq(pieces, 2);
+  bw_pd_fragments all;
+  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &all));
+  ck_assert_int_eq(all.total, 2);
   for (size_t q = 0; q < 2; q++) {
-    ck_assert_int_eq(list[q].particles, 120);
-    const bool seam = list[q].centre[0] > 6.0;
-    bw_check_near(list[q].centre[2], seam ? -1.0 : 9.0, 2e-6); /* label 0 is at z = 0.5 */
+    ck_assert_int_eq(all.largest[q].particles, 120);
+    const bool seam = all.largest[q].centre[0] > 6.0;
+    bw_check_near(all.largest[q].centre[2], seam ? -1.0 : 9.0, 2e-6); /* label 0 is at z = 0.5 */
     for (int d = 0; d < 3; d++) {
-      bw_check_near(list[q].velocity[d], v[d], 2e-6);
-      bw_check_near(list[q].spin[d], spin[d], 2e-6);
+      bw_check_near(all.largest[q].velocity[d], v[d], 2e-6);
+      bw_check_near(all.largest[q].spin[d], spin[d], 2e-6);
     }
   }
-  bw_release(&list);
+  bw_pd_fragment_release(&all);
   bw_release(&X);
   bw_release(&V);
   body_destroy(&b);
@@ -187,16 +184,15 @@ START_TEST(spin_of_a_crooked_piece)
           v[d] + spin[e] * (X[3 * h + f] - centre[f]) - spin[f] * (X[3 * h + e] - centre[e]);
     }
   bw_solid_set_state(b.pd, X, V);
-  size_t pieces = 0;
-  bw_pd_fragment *list = NULL;
-  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &pieces, &list));
-  ck_assert_uint_eq(pieces, 1);
+  bw_pd_fragments all;
+  bw_check_ok(bw_pd_interface_fragments(b.pi, NULL, &all));
+  ck_assert_int_eq(all.total, 1);
   for (int d = 0; d < 3; d++) {
-    bw_check_near(list[0].centre[d], centre[d], 2e-6);
-    bw_check_near(list[0].velocity[d], v[d], 2e-6);
-    bw_check_near(list[0].spin[d], spin[d], 2e-6);
+    bw_check_near(all.largest[0].centre[d], centre[d], 2e-6);
+    bw_check_near(all.largest[0].velocity[d], v[d], 2e-6);
+    bw_check_near(all.largest[0].spin[d], spin[d], 2e-6);
   }
-  bw_release(&list);
+  bw_pd_fragment_release(&all);
   bw_release(&X);
   bw_release(&V);
   body_destroy(&b);

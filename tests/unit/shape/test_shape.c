@@ -141,6 +141,27 @@ START_TEST(outside_is_the_rest_of_space)
 }
 END_TEST
 
+/* An endless cylinder ends with what else is added, also when all is then cut to something larger;
+ * alone it ends where it is cut, which is the same as cutting the box to the cylinder. */
+START_TEST(endless_shapes_end)
+{
+  const bw_shape tube = {
+      .kind = BW_SHAPE_CYLINDER, .centre = {0.1, 0.2, 0}, .radius = 4, .axis = 2};
+  const bw_shape short_box = {.kind = BW_SHAPE_BOX, .lower = {-1, -1, -3}, .upper = {1, 1, 3}};
+  bw_shape cut = {.kind = BW_SHAPE_BOX, .lower = {-9, -9, -9}, .upper = {9, 9, 9}};
+  const bw_shape whole_box = cut;
+  cut.remove = cut.outside = true;
+  const bw_shape three[3] = {tube, short_box, cut};
+  ck_assert_int_eq(sites_of(3, three, 0.5, false), sites_of(2, three, 0.5, false));
+  bw_shape around = tube;
+  around.remove = around.outside = true;
+  const bw_shape cut_tube[2] = {tube, cut}, cut_box[2] = {whole_box, around};
+  const int64_t found = sites_of(2, cut_tube, 0.5, false);
+  ck_assert_int_eq(found, sites_of(2, cut_box, 0.5, false));
+  ck_assert_int_gt(found, 3 * sites_of(3, three, 0.5, false) / 2);
+}
+END_TEST
+
 START_TEST(impossible_shapes_are_refused_by_number)
 {
   int64_t n = 0;
@@ -167,8 +188,12 @@ START_TEST(impossible_shapes_are_refused_by_number)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(porous_medium_of_the_thesis),  BW_TEST(pore_lattices_remove_their_number_of_balls),
-    BW_TEST(order_origin_and_kind),        BW_TEST(round_shapes_have_their_volume),
-    BW_TEST(outside_is_the_rest_of_space), BW_TEST(impossible_shapes_are_refused_by_number),
+    BW_TEST(porous_medium_of_the_thesis),
+    BW_TEST(pore_lattices_remove_their_number_of_balls),
+    BW_TEST(order_origin_and_kind),
+    BW_TEST(round_shapes_have_their_volume),
+    BW_TEST(outside_is_the_rest_of_space),
+    BW_TEST(endless_shapes_end),
+    BW_TEST(impossible_shapes_are_refused_by_number),
 };
 BW_CHECK_MAIN("shape.bodies", tests)

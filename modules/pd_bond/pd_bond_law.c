@@ -13,16 +13,16 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   for (int g = 0; g < c->n_group; g++)
     BW_REQUIRE(
         isnan(c->material[g].nu) || fabs(c->material[g].nu - nu) < 1e-9, BW_EINPUT,
-        "pd_bond: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
+        "solid: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
         "set it to that",
         c->material[g].nu, c->geometry == BW_PD_PLANE_STRESS ? "1/3" : "1/4");
   BW_REQUIRE((unsigned)o->surface_correction <= BW_PD_SURFACE_TENSOR, BW_EINPUT,
-             "pd_bond: surface_correction = %d is unknown", (int)o->surface_correction);
+             "solid: surface_correction = %d is unknown", (int)o->surface_correction);
   BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
-             "pd_bond: surface_correction = tensor is of lattices; with disorder = %g use energy",
+             "solid: surface_correction = tensor is of lattices; with disorder = %g use energy",
              c->disorder);
   BW_REQUIRE((unsigned)o->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
-             "pd_bond: calibration = %d is unknown", (int)o->calibration);
+             "solid: calibration = %d is unknown", (int)o->calibration);
   return BW_OK;
 }
 

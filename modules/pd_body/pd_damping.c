@@ -50,11 +50,11 @@ static void block_damping(const bw_pd_body *pd, const bw_pd_block *block)
   vec vh[3];
   damping_sums s = {0};
   /* Copies' velocities lie in storage beside the owners'. */
-  /* load.damp is written, not added to: absolute damping comes on top. */
   for (int k = 0; k < 3; k++)
     vh[k] = vec_load(pd->vs[k] + block->first);
   for (uint32_t q = block->slot; q < bw_pd_body_slot_end(block); q++)
     if (pd->bonds.slot[q].mask != 0) add_slot(&all, rows, &pd->bonds.slot[q], &h, vh, cloud, &s);
+  /* load.damp is written, not added to: absolute damping comes on top. */
   vec some; /* a particle without bonds has no mean */
   for (int k = 0; k < BW_PD_LANES; k++)
     some[k] = s.count[k] > 1 ? s.count[k] : 1;

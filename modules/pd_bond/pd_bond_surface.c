@@ -7,7 +7,8 @@
  * reduced to one scalar per particle). */
 static bw_real surface_factor(const bw_pd_body *pd, double volume, double first_moment)
 {
-  /* Both energies are proportional to E: the ratio is that of any group. */
+  /* 1/4 c0 sum |xi| Gamma dV is what a dilation e stores per volume, over e^2. As the classical one
+   * it is proportional to E: the ratio is that of any group. */
   const bw_pd_bond_state *state = bw_pd_bond__state(pd);
   const double energy = 0.25 * state->c0[0][0] * first_moment;
   switch (state->options.surface_correction) {
@@ -26,6 +27,7 @@ static bw_real surface_factor(const bw_pd_body *pd, double volume, double first_
 bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
 {
   bw_real *w = bw_pd_bond__state(pd)->w;
+  /* Families of own particles are whole: copies are there. */
   double *volume = NULL, *moment = NULL;
   bw_status st = BW_ALLOCATE(&volume, pd->n);
   BW_THEN(st, BW_ALLOCATE(&moment, pd->n));
@@ -41,10 +43,12 @@ bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
         volume[h] += rest.fraction * pd->level->dv;
         moment[h] += rest.fraction * pd->level->dv * rest.r0;
       }
+  /* Holes hold 1: their lanes are loaded, and nothing may be divided by zero. */
   for (size_t p = 0; p < pd->points.n_storage && st == BW_OK; p++)
     w[p] = 1;
   for (size_t h = 0; h < pd->n && st == BW_OK; h++)
     if (volume[h] > 0) w[pd->points.place[h]] = surface_factor(pd, volume[h], moment[h]);
+  /* A bond reads the factors of both ends; those of copies come from their owners. */
   if (st == BW_OK) bw_pd_body_fill_places(pd, w);
   bw_release(&volume);
   bw_release(&moment);

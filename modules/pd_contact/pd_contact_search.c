@@ -16,6 +16,7 @@ void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3])
   bw_pd_body_reference(pd, i, X);
   for (int k = 0; k < 3; k++)
     X[k] += (double)pd->u[k][pd->points.place[i]];
+  /* Periods act along the lattice's axes, so that images are found there. */
   for (int a = 0; a < 3; a++)
     y[a] =
         pd->config.axes[a][0] * X[0] + pd->config.axes[a][1] * X[1] + pd->config.axes[a][2] * X[2];
@@ -40,6 +41,7 @@ void bw_pd_contact__release(bw_pd_contact *c)
 /* Own particles that are not retired. */
 static bw_status candidates(const bw_pd_body *pd, bw_pd_contact *c)
 {
+  /* Prescribed ones too: a grip pushes what meets it. */
   BW_TRY(BW_ALLOCATE(&c->mine, pd->n));
   for (size_t i = 0; i < pd->n; i++)
     if (!(pd->points.kind[i] & BW_PD_RETIRED)) c->mine[c->n_mine++] = (int32_t)i;
@@ -52,6 +54,7 @@ static bw_status boxes(const bw_pd_body *pd, const bw_pd_contact *c, double **bo
   double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, y[3];
   size_t bytes;
   void *all = NULL;
+  /* A rank without candidates has an empty box, which nobody is in. */
   for (size_t q = 0; q < c->n_mine; q++) {
     bw_pd_contact__position(pd, (size_t)c->mine[q], y);
     for (int k = 0; k < 3; k++) {
@@ -67,6 +70,7 @@ static bw_status boxes(const bw_pd_body *pd, const bw_pd_contact *c, double **bo
 static bool in_box(const bw_pd_body *pd, const double y[3], const double box[6], double margin)
 {
   for (int k = 0; k < 3; k++) {
+    /* Along a period a box says nothing: an image may be in it. */
     if (pd->config.period[k] > 0 && box[k] <= box[3 + k]) continue;
     if (!(y[k] >= box[k] - margin && y[k] <= box[3 + k] + margin)) return false;
   }
@@ -78,6 +82,7 @@ static bw_status choose_sent(const bw_pd_body *pd, bw_pd_contact *c, const doubl
                              int **destination)
 {
   const int size = bw_comm_size(pd->comm), me = bw_comm_rank(pd->comm);
+  /* Counted, then written. A particle may go to several ranks. */
   for (int pass = 0; pass < 2; pass++) {
     size_t n = 0;
     for (size_t q = 0; q < c->n_mine && size > 1; q++) {
@@ -110,6 +115,7 @@ typedef struct {
 static void cell_of(const cells *g, const double y[3], int32_t cell[3])
 {
   for (int k = 0; k < 3; k++) {
+    /* Particles that have flown far share the outermost cell: the number stays in range. */
     const double x = floor((y[k] - g->lower[k]) / g->edge[k]);
     cell[k] = (int32_t)fmax(-1e9, fmin(1e9, x));
     const int32_t n = g->count[k];
@@ -119,6 +125,7 @@ static void cell_of(const cells *g, const double y[3], int32_t cell[3])
 
 static size_t bucket_of(const cells *g, const int32_t cell[3])
 {
+  /* Odd factors spread neighbouring cells over the table; the lowest bits are dropped. */
   const uint64_t key = (uint64_t)(uint32_t)cell[0] * 0x9e3779b97f4a7c15u ^
                        (uint64_t)(uint32_t)cell[1] * 0xc2b2ae3d27d4eb4fu ^
                        (uint64_t)(uint32_t)cell[2] * 0x165667b19e3779f9u;
@@ -138,6 +145,7 @@ static void displacement(const bw_pd_body *pd, const bw_pd_contact *c, size_t q,
 static void insert(const bw_pd_body *pd, const bw_pd_contact *c, cells *g, size_t q)
 {
   double u[3];
+  /* Each bucket keeps the range of its displacements, by which calm regions are known. */
   cell_of(g, c->y + 3 * q, g->cell + 3 * q);
   const size_t b = bucket_of(g, g->cell + 3 * q);
   double *least = g->moved + 6 * b, *most = least + 3;
@@ -155,11 +163,13 @@ static bw_status make_cells(const bw_pd_body *pd, const bw_pd_contact *c, cells 
 {
   const size_t n = c->n_mine + c->n_theirs;
   for (int k = 0; k < 3; k++) {
+    /* Edges of at least reach + skin: partners are in this cell or one next to it. */
     const double p = pd->config.period[k], least = c->reach + c->skin;
     g->lower[k] = n > 0 ? c->y[k] : 0;
     g->count[k] = p > 0 ? (int32_t)fmax(1, floor(p / least)) : 0;
     g->edge[k] = p > 0 ? p / g->count[k] : least;
   }
+  /* A power of two, with room for one candidate in each. */
   for (g->buckets = 64; g->buckets < n;)
     g->buckets *= 2;
   BW_TRY(BW_ALLOCATE(&g->head, g->buckets));
@@ -177,6 +187,7 @@ static int around(const cells *g, const int32_t cell[3], int32_t out[27][3])
 {
   int first[3], last[3], step[3], n = 0;
   for (int k = 0; k < 3; k++) {
+    /* With one or two cells in a period the neighbour on both sides is the same one. */
     first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
     last[k] = g->count[k] == 1 ? 0 : 1;
   }
@@ -194,8 +205,10 @@ static int around(const cells *g, const int32_t cell[3], int32_t out[27][3])
 static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, int n,
                  int32_t cell[][3])
 {
+  /* Two that are not family began beyond its reach: to be listed they must come nearer by this. */
   const double limit = pd->level->reach - (c->reach + c->skin);
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  /* Buckets may hold other cells too: their displacements can only make it less calm. */
   for (int q = 0; q < n; q++) {
     const size_t b = bucket_of(g, cell[q]);
     if (g->head[b] < 0) continue;
@@ -208,6 +221,7 @@ static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, i
   double range2 = 0;
   for (int k = 0; k < 3; k++)
     range2 += (most[k] - least[k]) * (most[k] - least[k]);
+  /* The diagonal of the range bounds how much any two have moved apart. */
   return limit > 0 && range2 < limit * limit;
 }
 
@@ -216,17 +230,20 @@ static bool same_family(const bw_pd_body *pd, const bw_pd_contact *c, size_t a, 
 {
   int32_t o[3];
   for (size_t k = 0; k < 3; k++) {
+    /* The nearest image of the site, as families are built. */
     const int32_t p = (int32_t)lround(pd->config.period[k] / pd->level->ds);
     o[k] = c->site[3 * b + k] - c->site[3 * a + k];
     if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
   }
   const int direction = bw_pd_body_direction(&pd->level->stencil, o);
+  /* On a lattice a direction of the stencil is family; in a cloud the distance decides. */
   if (direction < 0 || pd->level->stencil.sure[direction]) return direction >= 0;
   return bw_pd_body_apart(pd, direction, c->shift + 3 * a, c->shift + 3 * b).r0 < pd->level->reach;
 }
 
 static bw_status append_pair(bw_pd_contact *c, size_t *n, size_t *capacity, int32_t partner)
 {
+  /* Grows twofold; this happens in searches, not in the steps between them. */
   if (*n == *capacity) {
     int32_t *larger = NULL;
     *capacity = 2 * *capacity + 1024;
@@ -246,9 +263,11 @@ static bw_status pairs_in_cell(const bw_pd_body *pd, bw_pd_contact *c, const cel
   const double far = c->reach + c->skin;
   for (int32_t p = g->head[bucket_of(g, cell)]; p >= 0; p = g->next[p]) {
     double d[3];
+    /* Other cells of the same bucket are told by their numbers. */
     if ((size_t)p == q || memcmp(g->cell + 3 * p, cell, 3 * sizeof *cell) != 0) continue;
     bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
+    /* Those are watched where their slots are, without a search. */
     if (same_family(pd, c, q, (size_t)p)) continue;
     BW_TRY(append_pair(c, n, capacity, p));
   }
@@ -261,6 +280,7 @@ static bw_status pairs_of(const bw_pd_body *pd, bw_pd_contact *c, const cells *g
 {
   const int32_t *own = g->cell + 3 * q;
   int32_t cell[27][3];
+  /* Successive candidates stand in the same cell mostly: its calm is not looked at again. */
   if (*quiet != NULL && memcmp(*quiet, own, sizeof *cell) == 0) return BW_OK;
   const int count = around(g, own, cell);
   if (calm(pd, c, g, count, cell)) {
@@ -275,6 +295,7 @@ static bw_status pairs_of(const bw_pd_body *pd, bw_pd_contact *c, const cells *g
 /* Candidates that have a pair. */
 static bw_status list_busy(bw_pd_contact *c)
 {
+  /* Steps go through these alone: most particles never meet anybody. */
   for (int pass = 0; pass < 2; pass++) {
     size_t n = 0;
     for (size_t q = 0; q < c->n_mine; q++) {
@@ -291,6 +312,7 @@ static bw_status list_busy(bw_pd_contact *c)
 static bw_status list_pairs(const bw_pd_body *pd, bw_pd_contact *c)
 {
   cells g = {0};
+  /* Own candidates and those that others sent; pairs are listed for the own ones. */
   bw_status st = make_cells(pd, c, &g);
   BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
   size_t n = 0, capacity = 0;
@@ -318,6 +340,7 @@ static void share_rows(const bw_pd_contact *c, size_t bytes, const void *sent, v
 static bw_status share_shifts(const bw_pd_body *pd, bw_pd_contact *c)
 {
   double *sent = NULL;
+  /* What makes a family in a cloud: how far each is off its site. */
   bw_status st = BW_ALLOCATE(&c->shift, 3 * (c->n_mine + c->n_theirs));
   BW_THEN(st, BW_ALLOCATE(&sent, 3 * c->n_sent));
   st = bw_comm_agree(pd->comm, st);
@@ -337,12 +360,14 @@ static bw_status share(const bw_pd_body *pd, bw_pd_contact *c)
   int32_t *send = NULL;
   uint8_t *group = NULL;
   const size_t n = c->n_mine;
+  /* Rows of the own candidates, then of those that came. */
   c->n_theirs = bw_exchange_received(c->plan);
   bw_status st = BW_ALLOCATE(&c->y, 3 * (n + c->n_theirs));
   BW_THEN(st, BW_ALLOCATE(&c->site, 3 * (n + c->n_theirs)));
   BW_THEN(st, BW_ALLOCATE(&c->group, n + c->n_theirs));
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n_sent));
   BW_THEN(st, BW_ALLOCATE(&group, c->n_sent));
+  /* All arrays stand on all ranks: the exchanges below can be made. */
   st = bw_comm_agree(pd->comm, st);
   for (size_t q = 0; q < n && st == BW_OK; q++) {
     c->group[q] = pd->points.group[c->mine[q]];
@@ -354,6 +379,7 @@ static bw_status share(const bw_pd_body *pd, bw_pd_contact *c)
     bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
     memcpy(send + 3 * q, pd->points.site + 3 * (size_t)c->sent[q], 3 * sizeof *send);
   }
+  /* Sites tell who is family, groups which pair law acts. */
   if (st == BW_OK) {
     share_rows(c, 3 * sizeof(double), c->send, c->y);
     share_rows(c, 3 * sizeof *send, send, c->site);
@@ -370,10 +396,12 @@ bw_status bw_pd_contact__search(bw_pd_contact *c)
   const bw_pd_body *pd = c->pd;
   double *box = NULL;
   int *destination = NULL;
+  /* Nothing of the last search is kept. */
   bw_pd_contact__release(c);
   bw_status st = bw_comm_agree(pd->comm, candidates(pd, c));
   BW_THEN(st, boxes(pd, c, &box));
   if (st == BW_OK) st = bw_comm_agree(pd->comm, choose_sent(pd, c, box, &destination));
+  /* From here on who is where is settled until the next search. */
   BW_THEN(st, bw_exchange_create(pd->comm, c->n_sent, destination, &c->plan));
   BW_THEN(st, share(pd, c));
   BW_THEN(st, list_pairs(pd, c));

@@ -96,7 +96,6 @@ bw_status bw_pd_body_damping_bound(bw_pd_body *pd)
   bw_status st = BW_OK;
   for (size_t b = 0; b < pd->bonds.n_block && st == BW_OK; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
-    /* Of the whole family, broken or not: the bound holds for ever. */
     double t[BW_PD_LANES][BW_PD_SYMMETRIC] = {{0}}, value[BW_PD_LANES][3];
     for (uint32_t q = block->slot; q < block[1].slot; q++) {
       const bw_pd_slot *slot = &pd->bonds.slot[q];
@@ -107,7 +106,6 @@ bw_status bw_pd_body_damping_bound(bw_pd_body *pd)
         bw_pd_tensor_add_dyad(rest.fraction * pd->level->dv, rest.xi, rest.r0, t[lane]);
       }
     }
-    /* The largest eigenvalue of a particle's tensor, over all particles and ranks. */
     st = bw_pd_tensor_principal(BW_PD_LANES, t[0], value[0], NULL);
     for (int lane = 0; lane < BW_PD_LANES && st == BW_OK; lane++)
       most = fmax(most, value[lane][0]);

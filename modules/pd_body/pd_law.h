@@ -21,14 +21,12 @@ typedef struct {
   const char *meaning; /* a phrase, with the default */
 } bw_pd_law_key;
 
-/* A pass over the blocks first .. last-1. The last pass of a law leaves the acceleration by
- * internal forces, L/rho [L/T^2], in pd->a. check: it also notes in pd->bonds.hit (from n_hit on,
- * which it raises) the blocks that hold a bond beyond its limit. damping: it also fills
- * pd->load.damp with the pair damping (asked only of a law that `damps`). Copies' u (and vs with
- * damping) are current. */
+/* Passes over the blocks first .. last-1. The last pass of a law leaves the acceleration by internal
+ * forces, L/rho, in pd->a. check: it also notes in pd->bonds.hit (from n_hit on, which it raises) the
+ * blocks that hold a bond beyond its limit. damping: it also fills pd->load.damp with the pair damping
+ * (asked only of a law that `damps`). */
 typedef void (*bw_pd_sweep)(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping);
 
-/* A law. Members that are not said to be NULL at times have to be there. */
 struct bw_pd_law {
   const char *name;          /* its word in a case file */
   const bw_pd_law_key *keys; /* ends with a NULL name */
@@ -56,19 +54,19 @@ struct bw_pd_law {
   /* Energy of the bond of a lane of a slot, the owner's half [M L^2/T^2]. */
   double (*bond_energy)(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
                         int lane);
-  /* Elastic energy that the given lanes of a block hold [M L^2/T^2]; summed over all blocks and
-   * ranks every bond counts once. */
+  /* Elastic energy that the given lanes of a block hold [M L^2/T^2]; summed over all blocks and ranks
+   * every bond counts once. */
   double (*energy)(const bw_pd_body *pd, const bw_pd_block *block, uint8_t lanes);
   /* Energy dissipated inside particles so far [M L^2/T^2]; NULL: none. */
   double (*dissipated)(const bw_pd_body *pd);
 
   /* pd->frequency2: a bound of the square of the largest angular frequency [1/T^2]. Collective. */
   bw_status (*bound)(bw_pd_body *pd);
-  /* kx (n,3) <- K x of the own particles: minus the force density linearised about the reference
-   * shape, bonds that hold only; x in storage arrays, copies current [M/(L^2 T^2)]. */
+  /* kx (n,3) <- K x of the own particles: minus the force density linearised about the reference shape,
+   * bonds that hold only; x in storage arrays, copies current [M/(L^2 T^2)]. */
   void (*tangent)(const bw_pd_body *pd, bw_real *const x[3], double kx[]);
-  /* row (n) <- half of the sum over a particle's bonds of their stiffness: with these masses and
-   * unit step no frequency is above 2 (Gershgorin); never 0 [M/(L^3 T^2)]. */
+  /* row (n) <- half of the sum over a particle's bonds of their stiffness: with these masses and unit
+   * step no frequency is above 2 (Gershgorin); never 0 [M/(L^3 T^2)]. */
   void (*rows)(const bw_pd_body *pd, double row[]);
   /* Adds J times the Cauchy stress at a lane of a block [M/(L T^2)]. */
   void (*virial)(const bw_pd_body *pd, const bw_pd_block *block, int lane, double sum[3][3]);

@@ -20,11 +20,9 @@ static void block_tensors(const bw_pd_body *pd, const bw_pd_block *block, tensor
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     const bw_pd_slot *slot = &pd->bonds.slot[q];
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
-      /* Broken ones too: the bound does not change while the body cracks. */
       if (!(slot->family >> lane & 1)) continue;
       const int32_t h = block->first + lane, l = slot->base + lane;
       const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
-      /* k e (x) e of each bond, k = c0 alpha Gamma dV/|xi|. */
       const double w = rest.fraction * pd->level->dv;
       const double c0 = bw_pd_bond__micromodulus(pd, h, l);
       bw_pd_tensor_add_dyad(c0 * bw_pd_bond__alpha(pd, block, slot, lane) * w / rest.r0, rest.xi,
@@ -40,11 +38,9 @@ bw_status bw_pd_bond__bound(bw_pd_body *pd)
   bw_status st = BW_OK;
   for (size_t b = 0; b < pd->bonds.n_block && st == BW_OK; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
-    /* Block by block: no tensor is kept. */
     tensors t = {{0}};
     double value[BW_PD_LANES][3];
     block_tensors(pd, block, t);
-    /* Sums over own particles are complete: every family has its copies. */
     st = bw_pd_tensor_principal(BW_PD_LANES, t[0], value[0], NULL);
     for (int lane = 0; lane < BW_PD_LANES && st == BW_OK; lane++) {
       if (!(block->mask >> lane & 1)) continue;
@@ -52,7 +48,6 @@ bw_status bw_pd_bond__bound(bw_pd_body *pd)
       most = fmax(most, 2 * value[lane][0] / bw_pd_body_material(pd, i)->rho);
     }
   }
-  /* The step has to be the same on all ranks. */
   BW_TRY(bw_comm_agree(pd->comm, st));
   bw_comm_max(pd->comm, 1, &most);
   pd->frequency2 = most;

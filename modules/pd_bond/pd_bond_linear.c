@@ -14,12 +14,10 @@ static void block_product(const bw_pd_body *pd, const bw_pd_block *block, bw_rea
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
       if (!(slot->mask >> lane & 1)) continue;
       const int32_t h = block->first + lane, l = slot->base + lane;
-      /* Linearised about the reference shape: the bond's direction is xi/|xi|. */
       const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
       double along = 0;
       for (int k = 0; k < 3; k++)
         along += rest.xi[k] * ((double)x[k][h] - (double)x[k][l]);
-      /* Two of the three |xi| are of the directions, one of the stretch. */
       along *= bw_pd_bond__micromodulus(pd, h, l) * rest.fraction * pd->level->dv /
                (rest.r0 * rest.r0 * rest.r0) * bw_pd_bond__alpha(pd, block, slot, lane);
       for (int k = 0; k < 3; k++)
@@ -27,7 +25,6 @@ static void block_product(const bw_pd_body *pd, const bw_pd_block *block, bw_rea
     }
   }
   for (int lane = 0; lane < BW_PD_LANES; lane++)
-    /* Written once per owner: blocks share no particle. */
     if (block->mask >> lane & 1)
       memcpy(kx + 3 * (size_t)bw_pd_body_owner(block, lane), sum[lane], sizeof sum[lane]);
 }
@@ -48,12 +45,10 @@ static double row_of(const bw_pd_body *pd, const bw_pd_block *block, int lane)
     if (!(slot->mask >> lane & 1)) continue;
     const int32_t l = slot->base + lane;
     const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
-    /* With half of a particle's stiffness as its mass no frequency is above 2 (Gershgorin). */
     sum += bw_pd_bond__micromodulus(pd, h, l) * bw_pd_bond__alpha(pd, block, slot, lane) *
            rest.fraction / rest.r0;
   }
   sum *= 0.5 * pd->level->dv;
-  /* A particle without bonds gets the mass of the stiffest, so that nothing is divided by 0. */
   const double rho = bw_pd_body_material(pd, (size_t)bw_pd_body_owner(block, lane))->rho;
   return sum > 0 ? sum : 0.25 * pd->frequency2 * rho + 1e-300;
 }
@@ -75,7 +70,6 @@ void bw_pd_bond__virial(const bw_pd_body *pd, const bw_pd_block *block, int lane
     const bw_pd_slot *slot = &pd->bonds.slot[q];
     if (!(slot->mask >> lane & 1)) continue;
     const int32_t l = slot->base + lane;
-    /* The bond pulls along its present direction. */
     const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
     double y[3], r2 = 0;
     for (int k = 0; k < 3; k++) {
@@ -83,7 +77,6 @@ void bw_pd_bond__virial(const bw_pd_body *pd, const bw_pd_block *block, int lane
       r2 += y[k] * y[k];
     }
     const double r = sqrt(r2), w = rest.fraction * pd->level->dv;
-    /* c0 alpha s/|y| per y (x) y: with e = y/|y| that is c0 alpha s |y| e (x) e. */
     const double c = bw_pd_bond__micromodulus(pd, h, l) * bw_pd_bond__alpha(pd, block, slot, lane);
     const double f = r > 0 ? 0.5 * c * w * (r - rest.r0) / (rest.r0 * r) : 0;
     for (int a = 0; a < 3; a++)

@@ -27,7 +27,6 @@ static bw_real surface_factor(const bw_pd_body *pd, double volume, double first_
 bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
 {
   bw_real *w = bw_pd_bond__state(pd)->w;
-  /* Families of own particles are whole: copies are there. */
   double *volume = NULL, *moment = NULL;
   bw_status st = BW_ALLOCATE(&volume, pd->n);
   BW_THEN(st, BW_ALLOCATE(&moment, pd->n));
@@ -43,7 +42,6 @@ bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
         volume[h] += rest.fraction * pd->level->dv;
         moment[h] += rest.fraction * pd->level->dv * rest.r0;
       }
-  /* Holes hold 1: their lanes are loaded, and nothing may be divided by zero. */
   for (size_t p = 0; p < pd->points.n_storage && st == BW_OK; p++)
     w[p] = 1;
   for (size_t h = 0; h < pd->n && st == BW_OK; h++)

@@ -222,10 +222,8 @@ void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
  * caller. BW_EINPUT for two on one site and for extents; BW_EMEM. Collective. */
 bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given,
                                 bw_particles_map *near) BW_MUST_CHECK;
-/* Copies' u from their owners; with velocity also vs of all. Collective. */
-void bw_pd_body_refresh(bw_pd_body *pd, bool velocity);
-/* Copies' values of any storage array from their owners. Collective. */
-void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places);
+void bw_pd_body_refresh(bw_pd_body *pd, bool velocity);       /* copies' u (and v). Collective. */
+void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places); /* copies' values. Collective. */
 
 /* pd_slots.c: storage places, runs, blocks and slots; near as above. BW_EINPUT for too many bonds
  * on one rank; BW_EMEM. Local. */
@@ -268,9 +266,8 @@ void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[]);
 void bw_pd_body_set_force(bw_pd_body *pd, const double F[]);
 void bw_pd_body_set_prescribed(bw_pd_body *pd, const double V[]);
 void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double absolute);
-size_t bw_pd_body_list_bytes(const bw_pd_body *pd);
-/* held.velocity from v: the prescribed go on as they move now. Local. */
-void bw_pd_body_adopt_prescribed(bw_pd_body *pd);
+void bw_pd_body_adopt_prescribed(bw_pd_body *pd);   /* held.velocity from v */
+size_t bw_pd_body_list_bytes(const bw_pd_body *pd); /* of slots and blocks */
 
 /* First slot after a block's; a block whose particles are all retired has none. */
 static inline uint32_t bw_pd_body_slot_end(const bw_pd_block *block)

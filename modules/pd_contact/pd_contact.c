@@ -116,7 +116,6 @@ static void positions(bw_pd_body *pd, bw_pd_contact *c)
 bw_status bw_pd_contact_update(bw_pd_contact *c)
 {
   bw_pd_body *pd = c->pd;
-  /* One rank's reason is reason for all: the search is collective. */
   int64_t needed = !c->built || moved(pd, c);
   bw_comm_max_int(pd->comm, 1, &needed);
   if (needed) {

@@ -83,12 +83,10 @@ static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *give
 {
   bw_solid_config *c = &s->config;
   const bw_pd_body_config body = body_config(c);
-  /* The bond law takes its options from the configuration, other laws from law_options. */
   const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
   const bool own = c->law != NULL && c->law != &bw_pd_bond_law;
   BW_TRY(bw_pd_body_create(comm, &body, own ? c->law : &bw_pd_bond_law,
                            own ? c->law_options : &bonds, given, &s->body));
-  /* Settings tell what is used: the law's Poisson ratio, the resolved fraction. */
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;
   bw_pd_body_set_damping(s->body, c->damping_pair, c->damping_mean, c->damping_absolute);

@@ -55,7 +55,6 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
   for (size_t i = 0; i < pd->n; i++) {
-    /* Displacements, not places: they keep their bits, whatever X0. */
     double *row = rows + BW_SOLID_RESTART_ROW * i;
     for (size_t k = 0; k < 3; k++) {
       row[k] = (double)pd->u[k][pd->points.place[i]];
@@ -65,7 +64,6 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
     }
     row[BW_SOLID_RESTART_ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
   }
-  /* Running sums are added over ranks: the next run may have another number of them. */
   const bw_solid_book *book = &s->book;
   const double none[3] = {0};
   const double *on_walls = s->contact != NULL ? bw_pd_contact_wall_force(s->contact) : none;
@@ -106,7 +104,6 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
       pd->load.damp[k][i] = (bw_real)row[9]; /* for the book: that of Verlet is of the half step */
       pd->load.extra[k][i] = 0;              /* inside a */
     }
-  /* Everything else that follows from rows. */
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);

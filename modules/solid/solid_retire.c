@@ -22,7 +22,6 @@ static void renew(bw_solid *s)
   }
   /* Copies of retired particles have to be known as such, so that nobody touches them. */
   bw_pd_body_fill_extended(pd, 1, pd->points.kind, pd->points.kind);
-  /* Surfaces, contact and writers notice that the set has changed. */
   pd->revision++;
   if (s->contact != NULL) bw_pd_contact_forget(s->contact);
 }

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Who includes whom: a table of the modules, read from their #include lines.
 
-usage: who_includes_whom.py [PAGE]
+usage: who_includes_whom.py [PAGE [--write]]
 Rows include columns. Modules stand in the order of tests/lint/modules.txt, in which each may include
 only those above it: so nobody includes in a circle, and the program fails where somebody does.
 With a PAGE (docs/architecture.md) it compares the table there with the sources and fails where they
-differ; without one it prints the table."""
+differ, or with --write puts the present one in its place; without one it prints the table."""
 import re
 import sys
 from pathlib import Path
@@ -56,10 +56,14 @@ def main():
         print("\n".join(lines))
         return 0
     page = Path(sys.argv[1])
-    if "\n".join("    " + line for line in lines) in page.read_text():
+    text, now = page.read_text(), "\n".join("    " + line for line in lines) + "\n"
+    if now in text:
         return 0
-    print(f"{page}: the table of who includes whom is not that of the sources, which is")
-    print("\n".join("    " + line for line in lines))
+    if "--write" in sys.argv[2:]:
+        page.write_text(re.sub(r"^     [ 0-9]+\n(    \w+ +\d+(  [x.])*\n)+", now, text, flags=re.MULTILINE))
+        return 0
+    print(f"{page}: the table of who includes whom is not that of the sources; --write mends it:")
+    print(now, end="")
     return 1
 
 

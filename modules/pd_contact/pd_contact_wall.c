@@ -156,7 +156,6 @@ static bw_status check_room(const bw_pd_contact *c, const bw_pd_wall *w)
 bw_status bw_pd_contact_set_walls(bw_pd_contact *c, int n, const bw_pd_wall wall[])
 {
   BW_REQUIRE(n >= 0 && n <= BW_PD_WALLS, BW_EINPUT, "solid: %d walls; at most %d", n, BW_PD_WALLS);
-  /* All walls are looked at before one of them is taken over. */
   c->n_wall = 0;
   for (int w = 0; w < n; w++) {
     BW_TRY(check_wall(&wall[w]));

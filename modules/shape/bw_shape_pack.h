@@ -6,23 +6,16 @@
 #pragma once
 #include "bw_shape.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-/* What a pack is made of. */
 typedef struct {
   double lower[3], upper[3];     /* box of the centres [L]                     required */
-  double radius_min, radius_max; /* of the balls [L]                           required */
+  double radius_min, radius_max; /* [L]                                        required */
   double gap;       /* least distance of surfaces [L]; negative: may overlap, default 0 */
   double fraction;  /* sum of the balls' volumes over the box's   required */
   bool planar;      /* discs: z is ignored                        default false */
   bool periodic[3]; /* balls go on at the other side              default false */
-  uint64_t seed;    /* another number, another pack               default 1 */
+  uint64_t seed;    /*                                            default 1 */
   int max_attempts; /* for one ball                               default 100000 */
 } bw_shape_pack_config;
-
-/* The defaults; the box, the radii and the fraction are still to be set. Local. */
 bw_shape_pack_config bw_shape_pack_config_default(void);
 
 /* Spheres as shapes, to be added or removed (`remove` false; the caller may change it), with the
@@ -33,7 +26,3 @@ bw_shape_pack_config bw_shape_pack_config_default(void);
  * Local. */
 bw_status bw_shape_pack_spheres(const bw_shape_pack_config *config, int *balls, int *count,
                                 bw_shape **shape) BW_MUST_CHECK;
-
-#ifdef __cplusplus
-}
-#endif

@@ -30,6 +30,7 @@ static void lay_out(size_t n, const double y[], double least, const double perio
     g->count[k] = p > 0 ? (int32_t)fmin(FARTHEST, fmax(1, floor(p / least))) : 0;
     g->edge[k] = p > 0 ? p / g->count[k] : least;
   }
+  /* A power of two, about one point to a bucket. */
   for (g->buckets = 64; g->buckets < n;)
     g->buckets *= 2;
 }
@@ -103,10 +104,12 @@ bw_status bw_particles_cells_near(const bw_particles_cells *g, const double y[],
   BW_REQUIRE(r > 0 && r <= g->least, BW_EINPUT,
              "particles: neighbours nearer than %g in cells made for %g at most", r, g->least);
   bw_particles_cells_of(g, x, own);
+  /* A ball of the cells' edge reaches into these cells and no further. */
   const int count = bw_particles_cells_around(g, own, cell);
   for (int c = 0; c < count; c++)
     for (int32_t q = g->head[bw_particles_cells_bucket(g, cell[c])]; q >= 0; q = g->next[q]) {
       double d[3];
+      /* Buckets are shared by cells whose keys fall together. */
       if (!bw_particles_cells_holds(g, cell[c], q)) continue;
       bw_particles_difference(g->period, x, y + 3 * (size_t)q, d);
       if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < r * r)) continue;

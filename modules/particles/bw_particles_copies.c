@@ -21,6 +21,7 @@ static bw_status resolve(const bw_comm *comm, const bw_particles_question *quest
   unsigned char *key = NULL;
   const size_t bytes = question->key_bytes;
   BW_TRY(bw_exchange_create(comm, question->n, question->owner, plan));
+  /* Each question is at its owner now, who looks into what is his. */
   const size_t asked = bw_exchange_received(*plan);
   bw_status st = bw_allocate(asked, bytes, &key);
   BW_THEN(st, BW_ALLOCATE(found, asked));
@@ -49,6 +50,7 @@ bw_status bw_particles_ask(const bw_comm *comm, const bw_particles_question *que
 /* Every question has found a particle; index: what the owners said. */
 static bw_status check_found(const bw_particles_question *question, size_t n, const int32_t index[])
 {
+  /* An owner without such a particle has answered -1. */
   for (size_t q = 0; q < question->n; q++) {
     if (index[q] >= 0) continue;
     const unsigned char *key = (const unsigned char *)question->key + q * question->key_bytes;
@@ -96,6 +98,7 @@ static bw_status ask_owners(bw_particles_copies *c, const bw_particles_question 
   if (st == BW_OK) {
     c->rows = bw_exchange_received(c->plan);
     for (size_t q = 0; q < c->rows; q++)
+      /* A number beyond the own ones would be a copy: copies of copies are not kept. */
       if (c->asked[q] >= 0 && (size_t)c->asked[q] >= c->n) c->asked[q] = -1;
     st = bw_comm_agree(c->comm, BW_ALLOCATE(&index, c->copies));
   }
@@ -124,6 +127,7 @@ bw_status bw_particles_copies_create(const bw_comm *comm, size_t n,
                                      const bw_particles_question *question, size_t width,
                                      bw_particles_copies **out)
 {
+  /* Copies in the order of the questions; owners answer, so values flow against the plan. */
   BW_TRY(make(comm, n, width, out));
   bw_status st = ask_owners(*out, question);
   BW_THEN(st, ready(*out));
@@ -149,6 +153,7 @@ bw_status bw_particles_copies_offer(const bw_comm *comm, size_t n, size_t rows, 
 {
   BW_TRY(make(comm, n, width, out));
   bw_particles_copies *c = *out;
+  /* Owners know who needs what: values flow along the plan, and nobody asked. */
   c->offered = true;
   c->rows = rows;
   bw_status st = bw_comm_agree(comm, take_rows(c, own));
@@ -232,6 +237,7 @@ void bw_particles_copies_sum(bw_particles_copies *c, int components, double all[
   bw_real *answer = (bw_real *)(void *)c->answer, *reply = (bw_real *)(void *)c->reply;
   for (size_t at = 0; at < width; at += room) {
     const size_t piece = width - at < room ? width - at : room;
+    /* What was added to copies goes home, where several copies of one are added in turn. */
     for (size_t k = 0; k < c->copies; k++)
       for (size_t d = 0; d < piece; d++)
         answer[piece * k + d] = (bw_real)all[width * (c->n + k) + at + d];

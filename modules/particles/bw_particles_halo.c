@@ -16,6 +16,7 @@ typedef struct {
 
 static void home_of(const bw_particles_lattice *lattice, const int32_t place[3], int32_t home[3])
 {
+  /* Images are looked up where their owner has them. */
   for (int k = 0; k < 3; k++) {
     const int32_t p = lattice->period[k], above = place[k] - lattice->lower[k];
     home[k] = p == 0 ? place[k] : lattice->lower[k] + (above % p + p) % p;
@@ -26,6 +27,7 @@ static bw_status grow(list *l)
 {
   bw_particles_halo larger = {.n = l->halo->n}, *old = l->halo;
   const size_t capacity = 2 * l->capacity + 1024;
+  /* The old list stays whole if the new one cannot be made. */
   bw_status st = BW_ALLOCATE(&larger.place, 3 * capacity);
   BW_THEN(st, BW_ALLOCATE(&larger.home, 3 * capacity));
   BW_THEN(st, BW_ALLOCATE(&larger.owner, capacity));
@@ -72,6 +74,7 @@ static bw_status list_places(list *l, size_t n, const int32_t site[])
     lower[k] = (int32_t)near->lower[k];
     upper[k] = (int32_t)(near->lower[k] + near->size[k] - 1);
   }
+  /* As wide as the map of own sites, whose margin is the reach of an offset. */
   BW_TRY(bw_particles_map_create(n, lower, upper, &l->seen));
   for (size_t i = 0; i < n; i++)
     for (int q = 0; q < l->lattice->n_offset; q++) {
@@ -91,6 +94,7 @@ static int32_t own_at(const void *context, const void *key)
 static bw_status keep_occupied(bw_particles_halo *h, const int32_t index[], size_t n,
                                bw_particles_map *near)
 {
+  /* The list closes up in place; numbers follow those of the own particles. */
   size_t kept = 0;
   for (size_t q = 0; q < h->n; q++) {
     int32_t found;

@@ -18,7 +18,7 @@ typedef struct {
   const bw_particles_partition *partition; /* tells who owns a site */
   int32_t lower[3];                        /* periodic: sites are lower .. lower + period - 1 */
   int32_t period[3];                       /* in steps; 0: not periodic */
-  int n_offset;
+  int n_offset;                            /* rows of offset */
   const int32_t *offset; /* (n_offset,3) steps from a particle to those that it interacts with */
 } bw_particles_lattice;
 

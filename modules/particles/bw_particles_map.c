@@ -36,6 +36,7 @@ bw_status bw_particles_map_create(size_t n, const int32_t lower[3], const int32_
                upper[k], k);
     cells *= (double)map->size[k];
   }
+  /* Well filled: a table by place, without keys. Else hashed, at most half full. */
   map->dense = cells <= (double)CELLS_PER_ENTRY * (double)n + CELLS_FREE;
   map->capacity = map->dense ? (size_t)cells : power_of_two(3 * n);
   return allocate(map);
@@ -50,6 +51,7 @@ bw_status bw_particles_map_create_own(size_t n, const int32_t site[], int32_t ma
              "particles: one rank has %zu of them; below 2^31 can be numbered: take more ranks", n);
   bw_particles_extent(n, site, lower, upper);
   for (int k = 0; k < 3; k++) {
+    /* Room for places around the own ones, which the caller adds. */
     lower[k] -= margin;
     upper[k] += margin;
   }
@@ -118,6 +120,7 @@ static bw_status grow(bw_particles_map *map)
   map->key = NULL;
   const bw_status st = allocate(map);
   for (size_t q = 0; q < old.capacity && st == BW_OK; q++)
+    /* Places depend on the capacity: every entry is put anew. */
     if (old.value[q] >= 0) {
       const size_t at = find(map, old.key[q]);
       map->key[at] = old.key[q];

@@ -58,6 +58,7 @@ static void cell_of(const bw_particles_space *s, const double x[3], int32_t cell
 
 static bw_status divide(bw_particles_space *s, size_t n, const double x[])
 {
+  /* A division of cells weighted by the points in them. */
   int32_t *cell = NULL;
   bw_status st = bw_comm_agree(s->comm, BW_ALLOCATE(&cell, 3 * n));
   for (size_t q = 0; q < n && st == BW_OK; q++)
@@ -73,6 +74,7 @@ static void lay_out(const bw_comm *comm, const bw_particles_space_config *config
   s->comm = comm;
   s->least = config->edge;
   for (int k = 0; k < 3; k++) {
+    /* A whole number of cells goes into a period; the edge becomes a little longer. */
     const double p = config->period[k];
     s->lower[k] = config->lower[k];
     s->count[k] = p > 0 ? (int32_t)fmin(FARTHEST, fmax(1, floor(p / config->edge))) : 0;
@@ -127,6 +129,7 @@ static size_t ranks_near(const bw_particles_space *s, const double x[3], double 
                          size_t seen[], int rank[])
 {
   const int me = bw_comm_rank(s->comm);
+  /* A box of cells holds the ball of this reach; a few corners too many cost little. */
   int32_t first[3], last[3], at[3], cell[3];
   size_t n = 0;
   for (int k = 0; k < 3; k++)
@@ -136,6 +139,7 @@ static size_t ranks_near(const bw_particles_space *s, const double x[3], double 
       for (at[0] = first[0]; at[0] <= last[0]; at[0]++) {
         for (int k = 0; k < 3; k++)
           cell[k] = wrap(s, k, at[k]);
+        /* Each rank once, though several of its cells may be in reach. */
         const int r = bw_particles_partition_owner(s->partition, cell);
         if (r == me || seen[r] == stamp) continue;
         seen[r] = stamp;
@@ -148,6 +152,7 @@ static size_t ranks_near(const bw_particles_space *s, const double x[3], double 
 static bw_status grow(size_t n, size_t size, size_t *capacity, int32_t **own, int **destination)
 {
   if (n + size <= *capacity) return BW_OK;
+  /* Twofold, so that many calls cost no more than a few copies. */
   const size_t larger = 2 * *capacity + size + 1024;
   int32_t *o = NULL;
   int *d = NULL;
@@ -228,6 +233,7 @@ bw_status bw_particles_migrate(const bw_particles_space *s, size_t n, const doub
     st = bw_comm_agree(s->comm, st);
   }
   if (st == BW_OK) {
+    /* Places and rows travel by the same plan, and stay in the same order. */
     bw_exchange_forward(plan, 3 * sizeof *there, x, there);
     if (bytes > 0) bw_exchange_forward(plan, bytes, rows, with);
   } else {

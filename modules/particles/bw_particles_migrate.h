@@ -17,12 +17,14 @@ extern "C" {
 
 typedef struct bw_particles_space bw_particles_space;
 
+/* How space is cut into cells. */
 typedef struct {
   double lower[3];  /* a corner of a cell, somewhere among the points [L]      default 0 */
   double edge;      /* least edge of a cell [L], above 0                       required */
   double period[3]; /* positions that differ by it are the same place [L]      default 0: none */
 } bw_particles_space_config;
 
+/* The defaults; edge is still to be set. Local. */
 bw_particles_space_config bw_particles_space_config_default(void);
 
 /* Divide space by the points x (n,3) that the ranks have at present, in any division; the

@@ -86,6 +86,7 @@ static void make_keys(const bw_particles_partition *p, size_t n, const int32_t s
 static void find_boxes(work *w)
 {
   for (int q = 0; q < w->n_group; q++) {
+    /* A rank without keys of a group leaves the corners to the others. */
     const group *g = &w->groups[q];
     int64_t *corner = w->shared + 6 * (size_t)q, above[3];
     for (int k = 0; k < 6; k++)
@@ -114,12 +115,14 @@ static void begin_search(work *w, group *g, const int64_t corner[6])
 {
   const int slowest = longest_axis(corner), *axes = key_axes[slowest];
   const int64_t least[3] = {-corner[0], -corner[1], -corner[2]};
+  /* Keys are made anew only where the longest axis is another one than before. */
   int64_t above[3];
   for (size_t i = g->begin; i < g->end && slowest != g->slowest; i++) {
     bw_particles__unkey(key_axes[g->slowest], w->key[i], above);
     w->key[i] = bw_particles__key(axes, above);
   }
   g->slowest = slowest;
+  /* All keys of the group are still between the bounds. */
   g->open = g->begin;
   g->close = g->end;
   g->s = bw_particles__select(bw_particles__cut_index(g->n, g->parts / 2, g->parts),
@@ -130,6 +133,7 @@ static void begin_search(work *w, group *g, const int64_t corner[6])
 static size_t divide(uint64_t key[], size_t begin, size_t end, uint64_t pivot)
 {
   for (;;) {
+    /* Both ends walk towards each other and exchange what is on the wrong side. */
     while (begin < end && key[begin] < pivot)
       begin++;
     while (begin < end && key[end - 1] >= pivot)
@@ -167,6 +171,7 @@ static void search(work *w)
     for (int q = 0; q < w->n_group; q++) {
       group *g = &w->groups[q];
       if (bw_particles__selected(&g->s)) continue;
+      /* Every rank counts the same sums, so that all narrow alike. */
       if (bw_particles__narrow(&g->s, w->shared[q]))
         g->open = g->middle;
       else
@@ -245,6 +250,7 @@ static bw_status allocate(work *w, size_t n)
 static bw_status partition(bw_particles_partition *p, const bw_comm *comm, size_t n,
                            const int32_t site[])
 {
+  /* Room first: nothing that follows can fail on one rank alone. */
   work w = {.comm = comm, .p = p};
   p->parts = bw_comm_size(comm);
   bw_status st = bw_comm_agree(comm, allocate(&w, n));
@@ -281,11 +287,13 @@ void bw_particles_partition_destroy(bw_particles_partition **partition_)
 
 int bw_particles_partition_owner(const bw_particles_partition *p, const int32_t site[3])
 {
+  /* Places beyond the box belong to whoever owns its border. */
   int64_t above[3];
   for (int k = 0; k < 3; k++) {
     const int64_t a = (int64_t)site[k] - p->lower[k];
     above[k] = a < 0 ? 0 : a > BW_PARTICLES_MOST ? BW_PARTICLES_MOST : a;
   }
+  /* Down the tree: each cut halves the ranks in question. */
   int first = 0;
   for (int parts = p->parts, left = parts / 2; parts > 1; left = parts / 2) {
     const cut *c = &p->cuts[first + left - 1];

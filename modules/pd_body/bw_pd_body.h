@@ -1,11 +1,11 @@
 /* bw_pd_body.h -- a peridynamic body: lattice, families, bonds that hold, motion.
  *
  * What every law of the solid stands on, and what the front (bw_solid.h) shows of it. Particles sit
- * on a uniform lattice, X0 = origin + axes.(site + 1/2) ds, site[3] integers, or, with `disorder`, in
- * a cloud around it (pd_cloud.c). The family of h holds the l with |xi| < horizon + ds/2 (POROUS
+ * on a uniform lattice, X0 = origin + axes.(site + 1/2) ds, site[3] integers, or, with `disorder`,
+ * in a cloud around it (pd_cloud.c). The family of h holds the l with |xi| < horizon + ds/2 (POROUS
  * 3.30, ERRATA 2); every bond is kept from both ends, in blocks of the processor's vectors.
- * Shapes   vectors row-major (n,3); own particles are 0 .. n-1 in lattice order, then copies of what
- *          other ranks own and periodic images up to n_extended.
+ * Shapes   vectors row-major (n,3); own particles are 0 .. n-1 in lattice order, then copies of
+ *          what other ranks own and periodic images up to n_extended.
  * Units    any consistent set: [M], [L], [T]. */
 #pragma once
 #include "bw_comm.h"
@@ -40,10 +40,13 @@ typedef enum {
   BW_PD_REACH_HORIZON    /* |xi| < horizon */
 } bw_pd_family_reach;
 
-/* What a particle is, bits. Prescribed ones move with a given velocity and are not accelerated: the
- * ghost layers of POROUS 3.3.11. Unbreakable ones keep their bonds. Retired ones have left the
- * mechanics; not for create. */
-enum { BW_PD_FREE = 0, BW_PD_PRESCRIBED = 1, BW_PD_UNBREAKABLE = 2, BW_PD_RETIRED = 4 };
+/* What a particle is, bits that may be joined by | but for retired, which is not for create. */
+enum {
+  BW_PD_FREE = 0,        /* moves by the forces on it */
+  BW_PD_PRESCRIBED = 1,  /* moves with a given velocity: the ghost layers of POROUS 3.3.11 */
+  BW_PD_UNBREAKABLE = 2, /* keeps its bonds, whatever their stretch */
+  BW_PD_RETIRED = 4      /* has left the mechanics and flies on */
+};
 
 enum { BW_PD_GROUPS = 16 }; /* groups of particles in one body, at most */
 
@@ -60,7 +63,7 @@ typedef struct {
   bw_pd_geometry geometry;               /* dimension and plane condition */
   double ds;                             /* lattice spacing [L] */
   double thickness;                      /* of the layer in 2D [L] */
-  double horizon_ratio;                  /* m = horizon/ds [-] */
+  double horizon_ratio;                  /* m = horizon/ds [-], 1 .. 12 */
   bw_pd_volume_fraction volume_fraction; /* of cells that the horizon cuts */
   bw_pd_family_reach family_reach;       /* who is family */
   double disorder;       /* particles start up to this many ds off their sites, 0.4 at most */
@@ -83,22 +86,22 @@ typedef struct {
   const uint8_t *group; /* (n) rows of material; NULL: 0 */
 } bw_pd_sites;
 
-/* A bond of a particle as seen from it. */
+/* A bond of a particle as seen from it, its owner. */
 typedef struct {
   int32_t neighbour; /* index into own particles and copies */
   int16_t slot;      /* number of the bond's direction in the stencil */
   bool intact;       /* it still holds */
 } bw_pd_link;
 
-/* Own particles and copies. */
+/* Own particles, then copies of what other ranks own and periodic images. */
 typedef struct {
   size_t n;          /* own and copies */
   const int64_t *id; /* (n) global ids */
   const bw_real *X;  /* (n,3) present positions, copies shifted to where they act [L] */
 } bw_pd_extended;
 
-/* The motion of own particles and copies, where the body keeps it: of the extended particle e at
- * place[e]. */
+/* The motion of own particles and copies, where the body keeps it: of the extended particle e it is
+ * in u[k][place[e]] and v[k][place[e]], k = 0 .. 2. Borrowed. */
 typedef struct {
   const int32_t *place; /* (n_extended) storage places */
   const bw_real *u[3];  /* displacement [L] */

@@ -9,9 +9,10 @@
 extern "C" {
 #endif
 
-enum { BW_PD_SYMMETRIC = 6 };
+enum { BW_PD_SYMMETRIC = 6 }; /* numbers in a row */
 
-/* Green-Lagrange strain 1/2 (F^T F - 1), (n,6), of n deformation gradients (n,9). Local. */
+/* Green-Lagrange strain 1/2 (F^T F - 1), (n,6) [-], of n deformation gradients (n,9), row-major.
+ * Local. */
 void bw_pd_tensor_strain(size_t n, const double F[], double strain[]);
 
 /* Principal values (n,3), largest first, and their unit directions in rows (n,9), or NULL, of n
@@ -19,10 +20,11 @@ void bw_pd_tensor_strain(size_t n, const double F[], double strain[]);
 bw_status bw_pd_tensor_principal(size_t n, const double tensor[], double value[],
                                  double direction[]) BW_MUST_CHECK;
 
-/* sqrt(3/2 s:s) with s the deviator, (n). Local. */
+/* Von Mises' equivalent stress sqrt(3/2 s:s), s the deviator, (n) in the unit of stress (n,6).
+ * Local. */
 void bw_pd_tensor_von_mises(size_t n, const double stress[], double von_mises[]);
 
-/* t += factor e e with e = xi/r0. Local. */
+/* t += factor e (x) e with e = xi/r0, r0 not 0. Local. */
 void bw_pd_tensor_add_dyad(double factor, const double xi[3], double r0, double t[BW_PD_SYMMETRIC]);
 
 #ifdef __cplusplus

@@ -18,6 +18,10 @@
 #include "bw_pd_body.h"
 #include "pd_level.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). */
 #ifdef BW_SINGLE
 #define BW_PD_WIDE   8
@@ -38,10 +42,12 @@ enum { BW_PD_PAD = 16 }; /* unused places before and after a storage array: load
 
 /* A bond before any load. */
 typedef struct {
-  double xi[3], r0, fraction; /* [L], |xi|, Gamma */
+  double xi[3];    /* from owner to partner [L] */
+  double r0;       /* |xi| [L] */
+  double fraction; /* Gamma: the part of the partner's cell that counts [-] */
 } bw_pd_rest;
 
-enum { BW_PD_MIXED = 255 };
+enum { BW_PD_MIXED = 255 }; /* group of a block where groups meet */
 
 /* BW_PD_LANES successive storage places, some of them own particles. */
 typedef struct {
@@ -56,17 +62,18 @@ typedef struct {
 
 /* One direction of a block. */
 typedef struct {
-  int32_t base; /* storage place of lane 0's neighbour */
-  uint16_t direction;
-  uint8_t mask;   /* bonds that hold */
-  uint8_t family; /* bonds that existed at the start */
+  int32_t base;       /* storage place of lane 0's neighbour; lane k's is base + k */
+  uint16_t direction; /* row of the stencil */
+  uint8_t mask;       /* lanes whose bond holds */
+  uint8_t family;     /* lanes whose bond existed at the start */
 } bw_pd_slot;
 
+/* Own particles own .. own + n - 1 lie at the storage places place .. place + n - 1. */
 typedef struct {
-  int32_t place, own, n; /* own particles own.. own+n-1 lie at storage place.. place+n-1 */
+  int32_t place, own, n; /* first place, first particle, how many */
 } bw_pd_run;
 
-/* Who is where. Arrays of n_extended but for occupant. */
+/* Who is where. Arrays have n_extended rows, own particles first, but for occupant. */
 typedef struct {
   int64_t total;     /* particles of all ranks */
   int axis[3];       /* of the lattice order, fastest first */
@@ -81,22 +88,22 @@ typedef struct {
 
 /* Copies of what others own, and images. */
 typedef struct {
-  bw_particles_copies *copies;
-  bw_real *extended_X; /* (n_extended,3), made on demand */
+  bw_particles_copies *copies; /* the plan by which copies get values and give sums back */
+  bw_real *extended_X;         /* (n_extended,3), made on demand */
 } bw_pd_halo;
 
 /* Who is bonded to whom. */
 typedef struct {
   size_t n_block, n_slot, n_run;
-  bw_pd_block *block; /* (n_block + 1) */
+  bw_pd_block *block; /* (n_block + 1), in the order of own particles; of the last one slot only */
   bw_pd_slot *slot;   /* (n_slot) */
   bw_pd_run *run;     /* (n_run) */
   uint32_t *hit;      /* (n_block) blocks where a bond is beyond its limit */
-  size_t n_hit;
-  uint16_t *factor; /* (n_slot, BW_PD_LANES) of a law that keeps a factor per bond; NULL: none */
-  int64_t directed; /* bonds at the start, from both ends, of this rank */
-  int64_t events;   /* bonds broken (or mended by a restart) so far */
-  double released;  /* energy that bonds held when they broke, of this rank [M L^2/T^2] */
+  size_t n_hit;       /* how many hit holds */
+  uint16_t *factor;   /* (n_slot, BW_PD_LANES) of a law that keeps a factor per bond; NULL: none */
+  int64_t directed;   /* bonds at the start, from both ends, of this rank */
+  int64_t events;     /* bonds broken (or mended by a restart) so far */
+  double released;    /* energy that bonds held when they broke, of this rank [M L^2/T^2] */
 } bw_pd_bonds;
 
 /* Who moves as told. */
@@ -114,30 +121,32 @@ typedef struct {
   bw_real *damp[3];  /* damping/rho */
 } bw_pd_forces;
 
-/* Coefficients of damping (ERRATA 4): of pairs [M/(L^6 T)], to the mean, absolute [M/(L^3 T)]. */
+/* Coefficients of damping (ERRATA 4). */
 typedef struct {
-  double pair, mean, absolute;
-  double most_weight; /* largest eigenvalue of sum_l e e Gamma dV over particles [L^3] */
+  double pair;           /* [M/(L^6 T)] */
+  double mean, absolute; /* to the mean of the family, absolute [M/(L^3 T)] */
+  double most_weight;    /* largest eigenvalue of sum_l e e Gamma dV over particles [L^3] */
 } bw_pd_dampings;
 
-enum { BW_PD_FIELDS = 8 };
-typedef struct bw_pd_field bw_pd_field;
+enum { BW_PD_FIELDS = 8 };              /* fields of a law, at most */
+typedef struct bw_pd_field bw_pd_field; /* pd_law.h */
 
 struct bw_pd_body {
-  const bw_comm *comm; /* borrowed */
-  bw_pd_body_config config;
-  int dimension;        /* 2 or 3 */
-  bw_pd_level *level;   /* one row */
-  size_t n, n_extended; /* own particles; own and copies */
-  bw_pd_points points;
-  bw_pd_halo halo;
-  bw_pd_bonds bonds;
-  bw_real *u[3], *vs[3]; /* storage: displacement; velocity of own and copies, on demand */
-  bw_real *shift[3];     /* storage: reference place from its site; NULL: a lattice */
-  bw_real *v[3], *a[3];  /* own: velocity, internal force / rho */
-  bw_real *weight;       /* (n) density over that of the first group; NULL: one group */
-  bw_pd_forces load;
-  bw_pd_held held;
+  const bw_comm *comm;      /* borrowed */
+  bw_pd_body_config config; /* as asked for, defaults and Poisson's ratio resolved */
+  int dimension;            /* 2 or 3 */
+  bw_pd_level *level;       /* one row */
+  size_t n, n_extended;     /* own particles; own and copies */
+  bw_pd_points points;      /* who is where */
+  bw_pd_halo halo;          /* what others own */
+  bw_pd_bonds bonds;        /* who is bonded to whom */
+  bw_real *u[3],
+      *vs[3];           /* storage: displacement [L]; velocity of own and copies, on demand [L/T] */
+  bw_real *shift[3];    /* storage: reference place from its site [L]; NULL: a lattice */
+  bw_real *v[3], *a[3]; /* own: velocity [L/T], internal force / rho [L/T^2] */
+  bw_real *weight;      /* (n) density over that of the first group [-]; NULL: one group */
+  bw_pd_forces load;    /* what acts besides the bonds */
+  bw_pd_held held;      /* who moves as told */
   bw_pd_dampings damping;
   bool current;         /* copies and a are those of u, v */
   bool breakage;        /* bonds may break */
@@ -145,85 +154,115 @@ struct bw_pd_body {
   const bw_pd_law *law; /* borrowed */
   void *state;          /* of the law */
   double frequency2;    /* bound of the squared largest frequency without damping [1/T^2] */
-  int n_field;
-  bw_pd_field *field; /* (n_field) of the law */
+  int n_field;          /* fields of the law, at most BW_PD_FIELDS */
+  bw_pd_field *field;   /* (n_field) */
 };
 
-/* pd_create.c. Zeros, with BW_PD_PAD more before and after. */
+/* pd_create.c */
+
+/* A storage array of n places, with BW_PD_PAD more before and after, zero everywhere. The caller
+ * owns it, and releases it by the second (which sets it to NULL; NULL is fine). BW_EMEM. Local. */
 bw_status bw_pd_body_storage_array(size_t n, bw_real **out) BW_MUST_CHECK;
 void bw_pd_body_release_storage_array(bw_real **array);
+
 /* Particles, families and bonds of the sites that the ranks give, with the constants of the law.
- * `comm` and `law` are borrowed until destroy. Collective. */
+ * `comm` and `law` are borrowed until destroy, `options` (the law's) and `given` during the call.
+ * *out is the caller's, NULL after a failure. BW_EINPUT names the value; BW_EMEM. Collective. */
 bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config,
                             const bw_pd_law *law, const void *options, const bw_pd_sites *given,
                             bw_pd_body **out) BW_MUST_CHECK;
 void bw_pd_body_destroy(bw_pd_body **pd); /* NULL is fine. Collective. */
 
 /* pd_config.c */
-bw_status bw_pd_body_check(const bw_pd_body_config *config) BW_MUST_CHECK;
-bw_status
-bw_pd_body_levels(bw_pd_body *pd) BW_MUST_CHECK; /* the table of levels, without stencils */
-double bw_pd_body_natural_poisson(bw_pd_geometry geometry); /* of bonds: 1/3 or 1/4 (ERRATA 14) */
 
-/* pd_fraction.c: part of the cell at `offset` (in ds) within the distance m of the origin */
+/* Refuses what no law could be asked for (BW_EINPUT). Local. */
+bw_status bw_pd_body_check(const bw_pd_body_config *config) BW_MUST_CHECK;
+/* The table of levels, without stencils. BW_EMEM. Local. */
+bw_status bw_pd_body_levels(bw_pd_body *pd) BW_MUST_CHECK;
+/* Poisson's ratio of a network of bonds: 1/3 in plane stress, else 1/4 (ERRATA 14). Local. */
+double bw_pd_body_natural_poisson(bw_pd_geometry geometry);
+
+/* pd_fraction.c: the part of the square or cube at `offset` (3, in ds) within the distance m (in
+ * ds) of the origin, 0 .. 1. BW_EMEM, BW_EDIVERGED of the quadrature. Local. */
 double bw_pd_body_fraction_area(double m, const int32_t offset[3]);
 bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3],
                                      double *fraction) BW_MUST_CHECK;
 
 /* pd_cloud.c: reference places off their sites */
-bw_status bw_pd_body_scatter(bw_pd_body *pd) BW_MUST_CHECK; /* shift of all places, once numbered */
-/* The bond in a direction of the stencil whose ends are off their sites by h and l [L]. */
+
+/* pd->shift of all places, once they are numbered. BW_EMEM. Local. */
+bw_status bw_pd_body_scatter(bw_pd_body *pd) BW_MUST_CHECK;
+/* The bond in a direction of the stencil whose ends are off their sites by h and l [L]; or whose
+ * ends are at the storage places h and l. Local. */
 bw_pd_rest bw_pd_body_apart(const bw_pd_body *pd, int direction, const double h[3],
                             const double l[3]);
 bw_pd_rest bw_pd_body_rest_of_cloud(const bw_pd_body *pd, int direction, int32_t h, int32_t l);
 /* Means over the full families of a sample of sites: of the sums of Gamma, Gamma |xi| and
- * Gamma |xi|^2, lengths in ds. */
+ * Gamma |xi|^2, lengths in ds. BW_EMEM. Local. */
 bw_status bw_pd_body_cloud_means(const bw_pd_body *pd, double mean[3]) BW_MUST_CHECK;
 
 /* pd_stencil.c */
-double bw_pd_body_family_reach(const bw_pd_body_config *config); /* in ds */
-bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
-int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
-void bw_pd_body_rows(bw_pd_body *pd); /* the columns of the kernel rows that are geometry */
 
-/* pd_axes.c: the axes of the lattice order of a body of so many sites each way, fastest first */
+/* How far a family reaches, in ds: m + 1/2 or m. Local. */
+double bw_pd_body_family_reach(const bw_pd_body_config *config);
+/* Fills level->stencil and makes room for the kernel rows. BW_EMEM, BW_EDIVERGED. Local. */
+bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
+/* Row of the stencil of an offset in lattice steps; -1: none. Local. */
+int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
+/* The columns of the kernel rows that are geometry. Local. */
+void bw_pd_body_rows(bw_pd_body *pd);
+
+/* pd_axes.c: the axes of the lattice order of a body of so many sites each way, fastest first;
+ * reach in steps. Local. */
 void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
 
 /* pd_halo.c */
-/* near: site (shifted for images) -> extended index, to be destroyed by the caller. Collective. */
+
+/* Fills points and halo. near: site (shifted for images) -> extended index, to be destroyed by the
+ * caller. BW_EINPUT for two on one site and for extents; BW_EMEM. Collective. */
 bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given,
                                 bw_particles_map *near) BW_MUST_CHECK;
 void bw_pd_body_refresh(bw_pd_body *pd, bool velocity);       /* copies' u (and v). Collective. */
 void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places); /* copies' values. Collective. */
 
-/* pd_slots.c */
+/* pd_slots.c: storage places, runs, blocks and slots; near as above. BW_EINPUT for too many bonds
+ * on one rank; BW_EMEM. Local. */
 bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near) BW_MUST_CHECK;
 
-/* pd_damping.c: load.damp of `n` blocks (list NULL: all); absolute: adds that kind alone */
-bool bw_pd_body_damped(const bw_pd_body *pd);
-void bw_pd_body_damp(bw_pd_body *pd, size_t n, const uint32_t list[]);
-void bw_pd_body_damp_absolute(bw_pd_body *pd);
-bw_status
-bw_pd_body_damping_bound(bw_pd_body *pd) BW_MUST_CHECK; /* damping.most_weight. Collective. */
+/* pd_damping.c */
 
-/* pd_links.c: a bond is gone, seen from its owner; its energy goes to bonds.released. */
+bool bw_pd_body_damped(const bw_pd_body *pd); /* some coefficient is not zero. Local. */
+/* load.damp of n blocks, list (n) of their numbers (NULL: of all), by all kinds of damping; u and v
+ * of copies are current. Local. */
+void bw_pd_body_damp(bw_pd_body *pd, size_t n, const uint32_t list[]);
+/* Adds absolute damping alone to load.damp, after a sweep that did the pairs. Local. */
+void bw_pd_body_damp_absolute(bw_pd_body *pd);
+/* damping.most_weight. BW_EMEM. Collective. */
+bw_status bw_pd_body_damping_bound(bw_pd_body *pd) BW_MUST_CHECK;
+
+/* pd_links.c */
+
+/* The bond of a lane of a slot is gone, seen from its owner; the half of its energy goes to
+ * bonds.released. The other end cuts its own. Local. */
 void bw_pd_body_cut(bw_pd_body *pd, bw_pd_block *block, bw_pd_slot *slot, int lane);
+/* Present length of the bond of a lane of a slot [L]; h: its owner's storage place. Local. */
 double bw_pd_body_length(const bw_pd_body *pd, int32_t h, const bw_pd_slot *slot, int lane,
-                         const double xi[3]); /* present length of a bond [L] */
-void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[]); /* (n) POROUS 3.28 */
+                         const double xi[3]);
+/* What bw_solid.h says of its functions of these names. */
+void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[]);
 void bw_pd_body_get_broken(const bw_pd_body *pd, uint16_t broken[]);
 int bw_pd_body_links(const bw_pd_body *pd, size_t h, bw_pd_link link[]);
-bw_pd_extended bw_pd_body_get_extended(bw_pd_body *pd);            /* Collective. */
-bw_pd_motion bw_pd_body_get_motion(bw_pd_body *pd, bool velocity); /* Collective. */
+bw_pd_extended bw_pd_body_get_extended(bw_pd_body *pd);
+bw_pd_motion bw_pd_body_get_motion(bw_pd_body *pd, bool velocity);
 void bw_pd_body_fill_extended(bw_pd_body *pd, size_t bytes, const void *own, void *all);
 void bw_pd_body_sum_extended(bw_pd_body *pd, double *all);
 
-/* pd_views.c */
+/* pd_views.c: what bw_solid.h says of its functions of these names */
 void bw_pd_body_get_reference(const bw_pd_body *pd, double X0[]);
 void bw_pd_body_get_position(const bw_pd_body *pd, double X[]);
 void bw_pd_body_get_velocity(const bw_pd_body *pd, double V[]);
 void bw_pd_body_get_acceleration(const bw_pd_body *pd, double A[]);
-void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[]); /* Collective. */
+void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[]);
 void bw_pd_body_set_force(bw_pd_body *pd, const double F[]);
 void bw_pd_body_set_prescribed(bw_pd_body *pd, const double V[]);
 void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double absolute);
@@ -283,7 +322,12 @@ static inline bw_pd_rest bw_pd_body_rest(const bw_pd_body *pd, int direction, in
 {
   if (pd->config.disorder > 0) return bw_pd_body_rest_of_cloud(pd, direction, h, l);
   const double *xi = pd->level->stencil.xi + 3 * direction;
-  return (bw_pd_rest){{xi[0], xi[1], xi[2]},
-                      pd->level->stencil.r0[direction],
-                      pd->level->stencil.fraction[direction]};
+  const bw_pd_rest rest = {{xi[0], xi[1], xi[2]},
+                           pd->level->stencil.r0[direction],
+                           pd->level->stencil.fraction[direction]};
+  return rest;
 }
+
+#ifdef __cplusplus
+}
+#endif

@@ -31,9 +31,11 @@ static uint64_t mix(uint64_t x)
 /* Evenly from 0 .. 1; `which` numbers the draws of one site. */
 static double uniform(const bw_pd_body_config *c, const int32_t site[3], uint64_t which)
 {
+  /* Seed and coordinates go through the hash one by one, so that no two sites share a draw. */
   uint64_t x = mix((uint64_t)(uint32_t)c->disorder_seed + (which << 32));
   for (int k = 0; k < 3; k++)
     x = mix((x + 0x9e3779b97f4a7c15u) ^ (uint64_t)(uint32_t)site[k]);
+  /* 53 bits are what a double holds. */
   return (double)(x >> 11) * 0x1p-53;
 }
 
@@ -51,6 +53,7 @@ static void offset(const bw_pd_body_config *c, const int32_t site[3], double y[3
 {
   int32_t at[3];
   home(c, site, at);
+  /* Evenly over the circle, or over the sphere by Archimedes: z is even in -1 .. 1. */
   const double angle = 2 * PI * uniform(c, at, 0);
   const double z = c->geometry == BW_PD_3D ? 2 * uniform(c, at, 1) - 1 : 0;
   const double across = c->disorder * sqrt(1 - z * z);
@@ -93,6 +96,7 @@ static bool next_site(const field *f, int margin, int32_t site[3])
 /* What the neighbours of a site nearer than NEAREST push its particle by. */
 static void push(const field *f, const int32_t site[3], double out[3])
 {
+  /* Places of the sweep before: the order of the sites does not matter. */
   const double *here = f->before + 3 * row_at(f, site);
   const int rz = f->size[2] > 1;
   out[0] = out[1] = out[2] = 0;
@@ -105,6 +109,7 @@ static void push(const field *f, const int32_t site[3], double out[3])
         for (int k = 0; k < 3; k++)
           d[k] = o[k] + (other[k] - here[k]), r2 += d[k] * d[k];
         if (!(r2 < NEAREST * NEAREST) || r2 == 0) continue; /* 0: itself */
+        /* Half of what is lacking; the other one does the other half. */
         const double r = sqrt(r2), part = 0.5 * (NEAREST - r) / r;
         for (int k = 0; k < 3; k++)
           out[k] -= part * d[k];
@@ -115,9 +120,11 @@ static void sweep_field(const bw_pd_body_config *c, field *f)
 {
   const size_t all = (size_t)f->size[0] * (size_t)f->size[1] * (size_t)f->size[2];
   int32_t site[3];
+  /* Everybody is pushed from where all stood after the last sweep. */
   memcpy(f->before, f->y, 3 * all * sizeof *f->y);
   first_site(f, 1, site);
   do {
+    /* A particle stays within its disorder of the site, so that the stencil holds all partners. */
     double *y = f->y + 3 * row_at(f, site), p[3], r2 = 0;
     push(f, site, p);
     for (int k = 0; k < 3; k++)
@@ -132,6 +139,7 @@ static bw_status make_field(const bw_pd_body_config *c, const int32_t lower[3], 
 {
   const bool planar = c->geometry != BW_PD_3D;
   for (int k = 0; k < 3; k++) {
+    /* A push travels one site per sweep: within the margin places are not final, inside they are. */
     const bool flat = planar && k == 2;
     f->lower[k] = flat ? 0 : lower[k] - SWEEPS;
     f->size[k] = flat ? 1 : size + 2 * SWEEPS;
@@ -140,10 +148,12 @@ static bw_status make_field(const bw_pd_body_config *c, const int32_t lower[3], 
   BW_TRY(BW_ALLOCATE(&f->y, 3 * all));
   BW_TRY(BW_ALLOCATE(&f->before, 3 * all));
   int32_t site[3];
+  /* Drawn without regard to each other ... */
   first_site(f, 0, site);
   do
     offset(c, site, f->y + 3 * row_at(f, site));
   while (next_site(f, 0, site));
+  /* ... then pushed apart. */
   for (int q = 0; q < SWEEPS; q++)
     sweep_field(c, f);
   return BW_OK;
@@ -170,6 +180,7 @@ static void tile_of(const int32_t site[3], int32_t tile[3])
 
 static bw_status make_tiles(const bw_pd_body *pd, tiling *t)
 {
+  /* The box of all tiles bounds the map's keys. */
   int32_t lower[3] = {INT32_MAX, INT32_MAX, INT32_MAX};
   int32_t upper[3] = {INT32_MIN, INT32_MIN, INT32_MIN}, tile[3], found;
   for (size_t e = 0; e < pd->n_extended; e++) {
@@ -179,9 +190,11 @@ static bw_status make_tiles(const bw_pd_body *pd, tiling *t)
       upper[k] = tile[k] > upper[k] ? tile[k] : upper[k];
     }
   }
+  /* At most as many tiles as particles; each holds a list of its own. */
   BW_TRY(BW_ALLOCATE(&t->head, pd->n_extended));
   BW_TRY(BW_ALLOCATE(&t->next, pd->n_extended));
   if (pd->n_extended == 0) return BW_OK;
+  /* Occupied tiles only: empty space costs nothing. */
   BW_TRY(bw_particles_map_create(64, lower, upper, &t->number));
   for (size_t e = 0; e < pd->n_extended; e++) {
     tile_of(pd->points.site + 3 * e, tile);
@@ -198,12 +211,15 @@ static bw_status scatter_tile(bw_pd_body *pd, const tiling *t, int32_t number)
   const bw_pd_body_config *c = &pd->config;
   int32_t lower[3];
   field f = {0};
+  /* The tile's own sites with a margin around: the same places wherever tiles begin. */
   tile_of(pd->points.site + 3 * (size_t)t->head[number], lower);
   for (int k = 0; k < 3; k++)
     lower[k] *= TILE;
   const bw_status st = make_field(c, lower, TILE, &f);
+  /* From lattice axes in spacings to lengths in space. */
   for (int32_t e = t->head[number]; e >= 0 && st == BW_OK; e = t->next[e]) {
     const double *y = f.y + 3 * row_at(&f, pd->points.site + 3 * (size_t)e);
+    /* Laid out like displacements, so that a sweep loads both alike. */
     for (int k = 0; k < 3; k++)
       pd->shift[k][pd->points.place[e]] =
           (bw_real)(c->ds * (c->axes[0][k] * y[0] + c->axes[1][k] * y[1] + c->axes[2][k] * y[2]));
@@ -217,6 +233,7 @@ bw_status bw_pd_body_scatter(bw_pd_body *pd)
   tiling t = {.n = 0};
   for (int k = 0; k < 3; k++)
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->shift[k]));
+  /* Tile by tile: no field of all sites is ever held. */
   bw_status st = make_tiles(pd, &t);
   for (int32_t q = 0; q < t.n && st == BW_OK; q++)
     st = scatter_tile(pd, &t, q);
@@ -237,6 +254,7 @@ bw_pd_rest bw_pd_body_apart(const bw_pd_body *pd, int direction, const double h[
                             const double l[3])
 {
   bw_pd_rest rest;
+  /* What the two ends are off their sites by changes the bond between the sites. */
   double r2 = 0;
   for (int k = 0; k < 3; k++) {
     rest.xi[k] = pd->level->stencil.xi[3 * direction + k] + (l[k] - h[k]);
@@ -257,6 +275,7 @@ bw_pd_rest bw_pd_body_rest_of_cloud(const bw_pd_body *pd, int direction, int32_t
 
 static void add_family(const bw_pd_body *pd, const field *f, const int32_t site[3], double sum[3])
 {
+  /* All directions in which sites can be family; whether they are, the places tell. */
   const double *here = f->y + 3 * row_at(f, site), reach = bw_pd_body_family_reach(&pd->config);
   for (int q = 0; q < pd->level->stencil.n; q++) {
     const int32_t *o = pd->level->stencil.offset + 3 * q;
@@ -274,12 +293,14 @@ bw_status bw_pd_body_cloud_means(const bw_pd_body *pd, double mean[3])
 {
   enum { SQUARE = 60, CUBE = 15 }; /* 3600 and 3375 families: means are known to 1e-3 */
   const int side = (pd->dimension == 2 ? SQUARE : CUBE) + 2 * pd->level->stencil.reach;
+  /* A sample without sides: every family in it is full. */
   bw_pd_body_config endless = pd->config;
   endless.period[0] = endless.period[1] = endless.period[2] = 0;
   field f = {0};
   mean[0] = mean[1] = mean[2] = 0;
   const bw_status st = make_field(&endless, (int32_t[3]){0, 0, 0}, side, &f);
   if (st == BW_OK) {
+    /* Sites whose whole family has its final place. */
     const int margin = SWEEPS + pd->level->stencil.reach;
     double families = 0;
     int32_t site[3];
@@ -288,6 +309,7 @@ bw_status bw_pd_body_cloud_means(const bw_pd_body *pd, double mean[3])
       add_family(pd, &f, site, mean);
       families++;
     } while (next_site(&f, margin, site));
+    /* Sums over families become means of one. */
     for (int k = 0; k < 3; k++)
       mean[k] /= families;
   }

@@ -40,6 +40,7 @@ static bw_status check_positive(const bw_pd_body_config *c)
 
 static bw_status check_lattice(const bw_pd_body_config *c)
 {
+  /* Turned axes have to stay a lattice of cubes: unit vectors at right angles, to rounding. */
   const bool planar = c->geometry != BW_PD_3D;
   for (int a = 0; a < 3; a++) {
     BW_REQUIRE(isfinite(c->origin[a]), BW_EINPUT, "solid: origin[%d] is not finite", a);
@@ -52,11 +53,13 @@ static bw_status check_lattice(const bw_pd_body_config *c)
                  "right angles",
                  a, b, dot);
     }
+    /* Across a period the lattice has to meet itself. */
     const double cells = c->period[a] / c->ds;
     BW_REQUIRE(c->period[a] >= 0 && fabs(cells - round(cells)) < 1e-6, BW_EINPUT,
                "solid: period[%d] = %g is %g ds; it must be a whole number of ds", a, c->period[a],
                cells);
   }
+  /* A plane body is one layer: nothing turns out of it, nothing repeats across it. */
   BW_REQUIRE(!planar || (c->axes[2][2] == 1 && c->period[2] == 0), BW_EINPUT,
              "solid: in 2D the third axis is (0,0,1) and not periodic; found axes[2][2] = %g, "
              "period[2] = %g",
@@ -67,9 +70,11 @@ static bw_status check_lattice(const bw_pd_body_config *c)
 /* The cells of a cloud are no cubes: only the linear fraction knows nothing of their shape. */
 static bw_status check_fraction(const bw_pd_body_config *c)
 {
+  /* With more of it two neighbours could start nearly in the same place. */
   BW_REQUIRE(c->disorder >= 0 && c->disorder <= MOST_DISORDER, BW_EINPUT,
              "solid: disorder = %g must be from 0 (a lattice) to %g spacings", c->disorder,
              MOST_DISORDER);
+  /* Nearest neighbours have to be family wherever both went. */
   BW_REQUIRE(c->disorder == 0 || 1 + 2 * c->disorder < bw_pd_body_family_reach(c), BW_EINPUT,
              "solid: disorder = %g moves neighbours %g spacings apart, out of the family's reach "
              "of %g; use less of it or a larger horizon_ratio",
@@ -78,6 +83,7 @@ static bw_status check_fraction(const bw_pd_body_config *c)
              "solid: volume_fraction = exact is of cells on a lattice; with disorder = %g use "
              "linear (the default) or none",
              c->disorder);
+  /* In space the share is the part of the cube inside the ball (ERRATA 2). */
   BW_REQUIRE((unsigned)c->volume_fraction <= BW_PD_FRACTION_DEFAULT &&
                  !(c->geometry == BW_PD_3D && c->disorder == 0 &&
                    c->volume_fraction == BW_PD_FRACTION_LINEAR),
@@ -104,8 +110,10 @@ bw_status bw_pd_body_levels(bw_pd_body *pd)
   bw_pd_body_config *c = &pd->config;
   const bool planar = c->geometry != BW_PD_3D;
   pd->dimension = planar ? 2 : 3;
+  /* The default is resolved here: whoever reads the configuration later sees what is used. */
   if (c->volume_fraction == BW_PD_FRACTION_DEFAULT)
     c->volume_fraction = planar || c->disorder > 0 ? BW_PD_FRACTION_LINEAR : BW_PD_FRACTION_EXACT;
+  /* One row today. What others read of a spacing or a volume they read there. */
   BW_TRY(BW_ALLOCATE(&pd->level, 1));
   pd->level->ds = c->ds;
   pd->level->horizon = c->horizon_ratio * c->ds;

@@ -7,6 +7,7 @@
 /* A storage array with room for overrunning loads on both sides; zero there. */
 bw_status bw_pd_body_storage_array(size_t n, bw_real **out)
 {
+  /* Vectors are loaded whole: at either end they may reach beyond the last particle. */
   bw_real *base = NULL;
   BW_TRY(BW_ALLOCATE(&base, n + 2 * BW_PD_PAD));
   *out = base + BW_PD_PAD;
@@ -25,6 +26,7 @@ bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved, bw_real **
 {
   BW_REQUIRE(pd->n_field < BW_PD_FIELDS, BW_EINPUT, "solid: the law %s wants more than %d fields",
              pd->law->name, (int)BW_PD_FIELDS);
+  /* Counted once its array stands, so that a half-built body can be destroyed. */
   bw_pd_field *f = &pd->field[pd->n_field];
   BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &f->value));
   f->after = after;
@@ -38,7 +40,9 @@ static bw_status state_arrays(bw_pd_body *pd)
 {
   const size_t n = pd->n;
   BW_TRY(BW_ALLOCATE(&pd->held.mobile, n));
+  /* Room for all fields that a law may ask for: their addresses stay. */
   BW_TRY(BW_ALLOCATE(&pd->field, BW_PD_FIELDS));
+  /* What neighbours read lies in storage order; what only its owner reads lies in own order. */
   for (int k = 0; k < 3; k++) {
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->u[k]));
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->vs[k]));
@@ -53,8 +57,10 @@ static bw_status state_arrays(bw_pd_body *pd)
 
 static bw_status weights(bw_pd_body *pd)
 {
+  /* Without weights a ledger multiplies once by the density of all. */
   if (pd->config.n_group == 1) return BW_OK;
   BW_TRY(BW_ALLOCATE(&pd->weight, pd->n));
+  /* Work is booked by the mass of the first group; a weight says how much heavier this one is. */
   for (size_t i = 0; i < pd->n; i++)
     pd->weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho);
   return BW_OK;
@@ -63,12 +69,14 @@ static bw_status weights(bw_pd_body *pd)
 static bw_status prescribed_list(bw_pd_body *pd)
 {
   bw_pd_held *held = &pd->held;
+  /* Counted first: the lists are exactly as long. */
   for (size_t i = 0; i < pd->n; i++)
     held->n += (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
   BW_TRY(BW_ALLOCATE(&held->particle, held->n));
   BW_TRY(BW_ALLOCATE(&held->velocity, 3 * held->n));
   size_t q = 0;
   for (size_t i = 0; i < pd->n; i++) {
+    /* A factor 0 in place of a branch: kernels run over all particles alike. */
     const bool fixed = (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
     held->mobile[i] = fixed ? 0 : 1;
     if (fixed) held->particle[q++] = (int32_t)i;
@@ -79,6 +87,7 @@ static bw_status prescribed_list(bw_pd_body *pd)
 /* first: global id of this rank's first row. */
 static bw_status check_sites(const bw_pd_body_config *c, const bw_pd_sites *s, int64_t first)
 {
+  /* An empty part is fine: some other rank may give all. */
   BW_REQUIRE(s->n >= 0 && s->n < INT32_MAX && (s->n == 0 || s->site != NULL), BW_EINPUT,
              "solid: %lld particles given by one rank; it takes 0 to 2^31", (long long)s->n);
   for (int64_t q = 0; q < s->n; q++) {
@@ -96,17 +105,21 @@ static bw_status check_sites(const bw_pd_body_config *c, const bw_pd_sites *s, i
 static bw_status build(bw_pd_body *pd, const bw_pd_sites *given, const void *options)
 {
   bw_particles_map near = {0};
+  /* Spacing, volume and directions follow from the configuration alone. */
   bw_status st = bw_pd_body_levels(pd);
   BW_THEN(st, bw_pd_body_stencil(pd));
   st = bw_comm_agree(pd->comm, st);
+  /* Every particle goes to its owner, and every rank learns whose copies it needs. */
   if (st == BW_OK) st = bw_pd_body_distribute(pd, given, &near);
   if (st == BW_OK) {
+    /* Own particles and copies are known: they can be numbered and their bonds listed. */
     BW_THEN(st, bw_pd_body_slots(pd, &near));
     BW_THEN(st, state_arrays(pd));
     BW_THEN(st, weights(pd));
     BW_THEN(st, prescribed_list(pd));
     st = bw_comm_agree(pd->comm, st);
   }
+  /* Nobody asks for sites any more: neighbours are found by the slots. */
   bw_particles_map_destroy(&near);
   BW_TRY(st);
   bw_pd_body_rows(pd);
@@ -123,15 +136,18 @@ bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config
 {
   bw_pd_body *pd = NULL;
   *out = NULL;
+  /* A rank that refuses its part still takes part in the counting, which is collective. */
   bw_status st = bw_pd_body_check(config);
   BW_THEN(st, law->check(config, options));
   const int64_t first = bw_comm_prefix_sum(comm, given->n);
   BW_THEN(st, check_sites(config, given, first));
   BW_THEN(st, BW_ALLOCATE(&pd, 1));
+  /* A body needs one particle somewhere. */
   int64_t total = given->n;
   bw_comm_sum_int(comm, 1, &total);
   if (st == BW_OK && total <= 0)
     st = BW_FAIL(BW_EINPUT, "solid: no particles given (n = %lld)", (long long)total);
+  /* From here on all ranks build, or none. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     pd->comm = comm;
@@ -140,6 +156,7 @@ bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config
     pd->breakage = true;
     st = build(pd, given, options);
   }
+  /* Destroy takes whatever stands of a body. */
   if (st != BW_OK) bw_pd_body_destroy(&pd);
   *out = pd;
   return st;
@@ -161,6 +178,7 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
 {
   bw_pd_body *pd = *pd_;
   if (pd == NULL) return;
+  /* The law's state may refer to the body's arrays: it goes first. */
   if (pd->law != NULL) pd->law->destroy(pd);
   for (int q = 0; q < pd->n_field; q++)
     bw_pd_body_release_storage_array(&pd->field[q].value);

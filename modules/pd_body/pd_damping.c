@@ -17,6 +17,7 @@ typedef struct {
 INLINE void add_slot(const sweep *all, const bw_real *rows, const bw_pd_slot *slot, const owners *h,
                      const vec vh[3], bool cloud, damping_sums *s)
 {
+  /* The present bond, as the force sees it. */
   const bw_real *row = rows + slot->direction * BW_PD_ROW;
   const bond x = bond_of(all, slot, row, h, 3, cloud);
   vec dv[3], along = vec_all(0);
@@ -24,9 +25,11 @@ INLINE void add_slot(const sweep *all, const bw_real *rows, const bw_pd_slot *sl
     dv[k] = vec_load(all->v[k] + slot->base) - vh[k];
     along = vec_fma(dv[k], x.z[k], along);
   }
+  /* Pairs: the part of the difference along the bond, (dv.z) z/r^2 (3.41, ERRATA 4). */
   const vec q = vec_rsqrt(x.r2);
   const lanes holds = lanes_of(slot->mask);
   const vec c = vec_keep(holds, weight_of(all, row, &x, cloud) * along * q * q);
+  /* Mean: the difference itself, over the bonds that hold (FSI 9). */
   s->count += vec_keep(holds, vec_all(1));
   for (int k = 0; k < 3; k++) {
     s->pair[k] = vec_fma(c, x.z[k], s->pair[k]);
@@ -36,6 +39,7 @@ INLINE void add_slot(const sweep *all, const bw_real *rows, const bw_pd_slot *sl
 
 static void block_damping(const bw_pd_body *pd, const bw_pd_block *block)
 {
+  /* Geometry of a slot is that of all groups; only the density differs, lane by lane. */
   const sweep all = sweep_of(pd);
   const bool cloud = pd->config.disorder > 0;
   const owners h = owners_of(&all, block, 3, cloud);
@@ -45,10 +49,12 @@ static void block_damping(const bw_pd_body *pd, const bw_pd_block *block)
   const bw_real *rows = rows_of(&all, block);
   vec vh[3];
   damping_sums s = {0};
+  /* Copies' velocities lie in storage beside the owners'. */
   for (int k = 0; k < 3; k++)
     vh[k] = vec_load(pd->vs[k] + block->first);
   for (uint32_t q = block->slot; q < bw_pd_body_slot_end(block); q++)
     if (pd->bonds.slot[q].mask != 0) add_slot(&all, rows, &pd->bonds.slot[q], &h, vh, cloud, &s);
+  /* load.damp is written, not added to: absolute damping comes on top. */
   vec some; /* a particle without bonds has no mean */
   for (int k = 0; k < BW_PD_LANES; k++)
     some[k] = s.count[k] > 1 ? s.count[k] : 1;

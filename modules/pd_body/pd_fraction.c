@@ -38,6 +38,7 @@ static void sort(int n, double x[])
 static double disc_in_square(double R, double cx, double cy)
 {
   const double x0 = cx - 0.5, x1 = cx + 0.5, y0 = cy - 0.5, y1 = cy + 0.5;
+  /* Vertical cuts where the arc enters or leaves the square, or ends. */
   double cut[8] = {x0, x1};
   int n = 2;
   const double meets[3] = {R, R > fabs(y0) ? sqrt(R * R - y0 * y0) : x0,
@@ -49,10 +50,12 @@ static double disc_in_square(double R, double cx, double cy)
     }
   sort(n, cut);
   double area = 0;
+  /* Between two cuts the bounds in y are the same all the way. */
   for (int q = 0; q + 1 < n; q++) {
     const double middle = 0.5 * (cut[q] + cut[q + 1]);
     double arcs;
     if (fabs(middle) >= R) continue;
+    /* Straight sides give a rectangle, the arc its closed integral. */
     const double flat = height(R, middle, y0, y1, &arcs);
     area += flat * (cut[q + 1] - cut[q]) + arcs * (under_arc(R, cut[q + 1]) - under_arc(R, cut[q]));
   }
@@ -78,6 +81,7 @@ static double slice(double z, void *data)
 /* Slices of the ball are discs: one adaptive quadrature (doubly adaptive, good with kinks). */
 bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *fraction)
 {
+  /* Most cells are inside or outside altogether. */
   const double x = abs(offset[0]), y = abs(offset[1]), z = abs(offset[2]);
   const double near2 =
       pow(fmax(0, x - 0.5), 2) + pow(fmax(0, y - 0.5), 2) + pow(fmax(0, z - 0.5), 2);
@@ -85,15 +89,18 @@ bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *
   *fraction = far2 <= m * m ? 1 : 0;
   if (far2 <= m * m || near2 >= m * m) return BW_OK;
 
+  /* A cell that the sphere cuts: POROUS 3.3.5, read as in ERRATA 2. */
   gsl_integration_cquad_workspace *work = gsl_integration_cquad_workspace_alloc(200);
   BW_REQUIRE(work != NULL, BW_EMEM, "solid: no memory for the volume fractions");
   ball b = {m, x, y};
   gsl_function f = {slice, &b};
+  /* GSL ends the program by default; we want a status. */
   gsl_error_handler_t *old = gsl_set_error_handler_off();
   const int code =
       gsl_integration_cquad(&f, z - 0.5, z + 0.5, 1e-11, 1e-11, work, fraction, NULL, NULL);
   gsl_set_error_handler(old);
   gsl_integration_cquad_workspace_free(work);
+  /* GSL_EDIVERGE is said where the tolerance is at the limit of rounding: the value is good. */
   BW_REQUIRE(code == GSL_SUCCESS || code == GSL_EDIVERGE, BW_EDIVERGED,
              "solid: volume fraction of offset (%d,%d,%d) at horizon/ds = %g: %s", offset[0],
              offset[1], offset[2], m, gsl_strerror(code));

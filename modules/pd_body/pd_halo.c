@@ -32,12 +32,14 @@ static bw_status extent_of_all(const bw_pd_body *pd, size_t n, const int32_t sit
 {
   double most[6];
   bw_particles_extent(n, site, g->lower, g->upper);
+  /* One maximum for both ends: that of the lower one is taken with its sign turned. */
   for (int k = 0; k < 3; k++) {
     most[k] = n > 0 ? -(double)g->lower[k] : -INFINITY;
     most[3 + k] = n > 0 ? (double)g->upper[k] : -INFINITY;
   }
   bw_comm_max(pd->comm, 6, most);
   for (int k = 0; k < 3; k++) {
+    /* Sites are numbered in 32 bits with room for images around them. */
     const double size = most[3 + k] + most[k] + 1;
     const int32_t period = (int32_t)lround(pd->config.period[k] / pd->level->ds);
     BW_REQUIRE(size < 1 << 20, BW_EINPUT,
@@ -65,12 +67,14 @@ static bw_status send_home(const bw_pd_body *pd, const bw_pd_sites *given, crowd
   bw_status st = BW_ALLOCATE(&row, n);
   BW_THEN(st, BW_ALLOCATE(&owner, n));
   for (size_t q = 0; q < n && st == BW_OK; q++) {
+    /* A global id is the row in the joined lists of all ranks. */
     row[q].id = first + (int64_t)q;
     memcpy(row[q].site, given->site + 3 * q, sizeof row[q].site);
     row[q].kind = given->kind == NULL ? BW_PD_FREE : given->kind[q];
     row[q].group = given->group == NULL ? 0 : given->group[q];
     owner[q] = bw_particles_partition_owner(g->partition, row[q].site);
   }
+  /* The plan is collective: nobody makes it unless all can. */
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) st = bw_exchange_create(pd->comm, n, owner, &plan);
   if (st == BW_OK) {

@@ -8,11 +8,17 @@
 #include "bw_pd_body.h"
 #include "pd_body.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { BW_PD_SWEEPS = 4 }; /* passes of one evaluation, at most */
 
 /* A key that the law reads from a case file: for --help and the checks. */
 typedef struct {
-  const char *name, *unit, *meaning;
+  const char *name;    /* its word in a case file */
+  const char *unit;    /* "" without one */
+  const char *meaning; /* a phrase, with the default */
 } bw_pd_law_key;
 
 /* Passes over the blocks first .. last-1. The last pass of a law leaves the acceleration by internal
@@ -25,19 +31,25 @@ struct bw_pd_law {
   const char *name;          /* its word in a case file */
   const bw_pd_law_key *keys; /* ends with a NULL name */
 
-  /* Refuses what the law cannot be: Poisson's ratio, geometry, its own options. */
+  /* Refuses what the law cannot be: Poisson's ratio, geometry, its own options. BW_EINPUT with key,
+   * value and remedy. */
   bw_status (*check)(const bw_pd_body_config *config, const void *options);
-  /* The law's own state (pd->state) and its constants, once the body stands. Collective. */
+  /* The law's own state (pd->state, which destroy releases, also half built) and its fields, once
+   * the body stands; Poisson's ratio in pd->config where it was left out. The status is the same on
+   * all ranks. `options` is borrowed during the call. Collective. */
   bw_status (*prepare)(bw_pd_body *pd, const void *options);
-  /* The constants anew after a change of pd->config.material. */
+  /* The law's columns of the kernel rows from pd->config.material: after prepare, and after every
+   * change of it. */
   void (*constants)(bw_pd_body *pd);
 
-  int n_sweep; /* after each but the last the body sends what bw_pd_body_add_field named for it */
-  bw_pd_sweep sweep[BW_PD_SWEEPS];
-  bool damps; /* its last sweep can do the pair damping on the way */
+  int n_sweep; /* 1 .. BW_PD_SWEEPS; after each the body sends the fields that named it */
+  bw_pd_sweep sweep[BW_PD_SWEEPS]; /* (n_sweep) */
+  bool damps;                      /* its last sweep can do the pair damping on the way */
 
-  /* Breaks what is beyond its limit in one block and takes its force out of pd->a; the energy that the
-   * owners' halves of these bonds held is added to pd->bonds.released. Returns whether any broke. */
+  /* Breaks what is beyond its limit in one block and takes its force out of pd->a; the energy that
+   * the owners' halves of these bonds held is added to pd->bonds.released (bw_pd_body_cut does
+   * that). Unbreakable ends keep their bonds. Both ends have to decide alike. Returns whether any
+   * broke. */
   bool (*breaks)(bw_pd_body *pd, bw_pd_block *block);
   /* Energy of the bond of a lane of a slot, the owner's half [M L^2/T^2]. */
   double (*bond_energy)(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
@@ -58,7 +70,7 @@ struct bw_pd_law {
   void (*rows)(const bw_pd_body *pd, double row[]);
   /* Adds J times the Cauchy stress at a lane of a block [M/(L T^2)]. */
   void (*virial)(const bw_pd_body *pd, const bw_pd_block *block, int lane, double sum[3][3]);
-  /* Micromodulus that contact takes its stiffness from, of a group [M/(L^7 T^2)]. */
+  /* Micromodulus that contact takes its stiffness from, of a group [M/(L^5 T^2)]. */
   double (*micromodulus)(const bw_pd_body *pd, int group);
 
   void (*destroy)(bw_pd_body *pd); /* pd->state; may find it half built */
@@ -71,8 +83,8 @@ struct bw_pd_field {
   bw_real *value; /* storage array, zero at first */
 };
 
-/* One more field, to be asked for in prepare; *value is borrowed until the body is destroyed. BW_EMEM;
- * BW_EINPUT beyond BW_PD_FIELDS. Local. */
+/* One more field, to be asked for in prepare; *value is borrowed until the body is destroyed.
+ * BW_EMEM; BW_EINPUT beyond BW_PD_FIELDS. Local. */
 bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved,
                                bw_real **value) BW_MUST_CHECK;
 /* All passes over all blocks, with what is sent between them. Collective when there are several. */
@@ -82,3 +94,7 @@ void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping);
 bool bw_pd_body_break_hits(bw_pd_body *pd);
 /* Elastic energy of this rank's halves [M L^2/T^2]. Local. */
 double bw_pd_body_elastic(const bw_pd_body *pd);
+
+#ifdef __cplusplus
+}
+#endif

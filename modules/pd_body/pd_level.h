@@ -5,14 +5,19 @@
 #pragma once
 #include "bw_pd_body.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { BW_PD_ROW = 8 }; /* constants of one direction in the kernels */
 
-/* Column of a kernel row. The body fills geometry, the law its stiffness and limit. In a cloud, where
- * |xi| and Gamma follow from the places of both ends, the columns hold 1 for them. */
+/* Column of a kernel row. The body fills geometry, the law its stiffness and limit. In a cloud,
+ * where |xi| and Gamma follow from the places of both ends, the columns hold 1 for them. */
 enum {
   BW_PD_XI = 0,        /* 0..2: xi [L] */
   BW_PD_R0 = 3,        /* |xi| [L] */
-  BW_PD_STIFFNESS = 4, /* of the law: acceleration of the owner per change of length */
+  BW_PD_STIFFNESS = 4, /* of the law: acceleration of the owner per change of length [1/T^2]; in a
+                          cloud per stretch [L/T^2], still to be taken times Gamma */
   BW_PD_LIMIT2 = 5,    /* of the law: the squared length beyond which a bond breaks [L^2] */
   BW_PD_WEIGHT = 6,    /* Gamma dV [L^3] */
   BW_PD_MINUS_R0 = 7   /* -|xi| [L] */
@@ -30,12 +35,17 @@ typedef struct {
   int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
 } bw_pd_stencil;
 
+/* A row of the table of levels. */
 typedef struct {
-  double ds;      /* spacing [L] */
-  double horizon; /* [L] */
-  double reach;   /* of the family [L]: |xi| < reach */
-  double dv;      /* volume of one particle [L^3] */
-  double area;    /* of the face of a particle's cell [L^2] */
-  bw_pd_stencil stencil;
+  double ds;             /* spacing [L] */
+  double horizon;        /* m ds [L] */
+  double reach;          /* of the family [L]: |xi| < reach */
+  double dv;             /* volume of one particle [L^3] */
+  double area;           /* of the face of a particle's cell [L^2] */
+  bw_pd_stencil stencil; /* directions of a family */
   bw_real *row; /* (n_group, n_group, stencil.n, BW_PD_ROW) kernel rows: owner's group, other's */
 } bw_pd_level;
+
+#ifdef __cplusplus
+}
+#endif

@@ -9,6 +9,7 @@ void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
       if (!(pd->bonds.block[b].mask >> lane & 1)) continue;
+      /* POROUS 3.28 counts volume: a partner at the rim counts for the part of its cell. */
       double family = 0, intact = 0;
       for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
         if (!(pd->bonds.slot[q].family >> lane & 1)) continue;
@@ -19,6 +20,7 @@ void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])
         family += gamma;
         if (pd->bonds.slot[q].mask >> lane & 1) intact += gamma;
       }
+      /* A particle that never had a bond is whole. */
       damage[bw_pd_body_owner(&pd->bonds.block[b], lane)] = family > 0 ? 1 - intact / family : 0;
     }
 }
@@ -26,6 +28,7 @@ void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])
 /* The block of own particle h: the last that starts at or before it. */
 static size_t block_of(const bw_pd_body *pd, size_t h)
 {
+  /* Blocks are in the order of own particles: halving finds it. */
   size_t low = 0, high = pd->bonds.n_block;
   while (high - low > 1) {
     const size_t middle = (low + high) / 2;
@@ -44,6 +47,7 @@ int bw_pd_body_links(const bw_pd_body *pd, size_t h, bw_pd_link link[])
   int n = 0;
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     const bw_pd_slot *slot = &pd->bonds.slot[q];
+    /* Bonds that broke stay listed: they are family still. */
     if (!(slot->family >> lane & 1)) continue;
     link[n++] = (bw_pd_link){.neighbour = pd->points.occupant[slot->base + lane],
                              .slot = (int16_t)slot->direction,
@@ -55,6 +59,7 @@ int bw_pd_body_links(const bw_pd_body *pd, size_t h, bw_pd_link link[])
 bw_pd_extended bw_pd_body_get_extended(bw_pd_body *pd)
 {
   double X[3];
+  /* A step leaves the copies current; who set a state has not told them yet. */
   if (!pd->current) bw_pd_body_refresh(pd, false);
   for (size_t e = 0; e < pd->n_extended; e++) {
     bw_pd_body_reference(pd, e, X);
@@ -66,6 +71,7 @@ bw_pd_extended bw_pd_body_get_extended(bw_pd_body *pd)
 
 bw_pd_motion bw_pd_body_get_motion(bw_pd_body *pd, bool velocity)
 {
+  /* Velocities of copies are not kept current: they are asked for. */
   if (velocity || !pd->current) bw_pd_body_refresh(pd, velocity);
   bw_pd_motion m = {.place = pd->points.place};
   for (int k = 0; k < 3; k++) {
@@ -90,6 +96,7 @@ double bw_pd_body_length(const bw_pd_body *pd, int32_t h, const bw_pd_slot *slot
 {
   double r2 = 0;
   for (int k = 0; k < 3; k++) {
+    /* The difference first: displacements may be much larger than what a bond stretches. */
     const bw_real z = (pd->u[k][slot->base + lane] - pd->u[k][h]) + (bw_real)xi[k];
     r2 += (double)z * (double)z;
   }

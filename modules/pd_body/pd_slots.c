@@ -11,6 +11,7 @@ enum { PLACES_PER_PARTICLE = 4, PLACES_FREE = 1 << 16 };
 static bw_status number_box(bw_pd_body *pd, const int32_t lower[3], const int64_t size[3])
 {
   for (size_t e = 0; e < pd->n_extended; e++) {
+    /* The fastest axis of the lattice is the fastest of the numbering: blocks run along it. */
     int64_t place = 0;
     for (int k = 2; k >= 0; k--) {
       const int d = pd->points.axis[k];
@@ -24,6 +25,7 @@ static bw_status number_box(bw_pd_body *pd, const int32_t lower[3], const int64_
 static bw_status number_packed(bw_pd_body *pd)
 {
   int32_t *order = NULL;
+  /* Without holes: storage is as long as there are particles. */
   BW_TRY(BW_ALLOCATE(&order, pd->n_extended));
   const bw_status st =
       bw_particles_lattice_order(pd->points.axis, pd->n_extended, pd->points.site, order);
@@ -38,6 +40,7 @@ static bw_status number(bw_pd_body *pd)
   int32_t lower[3] = {0};
   int64_t size[3] = {0};
   double places = pd->n_extended > 0;
+  /* The box of the sites, copies among them. */
   for (int k = 0; k < 3 && pd->n_extended > 0; k++) {
     int32_t upper = lower[k] = pd->points.site[k];
     for (size_t e = 1; e < pd->n_extended; e++) {
@@ -48,10 +51,13 @@ static bw_status number(bw_pd_body *pd)
     size[k] = (int64_t)upper - lower[k] + 1;
     places *= (double)size[k];
   }
+  /* A box keeps neighbours of successive places successive; a thin body in a wide box would be
+   * mostly holes. */
   const bool box = places <= PLACES_PER_PARTICLE * (double)pd->n_extended + PLACES_FREE;
   pd->points.n_storage = box ? (size_t)places : pd->n_extended;
   BW_TRY(box ? number_box(pd, lower, size) : number_packed(pd));
   BW_TRY(BW_ALLOCATE(&pd->points.occupant, pd->points.n_storage));
+  /* Holes may be loaded, and are masked out; nobody stands there. */
   memset(pd->points.occupant, 0xff,
          pd->points.n_storage * sizeof *pd->points.occupant); /* all -1 */
   for (size_t e = 0; e < pd->n_extended; e++)
@@ -62,6 +68,7 @@ static bw_status number(bw_pd_body *pd)
 /* Maximal stretches of own particles in successive places. */
 static bw_status runs(bw_pd_body *pd)
 {
+  /* Counted in the first pass, written in the second. */
   for (int pass = 0; pass < 2; pass++) {
     size_t r = 0;
     for (size_t i = 0; i < pd->n; i++) {
@@ -83,6 +90,7 @@ static bw_status blocks(bw_pd_body *pd)
   for (int pass = 0; pass < 2; pass++) {
     size_t b = 0;
     for (size_t i = 0; i < pd->n;) {
+      /* Lanes that are a hole or a copy stay out of the mask. */
       const int32_t first = pd->points.place[i];
       bw_pd_block block = {.first = first, .own = (int32_t)i};
       for (; i < pd->n && pd->points.place[i] < first + BW_PD_LANES; i++)
@@ -107,6 +115,7 @@ static bool beyond_family(const bw_pd_body *pd, int direction, int32_t h, int32_
 static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
                            const bw_pd_block *block, int direction, bw_pd_slot out[BW_PD_LANES])
 {
+  /* Lanes whose neighbour in this direction is at the same distance in storage share a slot. */
   const int32_t *o = pd->level->stencil.offset + 3 * direction;
   int n = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
@@ -114,6 +123,7 @@ static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
     const int32_t *s = pd->points.site + 3 * (size_t)bw_pd_body_owner(block, lane);
     const int32_t e =
         bw_particles_map_get(near, (const int32_t[3]){s[0] + o[0], s[1] + o[1], s[2] + o[2]});
+    /* Nobody stands there: the family is cut by a surface. */
     if (e < 0) continue;
     const int32_t base = pd->points.place[e] - lane;
     if (beyond_family(pd, direction, block->first + lane, pd->points.place[e])) continue;
@@ -121,6 +131,7 @@ static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
     while (q < n && out[q].base != base)
       q++;
     if (q == n) out[n++] = (bw_pd_slot){.base = base, .direction = (uint16_t)direction};
+    /* A bond of the family holds until something breaks it. */
     out[q].family |= (uint8_t)(1u << lane);
     out[q].mask = out[q].family;
   }
@@ -130,11 +141,13 @@ static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
 /* near: site -> extended index. */
 bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
 {
+  /* Order matters: places, then how far off its site each stands, then who is near enough. */
   BW_TRY(number(pd));
   if (pd->config.disorder > 0) BW_TRY(bw_pd_body_scatter(pd));
   BW_TRY(runs(pd));
   BW_TRY(blocks(pd));
   bw_pd_slot some[BW_PD_LANES];
+  /* Slots in the order of the stencil within each block: sums run alike on any number of ranks. */
   for (int pass = 0; pass < 2; pass++) {
     size_t q = 0;
     for (size_t b = 0; b < pd->bonds.n_block; b++) {
@@ -150,6 +163,7 @@ bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
     pd->bonds.n_slot = q;
     if (pass == 0) BW_TRY(BW_ALLOCATE(&pd->bonds.slot, q));
   }
+  /* Each bond counts from both of its ends, on whichever rank. */
   for (size_t q = 0; q < pd->bonds.n_slot; q++)
     pd->bonds.directed += __builtin_popcount(pd->bonds.slot[q].family);
   return BW_OK;

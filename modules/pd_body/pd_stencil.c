@@ -22,6 +22,7 @@ static bool in_reach(const bw_pd_body_config *c, const int32_t o[3], double more
 /* Calls of x fastest over the cube of the reach; counts when `s->offset` is NULL. */
 static int list_offsets(const bw_pd_body *pd, bw_pd_stencil *s)
 {
+  /* In the plane there is one layer and no offset across it. */
   const int r = s->reach, rz = pd->dimension == 3 ? r : 0;
   int n = 0;
   for (int32_t z = -rz; z <= rz; z++)
@@ -46,6 +47,7 @@ static double fraction_linear(double m, const int32_t o[3])
 
 static bw_status fraction(const bw_pd_body *pd, const int32_t o[3], double *gamma)
 {
+  /* POROUS 3.33 in the plane, 3.3.5 in space, with ERRATA 2. */
   const double m = pd->config.horizon_ratio;
   switch (pd->config.volume_fraction) {
   case BW_PD_FRACTION_LINEAR:
@@ -69,6 +71,7 @@ static int compare_int(const void *a, const void *b)
 /* Offsets equal up to signs and order have the same fraction: it is computed once. */
 static bw_status fractions(const bw_pd_body *pd, bw_pd_stencil *s)
 {
+  /* 0 is not yet known, else the fraction plus 1. */
   const int32_t side = s->reach + 1;
   double *known = NULL;
   BW_TRY(BW_ALLOCATE(&known, (size_t)(side * side * side)));
@@ -77,6 +80,7 @@ static bw_status fractions(const bw_pd_body *pd, bw_pd_stencil *s)
     int32_t o[3];
     for (int k = 0; k < 3; k++)
       o[k] = abs(s->offset[3 * q + k]);
+    /* Sorted without signs: one name for all offsets of a class. */
     qsort(o, pd->dimension == 3 ? 3 : 2, sizeof *o, compare_int);
     double *memo = &known[o[0] + side * (o[1] + side * o[2])];
     if (*memo == 0) {
@@ -100,8 +104,10 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
 {
   bw_pd_stencil *s = &pd->level->stencil;
   const bw_pd_body_config *c = &pd->config;
+  /* Sites can be this far apart with their particles still within reach. */
   s->reach = (int)ceil(c->horizon_ratio + 0.5 + 2 * c->disorder);
   const int side = 2 * s->reach + 1, pairs = c->n_group * c->n_group;
+  /* Counted first; the offsets are written once there is room. */
   s->n = list_offsets(pd, s);
   const size_t n = (size_t)s->n, cells = (size_t)(side * side * side);
   BW_TRY(BW_ALLOCATE(&pd->level->row, (size_t)pairs * n * BW_PD_ROW));
@@ -112,8 +118,11 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
   BW_TRY(BW_ALLOCATE(&s->sure, n));
   BW_TRY(BW_ALLOCATE(&s->number, cells));
   list_offsets(pd, s);
+  /* Offsets that are no direction are told from those that are. */
   for (size_t q = 0; q < cells; q++)
     s->number[q] = -1;
+  /* From steps to vectors in space, along the lattice's axes; and back from an offset to its
+   * number. */
   for (int q = 0; q < s->n; q++) {
     const int32_t *o = s->offset + 3 * q;
     double r2 = 0;
@@ -123,6 +132,7 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
         s->xi[3 * q + k] += c->ds * o[d] * c->axes[d][k];
     }
     s->r0[q] = c->ds * sqrt(r2);
+    /* So near that both may be off their sites as they like: no distance has to be looked at. */
     s->sure[q] = in_reach(c, o, -2 * c->disorder);
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
         (int16_t)q;
@@ -136,9 +146,11 @@ void bw_pd_body_rows(bw_pd_body *pd)
   const bw_pd_stencil *s = &level->stencil;
   const bool cloud = pd->config.disorder > 0;
   const int pairs = pd->config.n_group * pd->config.n_group;
+  /* One table for every pair of groups: geometry is the same, the law's columns differ. */
   for (int q = 0; q < pairs * s->n; q++) {
     bw_real *row = level->row + (size_t)q * BW_PD_ROW;
     const int direction = q % s->n;
+    /* In a cloud length and Gamma belong to the bond: the row holds what is left, 1. */
     const double r0 = cloud ? 1 : s->r0[direction], gamma = cloud ? 1 : s->fraction[direction];
     for (int k = 0; k < 3; k++)
       row[BW_PD_XI + k] = (bw_real)s->xi[3 * direction + k];

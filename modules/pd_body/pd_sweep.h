@@ -22,6 +22,7 @@ typedef struct {
 
 INLINE sweep sweep_of(const bw_pd_body *pd)
 {
+  /* Gamma = clamp(m + 1/2 - |xi|/ds), or 1 where cells are not cut (3.33). */
   const bool sharp = pd->config.volume_fraction == BW_PD_FRACTION_NONE;
   return (sweep){.pd = pd,
                  .block = pd->bonds.block,
@@ -50,6 +51,7 @@ INLINE vec constant_of(const sweep *s, const bw_pd_block *block, const bw_pd_slo
                        const bw_real *row, int column, bool mixed)
 {
   if (!mixed) return vec_all(row[column]);
+  /* Lanes differ in their groups: each takes its number from the table of its own pair. */
   vec x = vec_all(row[column]);
   const bw_real *first = s->row + (size_t)slot->direction * BW_PD_ROW;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
@@ -66,6 +68,7 @@ INLINE vec over_density(const sweep *s, const bw_pd_block *block, double x, bool
 {
   const bw_pd_material *m = s->pd->config.material;
   if (!mixed) return vec_all((bw_real)(x / m[block->group].rho));
+  /* Lanes that are no owners stay 0. */
   vec out = vec_all(0);
   for (int lane = 0; lane < BW_PD_LANES; lane++)
     if (block->mask >> lane & 1)
@@ -98,11 +101,13 @@ INLINE bond bond_of(const sweep *s, const bw_pd_slot *slot, const bw_real *row, 
 {
   bond x;
   for (int k = 0; k < dimension; k++) {
+    /* In a cloud the ends are off their sites: the difference is taken as that of displacements. */
     vec xi = vec_all(row[BW_PD_XI + k]);
     if (cloud) {
       xi = (vec_load(s->shift[k] + slot->base) - h->shift[k]) + xi;
       x.rest2 = k == 0 ? xi * xi : vec_fma(xi, xi, x.rest2);
     }
+    /* xi + eta. Seen from the other end every operation gives exactly the opposite. */
     x.z[k] = (vec_load(s->u[k] + slot->base) - h->u[k]) + xi;
     x.r2 = k == 0 ? x.z[k] * x.z[k] : vec_fma(x.z[k], x.z[k], x.r2);
   }

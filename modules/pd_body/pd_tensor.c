@@ -11,6 +11,7 @@ void bw_pd_tensor_strain(size_t n, const double F[], double strain[])
 {
   for (size_t i = 0; i < n; i++)
     for (int a = 0; a < 3; a++)
+      /* C = F^T F is symmetric: six numbers are all there is of it. */
       for (int b = a; b < 3; b++) {
         double c = 0;
         for (int k = 0; k < 3; k++)
@@ -29,6 +30,7 @@ bw_status bw_pd_tensor_principal(size_t n, const double tensor[], double value[]
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++)
         m[3 * a + b] = tensor[6 * i + (size_t)PLACE[a][b]];
+    /* GSL overwrites the matrix, which is why it is copied. */
     gsl_matrix_view matrix = gsl_matrix_view_array(m, 3, 3);
     gsl_matrix_view vectors = gsl_matrix_view_array(axes, 3, 3);
     gsl_vector_view values = gsl_vector_view_array(v, 3);
@@ -48,6 +50,7 @@ void bw_pd_tensor_von_mises(size_t n, const double stress[], double von_mises[])
 {
   for (size_t i = 0; i < n; i++) {
     const double *s = stress + 6 * i;
+    /* Differences of the diagonal: the mean pressure drops out. */
     const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
     von_mises[i] =
         sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));

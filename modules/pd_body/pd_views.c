@@ -5,6 +5,7 @@ void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double abs
 {
   if (pd->damping.pair == pair && pd->damping.mean == mean && pd->damping.absolute == absolute)
     return; /* forces, and those of a restart, stay valid */
+  /* Damping is part of the acceleration: it is evaluated anew. */
   pd->damping.pair = pair;
   pd->damping.mean = mean;
   pd->damping.absolute = absolute;
@@ -13,6 +14,7 @@ void bw_pd_body_set_damping(bw_pd_body *pd, double pair, double mean, double abs
 
 void bw_pd_body_set_force(bw_pd_body *pd, const double F[])
 {
+  /* Kernels add accelerations: the density is divided out once here. */
   for (int k = 0; k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++)
       pd->load.f[k][i] = (bw_real)(F[3 * i + (size_t)k] / bw_pd_body_material(pd, i)->rho);
@@ -79,7 +81,9 @@ void bw_pd_body_set_state(bw_pd_body *pd, const double X[], const double V[])
       pd->v[k][i] = (bw_real)V[3 * i + (size_t)k];
     }
   }
+  /* Prescribed particles go on as they move now, until told otherwise. */
   bw_pd_body_adopt_prescribed(pd);
+  /* Copies follow at once; forces wait until somebody needs them. */
   bw_pd_body_refresh(pd, false);
   pd->current = false;
 }

@@ -18,7 +18,7 @@ typedef struct {
   double full_volume; /* V_0 of the volume method (POROUS 3.44) [L^3] */
   bw_pd_bond_full full;
   double c0[BW_PD_GROUPS]
-           [BW_PD_GROUPS]; /* micromodulus of bonds between two groups [M/(L^7 T^2)] */
+           [BW_PD_GROUPS]; /* micromodulus of bonds between two groups [M/(L^5 T^2)] */
   double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* their critical stretch [-] */
   bool breakable;                        /* some s0 is finite */
   double *bulk;                          /* (directions) alpha of a full family: 1 but by tensor */
@@ -41,8 +41,8 @@ static inline double bw_pd_bond__micromodulus(const bw_pd_body *pd, int32_t h, i
   return bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
 }
 
-/* pd_bond_law.c: c0 and s0 of the integrals; of bonds between two groups their E, the harmonic mean,
- * and fracture energy. Local. */
+/* pd_bond_law.c: c0 and s0 of the integrals; of bonds between two groups their E, the harmonic
+ * mean, and fracture energy. Local. */
 void bw_pd_bond__material(bw_pd_body *pd);
 double bw_pd_bond__joint_E(const bw_pd_body_config *config, int g, int h);
 double bw_pd_bond__joint_G0(const bw_pd_body_config *config, int g, int h);

@@ -27,9 +27,11 @@ static void lattice_sums(bw_pd_body *pd)
   const bw_pd_stencil *s = &pd->level->stencil;
   memset(&state->full, 0, sizeof state->full);
   for (int q = 0; q < s->n; q++) {
+    /* Volume for V_0 (3.44), first moment for the stiffness. */
     const double w = s->fraction[q] * pd->level->dv, along = pd->level->ds * s->offset[3 * q];
     state->full.volume += w;
     state->full.moment += w * s->r0[q];
+    /* Bonds that cross a plane along the lattice, from one side. */
     state->full.crossing += along > 0 ? state->bulk[q] * w * s->r0[q] * along : 0;
   }
 }
@@ -39,6 +41,7 @@ static bw_status cloud_sums(bw_pd_body *pd)
 {
   const double ds = pd->level->ds;
   bw_pd_bond_full *full = &bw_pd_bond__own(pd)->full;
+  /* No family of a cloud is the full one: means over many stand for it. */
   double mean[3];
   BW_TRY(bw_pd_body_cloud_means(pd, mean));
   full->volume = pd->level->dv * mean[0];
@@ -50,6 +53,7 @@ static bw_status cloud_sums(bw_pd_body *pd)
 bw_status bw_pd_bond__full_family(bw_pd_body *pd)
 {
   const bw_pd_bond_options *o = &bw_pd_bond__state(pd)->options;
+  /* Nobody would read the sums. */
   if (o->calibration == BW_PD_CALIBRATION_NONE && o->surface_correction != BW_PD_SURFACE_TENSOR)
     return BW_OK;
   if (pd->config.disorder > 0) return cloud_sums(pd);
@@ -63,15 +67,19 @@ void bw_pd_bond__calibrate(bw_pd_body *pd)
 {
   const bw_pd_body_config *c = &pd->config;
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  /* V_0 of the volume method is that of the ball, as printed (3.44), or the family's own. */
   const bool lattice = state->options.calibration == BW_PD_CALIBRATION_LATTICE;
   const double d = pd->level->horizon;
   state->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
+  /* Now alpha is 1 in the bulk. */
   if (lattice) state->full_volume = state->full.volume;
   for (int g = 0; g < c->n_group; g++)
     for (int h = 0; h < c->n_group; h++) {
+      /* The factors by tensor are relative to this c0: that correction always takes it. */
       const double E = bw_pd_bond__joint_E(c, g, h);
       if (lattice || state->options.surface_correction == BW_PD_SURFACE_TENSOR)
         state->c0[g][h] = 4 * bw_pd_bond__classical_dilation(c, E) / state->full.moment;
+      /* G0 = 1/2 c0 s0^2 sum, solved for s0. */
       if (lattice)
         state->s0[g][h] =
             sqrt(2 * bw_pd_bond__joint_G0(c, g, h) / (state->c0[g][h] * state->full.crossing));

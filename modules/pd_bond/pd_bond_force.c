@@ -36,8 +36,10 @@ INLINE vec stored(const bonds *s, const bw_pd_slot *slot)
 INLINE coefficients cloud_coefficient(const bonds *s, const bw_pd_slot *slot, vec stiffness,
                                       const bond *x, vec wh, bw_pd_surface_correction surface)
 {
+  /* 1/|xi|, for Gamma and for the stretch. */
   const vec q0 = vec_rsqrt(x->rest2);
   const vec k = stiffness * gamma_of(&s->all, x->rest2 * q0);
+  /* alpha = 2 V_0/(V_h + V_l) is in the root; of energy the mean of both ends. */
   if (surface == BW_PD_SURFACE_VOLUME) {
     const vec sum = wh + vec_load(s->w + slot->base), t = x->r2 * sum;
     const vec q = vec_rsqrt(t * sum), qs = q * sum;
@@ -52,6 +54,7 @@ INLINE coefficients coefficient(const bonds *s, const bw_pd_block *block, const 
                                 const bw_real *row, const bond *x, vec wh,
                                 bw_pd_surface_correction surface, bool cloud, bool mixed)
 {
+  /* `surface` is known when this is compiled: one of the branches is left. */
   const vec k = constant_of(&s->all, block, slot, row, BW_PD_STIFFNESS, mixed);
   if (cloud) return cloud_coefficient(s, slot, k, x, wh, surface);
   const vec r2 = x->r2, minus_r0 = vec_all(row[BW_PD_MINUS_R0]);
@@ -71,6 +74,7 @@ INLINE void add_damping(const sweep *s, const bw_pd_slot *slot, const bw_real *r
                         vec inverse2, vec pair, const vec vh[3], int dimension, bool cloud,
                         vec sum[3])
 {
+  /* (V_l - V_h).z; z/r^2 makes a unit vector and a direction of it. */
   vec along = vec_all(0);
   for (int k = 0; k < dimension; k++)
     along = vec_fma(vec_load(s->v[k] + slot->base) - vh[k], x->z[k], along);
@@ -85,6 +89,7 @@ INLINE bool block_force(const bonds *s, const bw_pd_block *block, int dimension,
                         bw_pd_surface_correction surface, bool check, bool damping, bool mixed)
 {
   const sweep *all = &s->all;
+  /* What the owners bring is loaded once for all slots of the block. */
   const owners h = owners_of(all, block, dimension, cloud);
   const bw_real *rows = rows_of(all, block);
   const vec pair = over_density(all, block, all->pd->damping.pair, mixed);
@@ -96,17 +101,21 @@ INLINE bool block_force(const bonds *s, const bw_pd_block *block, int dimension,
   }
   const bw_pd_slot *end = all->slot + bw_pd_body_slot_end(block);
   for (const bw_pd_slot *slot = all->slot + block->slot; slot < end; slot++) {
+    /* Most slots hold; one without a bond costs one comparison. */
     if (slot->mask == 0) continue;
     const lanes holds = lanes_of(slot->mask);
     const bw_real *row = rows + slot->direction * BW_PD_ROW;
     const bond x = bond_of(all, slot, row, &h, dimension, cloud);
     const coefficients c = coefficient(s, block, slot, row, &x, wh, surface, cloud, mixed);
+    /* Lanes without a bond compute too; their number, whatever it is, is dropped here. */
     const vec force = vec_keep(holds, c.force);
     for (int k = 0; k < dimension; k++)
       sum[k] = vec_fma(force, x.z[k], sum[k]);
+    /* s > s0 (3.34) as squares of lengths: no root is needed. */
     if (check) beyond |= vec_above(x.r2, limit_of(all, block, slot, row, &x, cloud, mixed)) & holds;
     if (damping) add_damping(all, slot, row, &x, c.inverse2, pair, vh, dimension, cloud, damp);
   }
+  /* The sum over the family is complete: it is written, not added. */
   for (int k = 0; k < dimension; k++) {
     vec_put_owners(block, sum[k], all->a[k]);
     if (damping) vec_put_owners(block, damp[k], all->damp[k]);
@@ -118,6 +127,7 @@ INLINE bool block_force(const bonds *s, const bw_pd_block *block, int dimension,
 static __attribute__((noinline)) bool mixed_force(const bonds *s, const bw_pd_block *block,
                                                   bool check, bool damping)
 {
+  /* Out of plane all is zero in 2D, so that three components are right there too. */
   const bw_pd_body *pd = s->all.pd;
   return block_force(s, block, 3, pd->config.disorder > 0,
                      bw_pd_bond__state(pd)->options.surface_correction, check, damping, true);
@@ -131,6 +141,7 @@ INLINE size_t sweep_blocks(const bonds *s, size_t first, size_t last, int dimens
   size_t n_hit = 0;
   for (size_t b = first; b < last; b++) {
     const bw_pd_block *block = &s->all.block[b];
+    /* Blocks of one group keep the kernel that knows all choices. */
     const bool beyond = block->group == BW_PD_MIXED ? mixed_force(s, block, check, damping)
                                                     : block_force(s, block, dimension, cloud,
                                                                   surface, check, damping, false);
@@ -181,6 +192,7 @@ static const sweep_function function[4][2][2][2][2] = {
 void bw_pd_bond__force(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping)
 {
   const bonds s = bonds_of(pd);
+  /* Unbreakable bodies, and steps that do not check, take the sweep without comparison. */
   const bool cloud = pd->config.disorder > 0,
              really = check && pd->breakage && bw_pd_bond__state(pd)->breakable;
   const sweep_function sweep_all = function[bw_pd_bond__state(pd)->options.surface_correction]
@@ -195,6 +207,7 @@ static uint8_t unbreakable(const bw_pd_body *pd, const bw_pd_block *block, const
   uint8_t out = 0;
   for (int k = 0; k < BW_PD_LANES; k++)
     if (lanes_asked >> k & 1) {
+      /* Either end's word is enough, and both ends see both. */
       const uint8_t kinds = pd->points.kind[pd->points.occupant[block->first + k]] |
                             pd->points.kind[pd->points.occupant[slot->base + k]];
       if (kinds & BW_PD_UNBREAKABLE) out |= (uint8_t)(1u << k);
@@ -208,6 +221,7 @@ bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
   const bonds s = bonds_of(pd);
   const bw_pd_surface_correction surface = bw_pd_bond__state(pd)->options.surface_correction;
   const bool cloud = pd->config.disorder > 0, mixed = block->group == BW_PD_MIXED;
+  /* The motion has not changed since the sweep that noted the block. */
   const owners h = owners_of(&s.all, block, 3, cloud);
   const bw_real *rows = rows_of(&s.all, block);
   vec lost[3], wh = vec_load(s.w + block->first);
@@ -219,6 +233,7 @@ bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
     const bw_real *row = rows + slot->direction * BW_PD_ROW;
     const bond x = bond_of(&s.all, slot, row, &h, 3, cloud);
     const vec limit = limit_of(&s.all, block, slot, row, &x, cloud, mixed);
+    /* Of a retired particle nothing breaks any more. */
     uint8_t over = slot->mask & (uint8_t)~block->gone & lanes_bits(vec_above(x.r2, limit));
     if (over == 0) continue;
     over &= (uint8_t)~unbreakable(pd, block, slot, over);
@@ -227,9 +242,11 @@ bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
     const vec c = vec_keep(lanes_of(over), all.force);
     for (int k = 0; k < 3; k++)
       lost[k] = vec_fma(c, x.z[k], lost[k]);
+    /* The other end does the same with the same numbers, here or on its rank. */
     for (int k = 0; k < BW_PD_LANES; k++)
       if (over >> k & 1) bw_pd_body_cut(pd, block, slot, k), any = true;
   }
+  /* Their pull is taken out: the next step starts without them, and no sweep is repeated. */
   for (int lane = 0; any && lane < BW_PD_LANES; lane++)
     for (int k = 0; k < 3; k++)
       if (block->mask >> lane & 1) pd->a[k][bw_pd_body_owner(block, lane)] -= lost[k][lane];
@@ -241,6 +258,7 @@ double bw_pd_bond__bond_energy(const bw_pd_body *pd, const bw_pd_block *block,
                                const bw_pd_slot *slot, int lane)
 {
   const int32_t h = block->first + lane, l = slot->base + lane;
+  /* Half at this end: the other one books the other half. */
   const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
   const double s = bw_pd_body_length(pd, h, slot, lane, rest.xi) / rest.r0 - 1;
   const double alpha = bw_pd_bond__alpha(pd, block, slot, lane), dv = pd->level->dv;
@@ -254,6 +272,7 @@ static vec block_energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t 
   const bonds s = bonds_of(pd);
   const bw_pd_surface_correction surface = bw_pd_bond__state(pd)->options.surface_correction;
   const bool cloud = pd->config.disorder > 0, mixed = block->group == BW_PD_MIXED;
+  /* As the force, but with the square of the change of length. */
   const owners h = owners_of(&s.all, block, 3, cloud);
   const bw_real *rows = rows_of(&s.all, block);
   vec sum = vec_all(0), wh = vec_load(s.w + block->first);
@@ -263,11 +282,13 @@ static vec block_energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t 
     const bond x = bond_of(&s.all, slot, row, &h, 3, cloud);
     vec r0 = vec_all(row[BW_PD_R0]);
     vec k = constant_of(&s.all, block, slot, row, BW_PD_STIFFNESS, mixed);
+    /* In a cloud Gamma and 1/|xi| are the bond's own. */
     if (cloud) {
       const vec q0 = vec_rsqrt(x.rest2);
       r0 = x.rest2 * q0;
       k *= gamma_of(&s.all, r0) * q0;
     }
+    /* The row's constant already holds what the factors of a kind share. */
     const vec both = wh + vec_load(s.w + slot->base);
     const vec alpha = surface == BW_PD_SURFACE_VOLUME   ? 1 / both
                       : surface == BW_PD_SURFACE_ENERGY ? both
@@ -284,6 +305,7 @@ double bw_pd_bond__energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_
 {
   const vec sum = block_energy(pd, block, lanes_asked);
   const double dv = pd->level->dv;
+  /* The row's stiffness is over the owner's density, which is put back here. */
   if (block->group != BW_PD_MIXED)
     return 0.25 * pd->config.material[block->group].rho * dv * vec_sum(sum);
   double energy = 0;

@@ -9,20 +9,21 @@ static const double PI = 3.14159265358979323846;
 static bw_status check(const bw_pd_body_config *c, const void *options)
 {
   const bw_pd_bond_options *o = (const bw_pd_bond_options *)options;
+  /* A network of central bonds has one Poisson's ratio, whatever its constants (ERRATA 14). */
   const double nu = bw_pd_body_natural_poisson(c->geometry);
   for (int g = 0; g < c->n_group; g++)
     BW_REQUIRE(
         isnan(c->material[g].nu) || fabs(c->material[g].nu - nu) < 1e-9, BW_EINPUT,
-        "pd_bond: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
+        "solid: nu = %g, but bonds fix it to %s in this geometry (ERRATA 14); leave nu out or "
         "set it to that",
         c->material[g].nu, c->geometry == BW_PD_PLANE_STRESS ? "1/3" : "1/4");
   BW_REQUIRE((unsigned)o->surface_correction <= BW_PD_SURFACE_TENSOR, BW_EINPUT,
-             "pd_bond: surface_correction = %d is unknown", (int)o->surface_correction);
+             "solid: surface_correction = %d is unknown", (int)o->surface_correction);
   BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
-             "pd_bond: surface_correction = tensor is of lattices; with disorder = %g use energy",
+             "solid: surface_correction = tensor is of lattices; with disorder = %g use energy",
              c->disorder);
   BW_REQUIRE((unsigned)o->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
-             "pd_bond: calibration = %d is unknown", (int)o->calibration);
+             "solid: calibration = %d is unknown", (int)o->calibration);
   return BW_OK;
 }
 
@@ -48,6 +49,7 @@ void bw_pd_bond__material(bw_pd_body *pd)
   const double d = pd->level->horizon, t = c->thickness;
   for (int g = 0; g < c->n_group; g++)
     for (int h = 0; h < c->n_group; h++) {
+      /* A column per geometry: space, plane stress, plane strain. */
       const double E = bw_pd_bond__joint_E(c, g, h);
       const double micromodulus[] = {12 * E / (PI * d * d * d * d), 9 * E / (PI * t * d * d * d),
                                      48 * E / (5 * PI * t * d * d * d)};
@@ -56,6 +58,7 @@ void bw_pd_bond__material(bw_pd_body *pd)
       state->s0[g][h] = sqrt(stretch2[c->geometry] * bw_pd_bond__joint_G0(c, g, h));
     }
   for (int g = 0; g < c->n_group; g++)
+    /* Whoever left it out reads here what it is. */
     c->material[g].nu = bw_pd_body_natural_poisson(c->geometry);
 }
 
@@ -68,8 +71,10 @@ static void row_constants(const bw_pd_body *pd, int g, int h, bw_real row[])
   const bw_pd_stencil *s = &pd->level->stencil;
   const bool cloud = pd->config.disorder > 0;
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
+    /* In a cloud length and Gamma are the bond's own: here they are 1. */
     const double r0 = cloud ? 1 : s->r0[q], gamma = cloud ? 1 : s->fraction[q];
     const double limit = r0 * (1 + state->s0[g][h]);
+    /* Acceleration of the owner per change of length, with what every bond shares of alpha. */
     row[BW_PD_STIFFNESS] = (bw_real)(factor[state->options.surface_correction] * state->c0[g][h] *
                                      gamma * pd->level->dv / (pd->config.material[g].rho * r0));
     row[BW_PD_LIMIT2] = (bw_real)(limit * limit);
@@ -79,11 +84,13 @@ static void row_constants(const bw_pd_body *pd, int g, int h, bw_real row[])
 static void constants(bw_pd_body *pd)
 {
   const int groups = pd->config.n_group;
+  /* s0 may have changed alone, but c0 and s0 belong together: both are made anew. */
   bw_pd_bond__material(pd);
   bw_pd_bond__calibrate(pd);
   bw_pd_bond__own(pd)->breakable = false;
   for (int g = 0; g < groups; g++)
     for (int h = 0; h < groups; h++) {
+      /* Without a finite s0 the sweeps need not compare lengths. */
       if (isfinite(bw_pd_bond__state(pd)->s0[g][h])) bw_pd_bond__own(pd)->breakable = true;
       row_constants(pd, g, h,
                     pd->level->row + (size_t)((g * groups + h) * pd->level->stencil.n) * BW_PD_ROW);
@@ -95,12 +102,14 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   const int directions = pd->level->stencil.n;
   bw_pd_bond_state *state = NULL;
   bw_status st = BW_ALLOCATE(&state, 1);
+  /* The body destroys what stands of a state, also after a failure. */
   pd->state = state;
   if (st == BW_OK) {
     state->options = *(const bw_pd_bond_options *)options;
     st = BW_ALLOCATE(&state->bulk, (size_t)directions);
     BW_THEN(st, bw_pd_body_storage_array(pd->points.n_storage, &state->w));
   }
+  /* Until the correction by tensor says otherwise a full family is not corrected. */
   for (int q = 0; q < directions && st == BW_OK; q++)
     state->bulk[q] = 1;
   /* The factors of a body's surface refer to the full family's sums, and the tensor's factors change

@@ -7,7 +7,8 @@
  * reduced to one scalar per particle). */
 static bw_real surface_factor(const bw_pd_body *pd, double volume, double first_moment)
 {
-  /* Both energies are proportional to E: the ratio is that of any group. */
+  /* 1/4 c0 sum |xi| Gamma dV is what a dilation e stores per volume, over e^2. As the classical one
+   * it is proportional to E: the ratio is that of any group. */
   const bw_pd_bond_state *state = bw_pd_bond__state(pd);
   const double energy = 0.25 * state->c0[0][0] * first_moment;
   switch (state->options.surface_correction) {
@@ -45,6 +46,7 @@ bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
     w[p] = 1;
   for (size_t h = 0; h < pd->n && st == BW_OK; h++)
     if (volume[h] > 0) w[pd->points.place[h]] = surface_factor(pd, volume[h], moment[h]);
+  /* A bond reads the factors of both ends; those of copies come from their owners. */
   if (st == BW_OK) bw_pd_body_fill_places(pd, w);
   bw_release(&volume);
   bw_release(&moment);

@@ -61,6 +61,7 @@ static int monomials(int dimension, int power[EVEN][3])
 static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
 {
   const double x = e[0], y = e[1], z = e[2];
+  /* Real and imaginary part of (x + iy)^3, up to sign. */
   if (dimension == 2) {
     out[0] = x * (x * x - 3 * y * y);
     out[1] = y * (y * y - 3 * x * x);
@@ -79,11 +80,13 @@ static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
 static int conditions(const bw_pd_body *pd, int q, double f[MOST])
 {
   const bw_pd_stencil *s = &pd->level->stencil;
+  /* Lengths in ds: numbers of order 1, whatever the unit. */
   const double r = s->r0[q] / pd->level->ds;
   int power[EVEN][3];
   double e[3];
   for (int k = 0; k < 3; k++)
     e[k] = s->offset[3 * q + k] / r;
+  /* Even conditions carry the energy's |xi|; odd ones are of the direction alone. */
   const int n = monomials(pd->dimension, power);
   for (int k = 0; k < n; k++)
     f[k] = r * pow(e[0], power[k][0]) * pow(e[1], power[k][1]) * pow(e[2], power[k][2]);
@@ -95,6 +98,7 @@ static int conditions(const bw_pd_body *pd, int q, double f[MOST])
 static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, const double target[],
                         double f[], double *t)
 {
+  /* Gram-Schmidt in the inner product that is weighted with Gamma. */
   double before = 0, norm = 0;
   for (int q = 0; q < s->n; q++)
     before += s->fraction[q] * f[q] * f[q];
@@ -109,6 +113,7 @@ static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, con
   }
   for (int q = 0; q < s->n; q++)
     norm += s->fraction[q] * f[q] * f[q];
+  /* In the plane or with few neighbours some conditions follow from others. */
   if (!(norm > 1e-9 * before)) return false;
   for (int q = 0; q < s->n; q++)
     f[q] /= sqrt(norm);
@@ -126,6 +131,7 @@ static bw_status basis(bw_pd_body *pd, solver *v)
   int power[EVEN][3], all = MOST;
   const int even = monomials(pd->dimension, power);
   BW_TRY(BW_ALLOCATE(&rows, MOST * n));
+  /* The conditions as functions of the direction, and the first moment that sets their scale. */
   for (int q = 0; q < s->n; q++) {
     double f[MOST];
     all = conditions(pd, q, f);
@@ -133,16 +139,19 @@ static bw_status basis(bw_pd_body *pd, solver *v)
       rows[(size_t)k * n + (size_t)q] = f[k];
     total += s->fraction[q] * s->r0[q] / pd->level->ds;
   }
+  /* Targets: of degree 4 the isotropic mean, of degree 3 nothing. Orthonormal ones stay. */
   for (int k = 0; k < all; k++) {
     double *f = rows + (size_t)v->n * n,
            t = k < even ? total * isotropic(power[k], pd->dimension) : 0;
     memmove(f, rows + (size_t)k * n, n * sizeof *f);
     if (!orthonormal(s, rows, v->n, v->target, f, &t)) continue;
+    /* What a full family lacks is its multiplier: with orthonormal phi one step solves it. */
     v->target[v->n] = v->full[v->n] = t;
     for (int q = 0; q < s->n; q++)
       v->full[v->n] -= s->fraction[q] * f[q];
     v->n++;
   }
+  /* Sweeps read all conditions of a direction at once: transposed. */
   const bw_status st = BW_ALLOCATE(&v->phi, n * (size_t)v->n);
   for (int k = 0; k < v->n && st == BW_OK; k++)
     for (size_t q = 0; q < n; q++) {
@@ -164,6 +173,7 @@ static vec clipped(vec x)
 INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
                    const bw_pd_slot *slot, int n)
 {
+  /* The opposite direction is the mirror place in the stencil: phi(-xi) of the other end. */
   const bw_real *phi = v->phi + slot->direction * n;
   const bw_real *back = v->phi + (pd->level->stencil.n - 1 - slot->direction) * n;
   vec mine = vec_all(0), other = vec_all(0);
@@ -178,10 +188,12 @@ INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
 INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
                    bw_real *const next[], int n)
 {
+  /* T - sum alpha phi Gamma, lane by lane: what is still lacking. */
   vec rest[MOST];
   for (int k = 0; k < n; k++)
     rest[k] = vec_all((bw_real)v->target[k]);
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
+    /* Factors are made from the multipliers at both ends each time: none is stored yet. */
     const bw_pd_slot *slot = &pd->bonds.slot[q];
     const bw_real *phi = v->phi + slot->direction * n;
     const vec alpha = vec_keep(lanes_of(slot->family), factors(pd, v, block, slot, n)) *
@@ -206,18 +218,22 @@ static void ascend_all(const bw_pd_body *pd, const solver *v, bw_real *const nex
 /* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
 static void solve(bw_pd_body *pd, solver *v, bw_real *const next[])
 {
+  /* A fixed number of sweeps, no norm over ranks: the same bits on any number of them. */
   double t = 1;
   for (int pass = 0; pass < SWEEPS; pass++) {
     const double after = (1 + sqrt(1 + 4 * t * t)) / 2;
     const bw_real momentum = (bw_real)((t - 1) / after);
     t = after;
+    /* Everybody reads the old multipliers of its neighbours, whoever owns them. */
     ascend_all(pd, v, next);
     for (int k = 0; k < v->n; k++) {
       for (size_t i = 0; i < pd->n; i++) {
+        /* Held layers stand for the material behind them: they keep the full family's. */
         if (pd->points.kind[i] & BW_PD_PRESCRIBED) continue;
         v->at[k][pd->points.place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
         v->last[k][i] = next[k][i];
       }
+      /* Copies have to be current before the next sweep reads them. */
       bw_pd_body_fill_places(pd, v->at[k]);
     }
   }
@@ -228,6 +244,7 @@ static void store(bw_pd_body *pd, const solver *v)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
+      /* Rounded alike from both ends: a bond's two forces stay exact opposites. */
       const vec alpha = factors(pd, v, &pd->bonds.block[b], &pd->bonds.slot[q], v->n);
       for (int lane = 0; lane < BW_PD_LANES; lane++)
         pd->bonds.factor[(size_t)q * BW_PD_LANES + (size_t)lane] =
@@ -241,6 +258,7 @@ static bw_status solver_arrays(const bw_pd_body *pd, solver *v, bw_real *next[])
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &v->at[k]));
     BW_TRY(BW_ALLOCATE(&v->last[k], pd->n));
     BW_TRY(BW_ALLOCATE(&next[k], pd->n));
+    /* Everybody starts from the full family: in the bulk that is the solution. */
     for (size_t p = 0; p < pd->points.n_storage; p++)
       v->at[k][p] = (bw_real)v->full[k];
     for (size_t i = 0; i < pd->n; i++)
@@ -258,6 +276,7 @@ bw_status bw_pd_bond__tensor(bw_pd_body *pd)
   BW_THEN(st, BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES));
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
+    /* Multipliers are needed until the factors are stored; then they go. */
     solve(pd, &v, next);
     store(pd, &v);
     st = bw_comm_agree(pd->comm,

@@ -15,9 +15,11 @@ static const double SKIN = 0.5;     /* of the search, in ds: a new one after a m
 /* Between two materials the harmonic mean of their stiffnesses. */
 static bw_pd_pair pair_law(const bw_pd_body *pd, int g, int h)
 {
+  /* One material's own stiffness is taken as it stands. */
   const bw_pd_material *m = pd->config.material;
   const double a = pd->law->micromodulus(pd, g), b = pd->law->micromodulus(pd, h);
   const double modulus = g == h ? a : 2 * a * b / (a + b);
+  /* An acceleration of h: its own density below, the partner's volume above. */
   return (bw_pd_pair){.reach = pd->level->ds,
                       .k = K_CONTACT * modulus * pd->level->dv / m[g].rho,
                       .weight = m[g].rho / m[0].rho,
@@ -48,6 +50,7 @@ bw_status bw_pd_contact_create(bw_pd_body *pd, bw_pd_contact **out)
     c->reach = pd->level->ds;
     c->skin = SKIN * pd->level->ds;
     c->closest = INFINITY;
+    /* A table for all pairs of groups: no mean is taken in a step. */
     for (int g = 0; g < pd->config.n_group; g++)
       for (int h = 0; h < pd->config.n_group; h++)
         c->law[g][h] = pair_law(pd, g, h);
@@ -84,9 +87,11 @@ void bw_pd_contact_recheck(bw_pd_contact *c)
 /* Whether an own particle moved by half the skin since the last search (NaN counts). */
 static bool moved(const bw_pd_body *pd, const bw_pd_contact *c)
 {
+  /* Two that move towards each other by half the skin each close the whole of it. */
   const bw_real limit2 = (bw_real)(0.25 * c->skin * c->skin);
   int far = 0;
   for (size_t r = 0; r < pd->bonds.n_run; r++) {
+    /* Runs are contiguous in both arrays, so that the comparison goes through whole vectors. */
     const bw_pd_run run = pd->bonds.run[r];
     const bw_real *x = pd->u[0] + run.place, *a = c->u_built[0] + run.own;
     const bw_real *y = pd->u[1] + run.place, *b = c->u_built[1] + run.own;
@@ -111,6 +116,7 @@ static void remember(const bw_pd_body *pd, bw_pd_contact *c)
 /* Present positions of the particles in pairs, other ranks' too. */
 static void positions(bw_pd_body *pd, bw_pd_contact *c)
 {
+  /* Only particles that are in pairs, here or elsewhere, are looked at. */
   for (size_t q = 0; q < c->n_sent; q++)
     bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
   for (size_t b = 0; b < c->n_busy; b++) {
@@ -131,18 +137,22 @@ bw_status bw_pd_contact_update(bw_pd_contact *c)
     BW_TRY(bw_pd_contact__search(c));
     remember(pd, c);
   }
+  /* Pairs are those of the last search, positions those of now. */
   positions(pd, c);
   return bw_pd_contact__wall_update(c);
 }
 
 double bw_pd_contact__repel(bw_pd_pair *w, const double d[3], double r2, double sum[3])
 {
+  /* Beyond reach, or in one place, where no direction is defined: nothing. */
   const double r = sqrt(r2);
   if (!(r2 < w->reach * w->reach) || r == 0) return 0;
   w->closest = fmin(w->closest, r / w->reach);
+  /* 3.40 with ERRATA 3: -k_c (r_c/r - 1) e; d is not yet a unit vector. */
   const double f = w->k * (w->reach / r - 1) / r;
   for (int k = 0; k < 3; k++)
     sum[k] -= f * d[k];
+  /* The pair's energy, half at this end. */
   return w->weight * (0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r));
 }
 
@@ -161,11 +171,13 @@ static double short_bonds(bw_pd_contact *c, const bw_pd_block *block, const bw_p
   double energy = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(near >> lane & 1)) continue;
+    /* Few lanes come here: one by one, in the order of the stencil. */
     const int32_t l = pd->points.occupant[slot->base + lane];
     if (pd->points.kind[l] & BW_PD_RETIRED) continue;
     double sum[3] = {0};
     const double d[3] = {(double)x->z[0][lane], (double)x->z[1][lane], (double)x->z[2][lane]};
     const int32_t h = bw_pd_body_owner(block, lane);
+    /* In a cloud two that began nearer than r_c touch where they began. */
     bw_pd_pair pair = bw_pd_contact__pair(c, pd->points.group[h], pd->points.group[l]);
     pair.reach = sqrt((double)reach2[lane]);
     energy += bw_pd_contact__repel(&pair, d, (double)x->r2[lane], sum);
@@ -180,6 +192,7 @@ static double short_bonds(bw_pd_contact *c, const bw_pd_block *block, const bw_p
 static double block_contact(bw_pd_contact *c, const bw_pd_block *block, bool force)
 {
   const bw_pd_body *pd = c->pd;
+  /* Displacements of copies are current: their distances are found as those of bonds. */
   const sweep all = sweep_of(pd);
   const bool cloud = pd->config.disorder > 0;
   const owners h = owners_of(&all, block, 3, cloud);
@@ -187,10 +200,12 @@ static double block_contact(bw_pd_contact *c, const bw_pd_block *block, bool for
   double energy = 0;
   for (uint32_t q = block->slot; q < bw_pd_body_slot_end(block); q++) {
     const bw_pd_slot *slot = &pd->bonds.slot[q];
+    /* Every bond of the slot holds: joined particles do not touch. */
     if (slot->family == slot->mask) continue;
     const bond x = bond_of(&all, slot, rows + slot->direction * BW_PD_ROW, &h, 3, cloud);
     vec reach2 = vec_all((bw_real)(c->reach * c->reach));
     if (cloud) reach2 = vec_least(reach2, x.rest2);
+    /* Broken, not retired, and nearer than their reach. */
     const unsigned near =
         (unsigned)(slot->family & ~slot->mask & ~block->gone) & lanes_bits(vec_above(reach2, x.r2));
     if (near != 0) energy += short_bonds(c, block, slot, near, &x, reach2, force);
@@ -203,6 +218,7 @@ static double family_contact(bw_pd_contact *c, bool force)
   const bw_pd_bonds *bonds = &c->pd->bonds;
   double energy = 0;
   for (size_t b = 0; b < bonds->n_block; b++)
+    /* Whole blocks, nearly all, are not looked at. */
     if (bonds->block[b].broken) energy += block_contact(c, &bonds->block[b], force);
   return energy;
 }
@@ -214,6 +230,7 @@ static double other_contact(bw_pd_contact *c, bool force)
   for (size_t b = 0; b < c->n_busy; b++) {
     const size_t q = (size_t)c->busy[b];
     double sum[3] = {0}, d[3];
+    /* Both ends list the pair, each on its rank, and get exactly opposite forces. */
     for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
       bw_pd_pair pair = bw_pd_contact__pair(c, c->group[q], c->group[c->pair[p]]);
       bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * (size_t)c->pair[p], d);
@@ -229,6 +246,7 @@ static double other_contact(bw_pd_contact *c, bool force)
 
 void bw_pd_contact_force(bw_pd_contact *c)
 {
+  /* Three kinds of partners, in an order that does not depend on ranks. */
   family_contact(c, true);
   other_contact(c, true);
   bw_pd_contact__wall_act(c, true);
@@ -236,6 +254,7 @@ void bw_pd_contact_force(bw_pd_contact *c)
 
 double bw_pd_contact_energy(bw_pd_contact *c)
 {
+  /* By the mass of the first group, as the weights are. */
   const double energy =
       family_contact(c, false) + other_contact(c, false) + bw_pd_contact__wall_act(c, false);
   return energy * c->pd->config.material[0].rho * c->pd->level->dv;
@@ -248,6 +267,7 @@ double bw_pd_contact_time(const bw_pd_contact *c)
   double most = 0;
   for (int g = 0; g < pd->config.n_group; g++)
     for (int h = 0; h < pd->config.n_group; h++) {
+      /* Two masses on one spring of stiffness k_c/r_c dV^2: w^2 is the sum of both accelerations. */
       const bw_pd_pair a = bw_pd_contact__pair(c, g, h), b = bw_pd_contact__pair(c, h, g);
       most = fmax(most, (a.k + b.k) / fmin(a.reach, b.reach));
     }

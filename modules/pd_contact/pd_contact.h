@@ -66,6 +66,9 @@ double bw_pd_contact__wall_act(bw_pd_contact *c, bool force);
 
 void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_contact *c) BW_MUST_CHECK; /* Collective. */
+/* pd_contact_share.c: from the candidates in mine: sent, plan, and y, site, group, shift of own and
+ * others. BW_EMEM. Collective. */
+bw_status bw_pd_contact__share(bw_pd_contact *c) BW_MUST_CHECK;
 void bw_pd_contact__release(bw_pd_contact *c);
 
 /* y_l - y_h with the nearest image. */

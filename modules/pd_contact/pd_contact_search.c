@@ -1,4 +1,4 @@
-/* Pairs of particles outside each other's family: candidates, copies, cells.
+/* Pairs of particles outside each other's family: candidates and cells.
  *
  * Every particle is a candidate, buried ones too: a list of those at surfaces would switch pairs on
  * when the one becomes a surface with the other in it already, out of nothing. To be near each
@@ -40,62 +40,11 @@ void bw_pd_contact__release(bw_pd_contact *c)
 /* Own particles that are not retired. */
 static bw_status candidates(const bw_pd_body *pd, bw_pd_contact *c)
 {
+  /* Prescribed ones too: a grip pushes what meets it. */
   BW_TRY(BW_ALLOCATE(&c->mine, pd->n));
   for (size_t i = 0; i < pd->n; i++)
     if (!(pd->points.kind[i] & BW_PD_RETIRED)) c->mine[c->n_mine++] = (int32_t)i;
   return BW_OK;
-}
-
-/* Boxes of all ranks' candidates, (size,6) lower and upper corners. */
-static bw_status boxes(const bw_pd_body *pd, const bw_pd_contact *c, double **box)
-{
-  double mine[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, y[3];
-  size_t bytes;
-  void *all = NULL;
-  for (size_t q = 0; q < c->n_mine; q++) {
-    bw_pd_contact__position(pd, (size_t)c->mine[q], y);
-    for (int k = 0; k < 3; k++) {
-      mine[k] = fmin(mine[k], y[k]);
-      mine[3 + k] = fmax(mine[3 + k], y[k]);
-    }
-  }
-  BW_TRY(bw_comm_allgather(pd->comm, sizeof mine, mine, &bytes, &all));
-  *box = all;
-  return BW_OK;
-}
-
-static bool in_box(const bw_pd_body *pd, const double y[3], const double box[6], double margin)
-{
-  for (int k = 0; k < 3; k++) {
-    if (pd->config.period[k] > 0 && box[k] <= box[3 + k]) continue;
-    if (!(y[k] >= box[k] - margin && y[k] <= box[3 + k] + margin)) return false;
-  }
-  return true;
-}
-
-/* Candidates near another rank's go there. */
-static bw_status choose_sent(const bw_pd_body *pd, bw_pd_contact *c, const double *box,
-                             int **destination)
-{
-  const int size = bw_comm_size(pd->comm), me = bw_comm_rank(pd->comm);
-  for (int pass = 0; pass < 2; pass++) {
-    size_t n = 0;
-    for (size_t q = 0; q < c->n_mine && size > 1; q++) {
-      double y[3];
-      bw_pd_contact__position(pd, (size_t)c->mine[q], y);
-      for (int r = 0; r < size; r++) {
-        if (r == me || !in_box(pd, y, box + 6 * r, c->reach + c->skin)) continue;
-        if (pass == 1) (*destination)[n] = r;
-        if (pass == 1) c->sent[n] = c->mine[q];
-        n++;
-      }
-    }
-    c->n_sent = n;
-    if (pass == 1) break;
-    BW_TRY(BW_ALLOCATE(destination, n));
-    BW_TRY(BW_ALLOCATE(&c->sent, n));
-  }
-  return BW_ALLOCATE(&c->send, 3 * c->n_sent);
 }
 
 /* Cells of edge at least reach + skin, hashed; whole numbers of them in periodic directions. */
@@ -110,6 +59,7 @@ typedef struct {
 static void cell_of(const cells *g, const double y[3], int32_t cell[3])
 {
   for (int k = 0; k < 3; k++) {
+    /* Particles that have flown far share the outermost cell: the number stays in range. */
     const double x = floor((y[k] - g->lower[k]) / g->edge[k]);
     cell[k] = (int32_t)fmax(-1e9, fmin(1e9, x));
     const int32_t n = g->count[k];
@@ -119,6 +69,7 @@ static void cell_of(const cells *g, const double y[3], int32_t cell[3])
 
 static size_t bucket_of(const cells *g, const int32_t cell[3])
 {
+  /* Odd factors spread neighbouring cells over the table; the lowest bits are dropped. */
   const uint64_t key = (uint64_t)(uint32_t)cell[0] * 0x9e3779b97f4a7c15u ^
                        (uint64_t)(uint32_t)cell[1] * 0xc2b2ae3d27d4eb4fu ^
                        (uint64_t)(uint32_t)cell[2] * 0x165667b19e3779f9u;
@@ -138,6 +89,7 @@ static void displacement(const bw_pd_body *pd, const bw_pd_contact *c, size_t q,
 static void insert(const bw_pd_body *pd, const bw_pd_contact *c, cells *g, size_t q)
 {
   double u[3];
+  /* Each bucket keeps the range of its displacements, by which calm regions are known. */
   cell_of(g, c->y + 3 * q, g->cell + 3 * q);
   const size_t b = bucket_of(g, g->cell + 3 * q);
   double *least = g->moved + 6 * b, *most = least + 3;
@@ -155,11 +107,13 @@ static bw_status make_cells(const bw_pd_body *pd, const bw_pd_contact *c, cells 
 {
   const size_t n = c->n_mine + c->n_theirs;
   for (int k = 0; k < 3; k++) {
+    /* Edges of at least reach + skin: partners are in this cell or one next to it. */
     const double p = pd->config.period[k], least = c->reach + c->skin;
     g->lower[k] = n > 0 ? c->y[k] : 0;
     g->count[k] = p > 0 ? (int32_t)fmax(1, floor(p / least)) : 0;
     g->edge[k] = p > 0 ? p / g->count[k] : least;
   }
+  /* A power of two, with room for one candidate in each. */
   for (g->buckets = 64; g->buckets < n;)
     g->buckets *= 2;
   BW_TRY(BW_ALLOCATE(&g->head, g->buckets));
@@ -177,6 +131,7 @@ static int around(const cells *g, const int32_t cell[3], int32_t out[27][3])
 {
   int first[3], last[3], step[3], n = 0;
   for (int k = 0; k < 3; k++) {
+    /* With one or two cells in a period the neighbour on both sides is the same one. */
     first[k] = g->count[k] == 1 || g->count[k] == 2 ? 0 : -1;
     last[k] = g->count[k] == 1 ? 0 : 1;
   }
@@ -194,8 +149,10 @@ static int around(const cells *g, const int32_t cell[3], int32_t out[27][3])
 static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, int n,
                  int32_t cell[][3])
 {
+  /* Two that are not family began beyond its reach: to be listed they must come nearer by this. */
   const double limit = pd->level->reach - (c->reach + c->skin);
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  /* Buckets may hold other cells too: their displacements can only make it less calm. */
   for (int q = 0; q < n; q++) {
     const size_t b = bucket_of(g, cell[q]);
     if (g->head[b] < 0) continue;
@@ -208,6 +165,7 @@ static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, i
   double range2 = 0;
   for (int k = 0; k < 3; k++)
     range2 += (most[k] - least[k]) * (most[k] - least[k]);
+  /* The diagonal of the range bounds how much any two have moved apart. */
   return limit > 0 && range2 < limit * limit;
 }
 
@@ -216,17 +174,20 @@ static bool same_family(const bw_pd_body *pd, const bw_pd_contact *c, size_t a, 
 {
   int32_t o[3];
   for (size_t k = 0; k < 3; k++) {
+    /* The nearest image of the site, as families are built. */
     const int32_t p = (int32_t)lround(pd->config.period[k] / pd->level->ds);
     o[k] = c->site[3 * b + k] - c->site[3 * a + k];
     if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
   }
   const int direction = bw_pd_body_direction(&pd->level->stencil, o);
+  /* On a lattice a direction of the stencil is family; in a cloud the distance decides. */
   if (direction < 0 || pd->level->stencil.sure[direction]) return direction >= 0;
   return bw_pd_body_apart(pd, direction, c->shift + 3 * a, c->shift + 3 * b).r0 < pd->level->reach;
 }
 
 static bw_status append_pair(bw_pd_contact *c, size_t *n, size_t *capacity, int32_t partner)
 {
+  /* Grows twofold; this happens in searches, not in the steps between them. */
   if (*n == *capacity) {
     int32_t *larger = NULL;
     *capacity = 2 * *capacity + 1024;
@@ -246,9 +207,11 @@ static bw_status pairs_in_cell(const bw_pd_body *pd, bw_pd_contact *c, const cel
   const double far = c->reach + c->skin;
   for (int32_t p = g->head[bucket_of(g, cell)]; p >= 0; p = g->next[p]) {
     double d[3];
+    /* Other cells of the same bucket are told by their numbers. */
     if ((size_t)p == q || memcmp(g->cell + 3 * p, cell, 3 * sizeof *cell) != 0) continue;
     bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
+    /* Those are watched where their slots are, without a search. */
     if (same_family(pd, c, q, (size_t)p)) continue;
     BW_TRY(append_pair(c, n, capacity, p));
   }
@@ -261,6 +224,7 @@ static bw_status pairs_of(const bw_pd_body *pd, bw_pd_contact *c, const cells *g
 {
   const int32_t *own = g->cell + 3 * q;
   int32_t cell[27][3];
+  /* Successive candidates stand in the same cell mostly: its calm is not looked at again. */
   if (*quiet != NULL && memcmp(*quiet, own, sizeof *cell) == 0) return BW_OK;
   const int count = around(g, own, cell);
   if (calm(pd, c, g, count, cell)) {
@@ -275,6 +239,7 @@ static bw_status pairs_of(const bw_pd_body *pd, bw_pd_contact *c, const cells *g
 /* Candidates that have a pair. */
 static bw_status list_busy(bw_pd_contact *c)
 {
+  /* Steps go through these alone: most particles never meet anybody. */
   for (int pass = 0; pass < 2; pass++) {
     size_t n = 0;
     for (size_t q = 0; q < c->n_mine; q++) {
@@ -291,6 +256,7 @@ static bw_status list_busy(bw_pd_contact *c)
 static bw_status list_pairs(const bw_pd_body *pd, bw_pd_contact *c)
 {
   cells g = {0};
+  /* Own candidates and those that others sent; pairs are listed for the own ones. */
   bw_status st = make_cells(pd, c, &g);
   BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
   size_t n = 0, capacity = 0;
@@ -308,78 +274,15 @@ static bw_status list_pairs(const bw_pd_body *pd, bw_pd_contact *c)
   return st;
 }
 
-/* What others sent goes behind the own rows of `all`. */
-static void share_rows(const bw_pd_contact *c, size_t bytes, const void *sent, void *all)
-{
-  bw_exchange_forward(c->plan, bytes, sent, (unsigned char *)all + c->n_mine * bytes);
-}
-
-/* From the sites, in a cloud. */
-static bw_status share_shifts(const bw_pd_body *pd, bw_pd_contact *c)
-{
-  double *sent = NULL;
-  bw_status st = BW_ALLOCATE(&c->shift, 3 * (c->n_mine + c->n_theirs));
-  BW_THEN(st, BW_ALLOCATE(&sent, 3 * c->n_sent));
-  st = bw_comm_agree(pd->comm, st);
-  for (size_t k = 0; k < 3 && st == BW_OK; k++) {
-    for (size_t q = 0; q < c->n_mine; q++)
-      c->shift[3 * q + k] = (double)pd->shift[k][pd->points.place[c->mine[q]]];
-    for (size_t q = 0; q < c->n_sent; q++)
-      sent[3 * q + k] = (double)pd->shift[k][pd->points.place[c->sent[q]]];
-  }
-  if (st == BW_OK) share_rows(c, 3 * sizeof *sent, sent, c->shift);
-  bw_release(&sent);
-  return st;
-}
-
-static bw_status share(const bw_pd_body *pd, bw_pd_contact *c)
-{
-  int32_t *send = NULL;
-  uint8_t *group = NULL;
-  const size_t n = c->n_mine;
-  c->n_theirs = bw_exchange_received(c->plan);
-  bw_status st = BW_ALLOCATE(&c->y, 3 * (n + c->n_theirs));
-  BW_THEN(st, BW_ALLOCATE(&c->site, 3 * (n + c->n_theirs)));
-  BW_THEN(st, BW_ALLOCATE(&c->group, n + c->n_theirs));
-  BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n_sent));
-  BW_THEN(st, BW_ALLOCATE(&group, c->n_sent));
-  st = bw_comm_agree(pd->comm, st);
-  for (size_t q = 0; q < n && st == BW_OK; q++) {
-    c->group[q] = pd->points.group[c->mine[q]];
-    bw_pd_contact__position(pd, (size_t)c->mine[q], c->y + 3 * q);
-    memcpy(c->site + 3 * q, pd->points.site + 3 * (size_t)c->mine[q], 3 * sizeof *send);
-  }
-  for (size_t q = 0; q < c->n_sent && st == BW_OK; q++) {
-    group[q] = pd->points.group[c->sent[q]];
-    bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
-    memcpy(send + 3 * q, pd->points.site + 3 * (size_t)c->sent[q], 3 * sizeof *send);
-  }
-  if (st == BW_OK) {
-    share_rows(c, 3 * sizeof(double), c->send, c->y);
-    share_rows(c, 3 * sizeof *send, send, c->site);
-    share_rows(c, sizeof *group, group, c->group);
-  }
-  bw_release(&send);
-  bw_release(&group);
-  BW_TRY(st);
-  return pd->config.disorder > 0 ? share_shifts(pd, c) : BW_OK;
-}
-
 bw_status bw_pd_contact__search(bw_pd_contact *c)
 {
   const bw_pd_body *pd = c->pd;
-  double *box = NULL;
-  int *destination = NULL;
+  /* Nothing of the last search is kept. */
   bw_pd_contact__release(c);
   bw_status st = bw_comm_agree(pd->comm, candidates(pd, c));
-  BW_THEN(st, boxes(pd, c, &box));
-  if (st == BW_OK) st = bw_comm_agree(pd->comm, choose_sent(pd, c, box, &destination));
-  BW_THEN(st, bw_exchange_create(pd->comm, c->n_sent, destination, &c->plan));
-  BW_THEN(st, share(pd, c));
+  BW_THEN(st, bw_pd_contact__share(c));
+  /* Own candidates and those that others sent are in one list of places. */
   BW_THEN(st, list_pairs(pd, c));
   BW_THEN(st, bw_pd_contact__wall_search(c));
-  st = bw_comm_agree(pd->comm, st);
-  bw_release(&box);
-  bw_release(&destination);
-  return st;
+  return bw_comm_agree(pd->comm, st);
 }

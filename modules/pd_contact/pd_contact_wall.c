@@ -21,6 +21,7 @@ typedef struct {
 
 static gap gap_of(const bw_pd_body *pd, const bw_pd_wall *w, int32_t i)
 {
+  /* The distance it began with bounds the reach of the contact. */
   gap g;
   bw_pd_body_reference(pd, (size_t)i, g.X);
   g.first = distance(w, g.X);
@@ -33,6 +34,7 @@ static gap gap_of(const bw_pd_body *pd, const bw_pd_wall *w, int32_t i)
 /* Does an intact bond join particle i to a prescribed one that started beyond the plane? */
 static bool is_held(const bw_pd_body *pd, const bw_pd_wall *w, bw_pd_link link[], int32_t i)
 {
+  /* Such a particle stands on a foundation: the bond presses it, not the wall. */
   const int n = bw_pd_body_links(pd, (size_t)i, link);
   for (int q = 0; q < n; q++) {
     double X0[3];
@@ -47,6 +49,7 @@ static bool is_held(const bw_pd_body *pd, const bw_pd_wall *w, bw_pd_link link[]
 bw_status bw_pd_contact__wall_search(bw_pd_contact *c)
 {
   const bw_pd_body *pd = c->pd;
+  /* A particle meets its image at twice its distance. */
   const double far = 0.5 * (c->reach + c->skin);
   bw_release(&c->near);
   c->n_near = 0;
@@ -54,6 +57,7 @@ bw_status bw_pd_contact__wall_search(bw_pd_contact *c)
     size_t n = 0;
     for (int w = 0; w < c->n_wall; w++)
       for (size_t i = 0; i < pd->n; i++) {
+        /* Who is prescribed or retired passes. */
         if (pd->held.mobile[i] == 0 || !(gap_of(pd, &c->wall[w], (int32_t)i).now < far)) continue;
         if (pass == 1) c->near[n] = (bw_pd_near){(int32_t)i, (int8_t)w, true};
         n++;
@@ -61,6 +65,7 @@ bw_status bw_pd_contact__wall_search(bw_pd_contact *c)
     if (pass == 0) BW_TRY(BW_ALLOCATE(&c->near, n));
     c->n_near = n;
   }
+  /* Who is held by bonds is found at the next update. */
   c->events = -1;
   return BW_OK;
 }
@@ -69,6 +74,7 @@ bw_status bw_pd_contact__wall_search(bw_pd_contact *c)
 bw_status bw_pd_contact__wall_update(bw_pd_contact *c)
 {
   const bw_pd_body *pd = c->pd;
+  /* Bonds only break, but for a restart: without an event nobody was let go. */
   const bool changed = c->events != pd->bonds.events;
   c->events = pd->bonds.events;
   for (size_t q = 0; q < c->n_near; q++) {
@@ -76,6 +82,7 @@ bw_status bw_pd_contact__wall_update(bw_pd_contact *c)
     const bw_pd_wall *w = &c->wall[p->wall];
     const gap g = gap_of(pd, w, p->particle);
     if (p->held && changed) p->held = is_held(pd, w, c->link, p->particle);
+    /* The force would push it further out. */
     BW_REQUIRE(p->held || g.now > 0, BW_EDIVERGED,
                "solid: particle %lld at (%g, %g, %g) was thrown through the wall with the normal "
                "(%g, %g, %g); its speed or dt is too large",
@@ -94,13 +101,16 @@ double bw_pd_contact__wall_act(bw_pd_contact *c, bool force)
     const int32_t i = c->near[q].particle;
     double to_image[3], sum[3] = {0};
     if (c->near[q].held) continue;
+    /* The image moves with the particle: its own displacement is all that is needed. */
     const gap g = gap_of(pd, w, i);
     bw_pd_pair pair = bw_pd_contact__pair(c, pd->points.group[i], pd->points.group[i]);
+    /* Who began nearer than ds/2 touches where it began, or it would be pushed off at rest. */
     pair.reach = fmin(pair.reach, 2 * g.first);
     for (int k = 0; k < 3; k++)
       to_image[k] = -2 * g.now * w->normal[k];
     energy += bw_pd_contact__repel(&pair, to_image, 4 * g.now * g.now, sum);
     c->closest = pair.closest;
+    /* What the particle gets the wall gets with the other sign. */
     const double mass =
         bw_pd_body_material(pd, (size_t)i)->rho * bw_pd_body_level(pd, (size_t)i)->dv;
     for (int k = 0; force && k < 3; k++) {
@@ -108,6 +118,7 @@ double bw_pd_contact__wall_act(bw_pd_contact *c, bool force)
       on_walls[k] -= mass * sum[k];
     }
   }
+  /* Replaced, not added: the force of this evaluation. */
   for (int k = 0; force && k < 3; k++)
     c->wall_force[k] = on_walls[k];
   return energy;
@@ -130,6 +141,7 @@ static bw_status check_room(const bw_pd_contact *c, const bw_pd_wall *w)
   bw_status st = BW_OK;
   for (size_t i = 0; i < pd->n && st == BW_OK; i++) {
     const gap g = gap_of(pd, w, (int32_t)i);
+    /* Now and at first: the reach of who began beyond would be negative. */
     if (pd->held.mobile[i] == 0 || fmin(g.now, g.first) > 0) continue;
     if (is_held(pd, w, c->link, (int32_t)i)) continue;
     st = BW_FAIL(BW_EINPUT,
@@ -151,6 +163,7 @@ bw_status bw_pd_contact_set_walls(bw_pd_contact *c, int n, const bw_pd_wall wall
   for (int w = 0; w < n; w++)
     c->wall[w] = wall[w];
   c->n_wall = n;
+  /* Lists and forces are those of the old walls. */
   c->built = false;
   c->pd->current = false;
   return BW_OK;

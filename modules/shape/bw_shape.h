@@ -54,7 +54,7 @@ typedef struct {
 
 /* One shape. Members that its kind does not read are ignored; zero is the default of all. */
 typedef struct {
-  bw_shape_kind kind;
+  bw_shape_kind kind;          /* which of the members below it reads */
   bool remove;                 /* false: add */
   bool outside;                /* all of space but the shape: removed, it cuts to the shape */
   double lower[3], upper[3];   /* corners of a box [L] */

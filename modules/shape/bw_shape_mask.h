@@ -58,12 +58,12 @@ typedef enum {
 
 /* What a header says of the numbers in a file, x fastest. */
 typedef struct {
-  bw_shape_voxel_type type;
-  bool big_endian;   /* false: the first byte of a number is the least */
-  int64_t size[3];   /* voxels; 2D: size[2] = 1 */
-  double lower[3];   /* corner of the first voxel [L] */
-  double spacing[3]; /* size of a voxel [L] */
-  int64_t skip;      /* bytes before the numbers */
+  bw_shape_voxel_type type; /* of a number */
+  bool big_endian;          /* false: the first byte of a number is the least */
+  int64_t size[3];          /* voxels; 2D: size[2] = 1 */
+  double lower[3];          /* corner of the first voxel [L] */
+  double spacing[3];        /* size of a voxel [L] */
+  int64_t skip;             /* bytes before the numbers */
 } bw_shape_voxels;
 
 /* Voxels whose value v has low <= v <= high are solid. The file must be exactly as long as the

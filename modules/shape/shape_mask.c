@@ -31,6 +31,7 @@ bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const d
                                 const double spacing[3], bw_shape_mask **out)
 {
   *out = NULL;
+  /* Cells are numbered in 64 bits; memory is asked for layer by layer. */
   double cells = 1;
   for (int d = 0; d < 3; d++) {
     BW_REQUIRE(size[d] > 0, BW_EINPUT, "%s: %lld cells in direction %d", path, (long long)size[d],
@@ -54,6 +55,7 @@ bw_status bw_shape__mask_room(const char *path, int64_t first, int64_t layers, b
 {
   const double cells = (double)layers * (double)mask->size[0] * (double)mask->size[1];
   BW_REQUIRE(cells < 1e11, BW_EINPUT, "%s: %g cells are more than fit into memory", path, cells);
+  /* Layers held before go first: there is never room for both. */
   bw_release(&mask->solid);
   mask->first = mask->held = 0;
   BW_TRY(BW_ALLOCATE(&mask->solid, (size_t)cells));
@@ -90,6 +92,7 @@ static double number(bw_shape_voxel_type type, const unsigned char *from)
     float f32;
     double f64;
   } x;
+  /* Copied, not cast: a row of voxels need not be aligned. */
   memcpy(&x, from, BYTES[type]);
   switch (type) {
   case BW_SHAPE_VOXEL_U8:
@@ -124,6 +127,7 @@ static void threshold(const bw_shape_voxels *v, double low, double high, unsigne
                       uint8_t *solid)
 {
   const size_t bytes = BYTES[v->type];
+  /* Bytes are turned in place; the row is read once and not needed again. */
   const bool swap = v->big_endian != machine_is_big();
   for (int64_t i = 0; i < v->size[0]; i++) {
     unsigned char *one = row + (size_t)i * bytes;
@@ -165,10 +169,12 @@ bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
   BW_REQUIRE(first >= 0 && layers >= 0 && first <= mask->size[2] - layers, BW_EINPUT,
              "mask: there are no layers %lld .. %lld of %lld", (long long)first,
              (long long)(first + layers), (long long)mask->size[2]);
+  /* What is asked for may be here already. */
   if (first >= mask->first && first + layers <= mask->first + mask->held) return BW_OK;
   BW_TRY(bw_shape__mask_room(from->path, first, layers, mask));
   FILE *file = fopen(from->path, "rb");
   BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", from->path);
+  /* From the first of these layers on: the file's other layers are not touched. */
   const int64_t row = first * mask->size[1], rows = layers * mask->size[1];
   const int64_t at = from->v.skip + row * (int64_t)bytes_of_row(&from->v);
   bw_status st = fseeko(file, (off_t)at, SEEK_SET) == 0
@@ -176,6 +182,7 @@ bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
                      : BW_FAIL(BW_EIO, "%s: has no byte %lld", from->path, (long long)at);
   BW_THEN(st, read_rows(file, from, rows, mask->solid));
   fclose(file);
+  /* Half read is not held. */
   if (st != BW_OK) mask->held = 0;
   return st;
 }
@@ -183,6 +190,7 @@ bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
 /* Exactly as many bytes as the voxels need, or a message that says which way it differs. */
 static bw_status check_length(FILE *file, const char *path, const bw_shape_voxels *v)
 {
+  /* The length tells whether size, type and skip are those of the file. */
   const bool sought = fseeko(file, 0, SEEK_END) == 0;
   const int64_t length = sought ? (int64_t)ftello(file) : -1;
   BW_REQUIRE(length >= 0, BW_EIO, "%s: its length cannot be told; is it a file?", path);
@@ -224,6 +232,7 @@ bw_status bw_shape_mask_open_raw(const char *path, const bw_shape_voxels *v, dou
   BW_REQUIRE(v->skip >= 0, BW_EINPUT, "%s: skip = %lld is negative", path, (long long)v->skip);
   FILE *file = fopen(path, "rb");
   BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", path);
+  /* No layer is read yet: who needs some asks for them (bw_shape_mask_hold). */
   bw_status st = bw_shape__mask_create(path, v->size, v->lower, v->spacing, out);
   BW_THEN(st, check_length(file, path, v));
   BW_THEN(st, remember(path, v, low, high, *out));
@@ -235,6 +244,7 @@ bw_status bw_shape_mask_open_raw(const char *path, const bw_shape_voxels *v, dou
 bw_status bw_shape__mask_all(bw_status st, bw_shape_mask **mask)
 {
   BW_THEN(st, bw_shape_mask_hold(*mask, 0, (*mask)->size[2]));
+  /* All layers are here: the file is not needed any more. */
   if (st == BW_OK)
     close_source(*mask);
   else

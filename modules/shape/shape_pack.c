@@ -59,11 +59,13 @@ static bool clear_of(const bw_shape_pack_config *c, const bw_shape *ball, int n,
                      const bw_shape *all)
 {
   for (int q = 0; q < n; q++) {
+    /* Centres nearer than both radii and the gap touch. */
     const double reach = ball->radius + all[q].radius + c->gap;
     double squared = 0;
     for (int d = 0; d < dims_of(c); d++) {
       double z = fabs(ball->centre[d] - all[q].centre[d]);
       const double side = c->upper[d] - c->lower[d];
+      /* The nearest image along each side. */
       if (c->periodic[d] && z > 0.5 * side) z = side - z;
       squared += z * z;
     }
@@ -74,6 +76,7 @@ static bool clear_of(const bw_shape_pack_config *c, const bw_shape *ball, int n,
 
 static bool place(const bw_shape_pack_config *c, gsl_rng *rng, int n, bw_shape *all)
 {
+  /* The radius is drawn once; attempts move the ball, or small ones would be preferred. */
   const double span = c->radius_max - c->radius_min;
   bw_shape ball = {.kind = BW_SHAPE_SPHERE, .radius = c->radius_min + span * gsl_rng_uniform(rng)};
   for (int attempt = 0; attempt < c->max_attempts; attempt++) {
@@ -89,12 +92,14 @@ static bool place(const bw_shape_pack_config *c, gsl_rng *rng, int n, bw_shape *
 /* Images of ball q over the periodic sides it reaches across, after the first n; returns n. */
 static int images(const bw_shape_pack_config *c, int q, int n, bw_shape *all)
 {
+  /* Which sides it reaches across, and so where its image is. */
   int direction[3] = {0};
   for (int d = 0; d < dims_of(c); d++) {
     if (!c->periodic[d]) continue;
     if (all[q].centre[d] - all[q].radius < c->lower[d]) direction[d] = 1;
     if (all[q].centre[d] + all[q].radius > c->upper[d]) direction[d] = -1;
   }
+  /* A side, an edge or a corner: every combination of these directions is an image. */
   for (int corner = 1; corner < 8; corner++) {
     bw_shape image = all[q];
     bool real = true;

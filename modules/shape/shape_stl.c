@@ -16,6 +16,7 @@ static bw_status push(surface *s, const float corner[9])
 {
   if (s->n == s->room) {
     float *more = NULL;
+    /* Text files do not say how many there are. */
     BW_TRY(BW_ALLOCATE(&more, 9 * (2 * s->room + 64)));
     if (s->n > 0) memcpy(more, s->corner, 9 * s->n * sizeof *more);
     bw_release(&s->corner);
@@ -47,6 +48,7 @@ static bw_status read_text(FILE *file, const char *path, surface *s)
   float corner[9];
   int at = 0;
   while (fscanf(file, "%127s", word) == 1) {
+    /* Normals are not read: inside and outside follow from the parity of crossings. */
     if (strcmp(word, "endloop") == 0) {
       BW_REQUIRE(at == 3, BW_EINPUT, "%s: facet %zu has %d corners; a triangle has 3", path, s->n,
                  at);
@@ -104,6 +106,7 @@ static bw_status read_surface(const char *path, surface *s)
 /* x where the line (y, z) along x meets the triangle; false when it passes by. */
 static bool crosses(const float t[9], double scale, double y, double z, double *x)
 {
+  /* Areas of the three triangles that the point makes with the sides, seen along x. */
   double p[3][3], area[3], sum = 0;
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < 3; k++)
@@ -113,6 +116,7 @@ static bool crosses(const float t[9], double scale, double y, double z, double *
     area[c] = (a[1] - y) * (b[2] - z) - (a[2] - z) * (b[1] - y);
     sum += area[c];
   }
+  /* All of one sign: the point is within, whichever way the corners turn. */
   const bool inside =
       (area[0] > 0 && area[1] > 0 && area[2] > 0) || (area[0] < 0 && area[1] < 0 && area[2] < 0);
   if (inside) *x = (area[0] * p[0][0] + area[1] * p[1][0] + area[2] * p[2][0]) / sum;
@@ -124,6 +128,7 @@ static bool crosses(const float t[9], double scale, double y, double z, double *
  * met; odd[] keeps the parity of every line. */
 static void flip(const bw_shape_mask *m, const float t[9], double scale, uint8_t odd[])
 {
+  /* Lines that may meet the triangle: those in its box, and one more on each side. */
   int64_t lo[2], hi[2];
   for (int d = 1; d < 3; d++) {
     double least = INFINITY, most = -INFINITY;
@@ -141,6 +146,7 @@ static void flip(const bw_shape_mask *m, const float t[9], double scale, uint8_t
       const double z = m->lower[2] + ((double)k + 0.5 + 0.7e-6) * m->spacing[2];
       if (!crosses(t, scale, y, z, &x)) continue;
       uint8_t *line = m->solid + m->size[0] * (j + m->size[1] * k);
+      /* Cells whose centre is beyond the crossing. */
       const double from = ceil((x - m->lower[0]) / m->spacing[0] - 0.5);
       for (int64_t i = (int64_t)fmax(0, from); i < m->size[0]; i++)
         line[i] ^= 1;
@@ -154,6 +160,7 @@ static bw_status fill(const char *path, const surface *s, double scale, bw_shape
   bw_status st = BW_ALLOCATE(&odd, (size_t)(m->size[1] * m->size[2]));
   for (size_t q = 0; st == BW_OK && q < s->n; q++)
     flip(m, s->corner + 9 * q, scale, odd);
+  /* A line that enters as often as it leaves has even parity; any other one found a hole. */
   for (int64_t q = 0; st == BW_OK && q < m->size[1] * m->size[2]; q++)
     if (odd[q])
       st = BW_FAIL(BW_EINPUT,

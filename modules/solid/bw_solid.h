@@ -1,51 +1,61 @@
-/* bw_solid.h -- bond-based peridynamic solid: particles, bonds, damage, explicit dynamics.
+/* bw_solid.h -- a peridynamic solid: particles, bonds, damage, contact, explicit dynamics.
  *
- *   rho X'' = L + F + C + D,   L_h = sum_l c0 alpha_hl lambda_hl s_hl e_hl Gamma_hl dV_l
- * with stretch s = (|xi+eta|-|xi|)/|xi| and e the present bond direction (POROUS 3.29-3.51, read
- * with ERRATA 1-14). F external, C contact (3.40, ERRATA 3), D damping (3.41, ERRATA 4), in
- * Verlet that of the half-step velocity.
+ *   rho X'' = L + F + C + D
+ * with L the force density of the law (bonds: bw_pd_bond_law.h), F external, C contact
+ * (bw_pd_contact.h) and D damping (POROUS 3.38, 3.41 with ERRATA 4); in Verlet's scheme the
+ * damping is that of the half-step velocity.
  * Particles sit on a uniform lattice: X0 = origin + axes.(site + 1/2) ds, site[3] integers.
  * With `disorder` it is a cloud instead: X0 is off that place in a random direction, by disorder
  * ds and then less where neighbours nearer than 0.9 ds push each other apart (pd_cloud.c); the
  * same for the same site, seed and axes, whatever else there is. All particles keep the volume of
  * a cell; families and xi are those of the true places.
- * Family: |xi| < horizon + ds/2. A bond with s > s0 breaks for good (in tension only), checked
- * at the end of every step when breakage is enabled: it holds during the whole step and is gone
- * from the force the next step starts with. Both ends decide alike, on any number of ranks.
+ * Family: |xi| < horizon + ds/2 (POROUS 3.30, ERRATA 2). A bond beyond its limit breaks for good,
+ * checked at the end of every step when breakage is enabled: it holds during the whole step and is
+ * gone from the force the next step starts with. Both ends decide alike, on any number of ranks.
  * 2D: site[2] = 0, one layer of `thickness`; X0[2] = origin[2], z components of V and A zero.
  * Shapes   vectors row-major (n,3); particles of a rank are 0..n-1, in lattice order; the global
- *          id of a particle is its row in the list given to create.
+ *          id of a particle is its row in the lists given to create, joined in rank order.
  * Units    any consistent set: [M], [L], [T].
  * Life     config_default -> create -> { set_force, step }* -> destroy.
- * MPI      particles are divided into compact blocks; "collective" as in bw_comm.h. */
+ * MPI      particles are divided into compact blocks; "collective" as in bw_comm.h. What returns a
+ *          status collectively returns the same kind of answer (OK or not) on all ranks. */
 #pragma once
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct bw_solid bw_solid;
 
 /* Time integrator. */
-typedef enum { BW_SOLID_VERLET, BW_SOLID_RK3 } bw_solid_integrator;
+typedef enum {
+  BW_SOLID_VERLET, /* velocity Verlet, second order, one evaluation of the forces per step */
+  BW_SOLID_RK3     /* Runge-Kutta of third order (POROUS 3.47, 3.48 with ERRATA 5), three */
+} bw_solid_integrator;
 
+/* What a solid is made of and how it moves. Required values start as NaN: refused by name. */
 typedef struct {
-  bw_pd_geometry geometry; /*                                      default 3D */
+  bw_pd_geometry geometry; /* dimension and plane condition                         default 3D */
   double ds;               /* lattice spacing [L]                  required */
   double thickness;        /* 2D only [L]                          default 1 */
-  double horizon_ratio;    /* m = horizon/ds [-]                   default 3 */
-  double rho;              /* density [M/L^3]                      required */
-  double E;                /* Young [M/(L T^2)]                    required */
-  double nu;               /* Poisson: NaN (the model's own) or exactly 1/4, 1/3 (ERRATA 14) */
-  double G0;               /* fracture energy [M/T^2]              default INFINITY */
+  double horizon_ratio;    /* m = horizon/ds [-], 1 .. 12                            default 3 */
+  double rho;              /* density of group 0 [M/L^3]           required */
+  double E;                /* Young's modulus of group 0 [M/(L T^2)]                required */
+  double nu;               /* Poisson's ratio of group 0: NaN (the law's own); of bonds exactly
+                              1/4, or 1/3 in plane stress (ERRATA 14)                default NaN */
+  double G0;               /* fracture energy of group 0 [M/T^2]   default INFINITY */
   int n_more;              /* materials of groups 1, 2, ...        default 0 */
   bw_pd_material more[BW_PD_GROUPS - 1];       /* of particles of group 1 and above */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
-  const bw_pd_law *law;    /* NULL (default): bonds; else a row of bw_solid_laws, or one's own */
+  const bw_pd_law *law;    /* borrowed; NULL (default): the bond law; else one's own (pd_law.h) */
   const void *law_options; /* of a law of one's own                  default NULL */
-  bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
-  bw_pd_surface_correction surface_correction; /* default volume */
-  bw_pd_calibration calibration;               /* default none */
+  bw_pd_volume_fraction volume_fraction;       /* Gamma; default exact in 3D, linear in 2D */
+  bw_pd_surface_correction surface_correction; /* of the bond law; default volume */
+  bw_pd_calibration calibration;               /* of the bond law; default none */
   bw_pd_family_reach family_reach; /* |xi| < horizon + ds/2 (default) or |xi| < horizon */
   double disorder;       /* particles start up to this many ds off their sites, 0.4 at most; then
                             volume_fraction is linear or none, 2D and 3D     default 0 */
@@ -62,6 +72,7 @@ typedef struct {
                        number of ds along that axis         default 0 */
 } bw_solid_config;
 
+/* The defaults; ds, rho and E are still to be set. Local. */
 bw_solid_config bw_solid_config_default(void);
 
 /* Build particles, families and bonds of the lattice sites that the ranks give, each its part (see
@@ -69,21 +80,33 @@ bw_solid_config bw_solid_config_default(void);
  * `comm` is borrowed until destroy. *out is the caller's, NULL after a failure. Collective. */
 bw_status bw_solid_create(const bw_comm *comm, const bw_solid_config *config,
                           const bw_pd_sites *given, bw_solid **out) BW_MUST_CHECK;
-/* The same for a small body that every rank has the whole list of: site (n,3), kind (n) or NULL, the
- * same on all ranks; each takes its share. Collective. */
+
+/* The same for a small body that every rank has the whole list of: site (n,3), kind (n) or NULL,
+ * the same on all ranks; each takes its share. Errors and ownership as above. Collective. */
 bw_status bw_solid_create_same(const bw_comm *comm, const bw_solid_config *config, int64_t n,
                                const int32_t site[], const uint8_t kind[],
                                bw_solid **out) BW_MUST_CHECK;
-void bw_solid_destroy(bw_solid **pd); /* NULL is fine. Collective. */
+
+/* Frees the solid and sets the pointer to NULL; NULL is fine. Collective. */
+void bw_solid_destroy(bw_solid **solid);
 
 /* Break the bonds that cross a segment (2D: from a to b; ends included) or a parallelogram with
- * corner a and edges b-a, c-a (3D; pass c = NULL in 2D). Unbreakable ones too. Collective. */
-bw_status bw_solid_precrack(bw_solid *pd, const double a[3], const double b[3],
+ * corner a and edges b-a, c-a (3D; pass c = NULL in 2D), in the reference shape [L]. Unbreakable
+ * ones too. BW_EINPUT for a cut without extent, or without c in 3D. Collective. */
+bw_status bw_solid_precrack(bw_solid *solid, const double a[3], const double b[3],
                             const double c[3]) BW_MUST_CHECK;
 
-void bw_solid_enable_breakage(bw_solid *pd, bool on); /* default on. Local. */
-void bw_solid_set_damping(bw_solid *pd, double pair, double mean, double absolute); /* Local */
-void bw_solid_set_G0(bw_solid *pd, double G0); /* new s0. Local. */
+/* Whether bonds beyond their limit break at the end of a step; at first they do. The same on all
+ * ranks. Local. */
+void bw_solid_enable_breakage(bw_solid *solid, bool on);
+
+/* New coefficients of damping, units and meaning as in bw_solid_config; dt_max follows. The same on
+ * all ranks. Local. */
+void bw_solid_set_damping(bw_solid *solid, double pair, double mean, double absolute);
+
+/* New fracture energy of the first group [M/T^2], and so of its joints without a joint_G0. The same
+ * on all ranks. Local. */
+void bw_solid_set_G0(bw_solid *solid, double G0);
 
 /* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
  * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by
@@ -93,135 +116,172 @@ void bw_solid_set_G0(bw_solid *pd, double G0); /* new s0. Local. */
  * foundation). BW_EINPUT without contact, when n > BW_PD_WALLS, a normal is no unit vector, or a
  * free particle is beyond the wall. BW_EDIVERGED of a step when one was thrown through.
  * Collective. */
-bw_status bw_solid_set_walls(bw_solid *pd, int n, const bw_pd_wall wall[]) BW_MUST_CHECK;
+bw_status bw_solid_set_walls(bw_solid *solid, int n, const bw_pd_wall wall[]) BW_MUST_CHECK;
 
 /* Take own particles (those with gone[i], n) out of the mechanics for good, whole pieces of them:
  * they keep their velocity, no force acts on them or comes from them, and what they stored is
- * booked. Their bonds and damage stay as they are. They carry BW_PD_RETIRED in
- * bw_solid_kind. Collective. */
-bw_status bw_solid_retire(bw_solid *pd, const bool gone[]) BW_MUST_CHECK;
+ * booked. Their bonds and damage stay as they are. They carry BW_PD_RETIRED in bw_solid_kind.
+ * Prescribed ones stay. BW_EDIVERGED as of evaluate. Collective. */
+bw_status bw_solid_retire(bw_solid *solid, const bool gone[]) BW_MUST_CHECK;
 
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
-void bw_solid_set_force(bw_solid *pd, const double F[]);
+void bw_solid_set_force(bw_solid *solid, const double F[]);
+
 /* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored), from the next step
  * on; copied. set_state and set_restart give them the velocity of their rows. Local. */
-void bw_solid_set_prescribed(bw_solid *pd, const double V[]);
+void bw_solid_set_prescribed(bw_solid *solid, const double V[]);
 
-/* One step of dt [T]. BW_ECFL when dt > dt_max; BW_EDIVERGED when a particle is not finite or
- * moves more than one horizon in the step (RK3: in a sub-step); names the particle, its place.
- * Collective. */
-bw_status bw_solid_step(bw_solid *pd, double dt) BW_MUST_CHECK;
+/* One step of dt [T]. BW_ECFL when dt is not positive or above dt_max; BW_EDIVERGED when a particle
+ * is not finite or moves more than one horizon in the step (RK3: in a sub-step); names the
+ * particle, its place. Collective. */
+bw_status bw_solid_step(bw_solid *solid, double dt) BW_MUST_CHECK;
 
 /* Largest stable step of the intact network with its damping at small strain [T]: a bound below
  * that of ERRATA 6 by its square root of three (two in the plane), see pd_bond_bounds.c; contact
- * not counted; the same on all ranks. Local. */
-double bw_solid_dt_max(const bw_solid *pd);
+ * not counted; INFINITY without bonds; the same on all ranks. Local. */
+double bw_solid_dt_max(const bw_solid *solid);
+
 /* Step that resolves a collision of two particles [T], 1/w of their oscillation: they part with
  * 0.9 to 1.1 of their speed and keep their energy to 1 % in the mean; at 1.6/w they gain two thirds
  * of it. Twelve touching neighbours are stable to this step, and with bonds as well to
  * (1/dt_max^2 + 1/dt_contact^2)^(-1/2). INFINITY without contact. Local. */
-double bw_solid_dt_contact(const bw_solid *pd);
+double bw_solid_dt_contact(const bw_solid *solid);
 
 /* Forces at the present motion: what a step begins with when something was set. BW_EDIVERGED when a
- * particle is beyond a wall. Collective. */
-bw_status bw_solid_evaluate(bw_solid *pd) BW_MUST_CHECK;
+ * particle is beyond a wall; BW_EMEM. Collective. */
+bw_status bw_solid_evaluate(bw_solid *solid) BW_MUST_CHECK;
 
-/* Views, borrowed until the next step, restart or destroy. Local. */
-size_t bw_solid_count(const bw_solid *pd);        /* particles of this rank */
-int64_t bw_solid_total(const bw_solid *pd);       /* of all ranks */
-const int64_t *bw_solid_id(const bw_solid *pd);   /* (n) global ids */
-const uint8_t *bw_solid_kind(const bw_solid *pd); /* (n) */
-const bw_solid_config *bw_solid_settings(const bw_solid *pd);
-const bw_comm *bw_solid_comm(const bw_solid *pd); /* of create, borrowed */
-double bw_solid_horizon(const bw_solid *pd);
-double bw_solid_micromodulus(const bw_solid *pd);     /* c0 [M/(L^7 T^2)] */
-double bw_solid_critical_stretch(const bw_solid *pd); /* s0 [-] */
-double bw_solid_volume(const bw_solid *pd);           /* of one particle [L^3] */
-bw_pd_body *bw_solid_body(const bw_solid *pd);        /* for laws and tools, borrowed */
+/* Views, borrowed until the next restart, retirement or destroy. Local. */
+size_t bw_solid_count(const bw_solid *solid);                    /* n: particles of this rank */
+int64_t bw_solid_total(const bw_solid *solid);                   /* of all ranks */
+const int64_t *bw_solid_id(const bw_solid *solid);               /* (n) global ids */
+const uint8_t *bw_solid_kind(const bw_solid *solid);             /* (n) bits BW_PD_PRESCRIBED ... */
+const bw_solid_config *bw_solid_settings(const bw_solid *solid); /* of create, defaults resolved */
+const bw_comm *bw_solid_comm(const bw_solid *solid);             /* of create */
+double bw_solid_horizon(const bw_solid *solid);                  /* [L] */
+double bw_solid_micromodulus(const bw_solid *solid);     /* c0 of the first group [M/(L^5 T^2)] */
+double bw_solid_critical_stretch(const bw_solid *solid); /* s0 of the first group [-]; NaN: the
+                                                                law has none */
+double bw_solid_volume(const bw_solid *solid);           /* of one particle [L^3] */
+bw_pd_body *bw_solid_body(const bw_solid *solid);        /* for laws and tools */
 
-/* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
- * Local. */
-void bw_solid_get_reference(const bw_solid *pd, double X0[]);
-void bw_solid_get_position(const bw_solid *pd, double X[]);
-void bw_solid_get_velocity(const bw_solid *pd, double V[]);
-void bw_solid_get_acceleration(const bw_solid *pd, double A[]); /* of the last step */
-void bw_solid_get_damage(const bw_solid *pd, double damage[]);  /* 3.28: 0 .. 1, by volume */
-void bw_solid_set_state(bw_solid *pd, const double X[], const double V[]); /* Collective */
+/* Copies in the caller's array (n,3). Positions are not wrapped in periodic directions. Local. */
+void bw_solid_get_reference(const bw_solid *solid, double X0[]); /* [L] */
+void bw_solid_get_position(const bw_solid *solid, double X[]);   /* [L] */
+void bw_solid_get_velocity(const bw_solid *solid, double V[]);   /* [L/T] */
+void bw_solid_get_acceleration(const bw_solid *solid,
+                               double A[]); /* [L/T^2] by the last evaluation;
+                                                                      0: does not move freely */
+
+/* damage[n] <- the broken part of each family, weighted with Gamma (POROUS 3.28): 0 whole .. 1;
+ * 0 of a particle without family. Local. */
+void bw_solid_get_damage(const bw_solid *solid, double damage[]);
+
+/* Positions X [L] and velocities V [L/T], both (n,3), of the own particles; forces are evaluated
+ * anew before they are used. Bonds stay as they are. Collective. */
+void bw_solid_set_state(bw_solid *solid, const double X[], const double V[]);
 
 /* The bonds of particle h (0 <= h < n), for those who need them one by one (surface detection,
  * fragments): writes up to bw_solid_max_family rows and returns how many. `neighbour` is an
  * index into the extended arrays of get_extended (own particles first, then copies of other
  * ranks' particles and periodic images), `slot` the number of the bond's direction in the stencil
  * (the same for the same lattice offset everywhere), `intact` whether it still holds. Local. */
-int bw_solid_max_family(const bw_solid *pd);
-int bw_solid_links(const bw_solid *pd, size_t h, bw_pd_link link[]);
-const double *bw_solid_stencil_offset(const bw_solid *pd, int slot); /* xi [L], [3] */
-double bw_solid_stencil_fraction(const bw_solid *pd, int slot);      /* Gamma [-] */
+int bw_solid_links(const bw_solid *solid, size_t h, bw_pd_link link[]);
+
+/* Directions of the stencil: slots are 0 .. max_family - 1. Local. */
+int bw_solid_max_family(const bw_solid *solid);
+/* xi from site to site of a direction [L], [3], borrowed; in a cloud ends are off their sites. */
+const double *bw_solid_stencil_offset(const bw_solid *solid, int slot);
+/* Gamma of a direction [-]; in a cloud that of the sites' distance. */
+double bw_solid_stencil_fraction(const bw_solid *solid, int slot);
 
 /* Own particles and copies. id: global id; X: present position, copies shifted to where they act.
  * n_extended >= count; borrowed until the next step. Collective (updates the copies). */
-bw_pd_extended bw_solid_get_extended(bw_solid *pd);
+bw_pd_extended bw_solid_get_extended(bw_solid *solid);
+
 /* Reference place of one of them, copies where they act [L]. Local. */
-void bw_solid_get_place(const bw_solid *pd, size_t extended, double X0[3]);
+void bw_solid_get_place(const bw_solid *solid, size_t extended, double X0[3]);
 
 /* The motion of own particles and copies, to be read where the solid keeps it: that of the extended
  * particle e at place[e]. u: displacement [L]; v: velocity [L/T], only if asked for (an exchange).
  * Borrowed until the next step. Collective (updates the copies). */
-bw_pd_motion bw_solid_get_motion(bw_solid *pd, bool velocity);
+bw_pd_motion bw_solid_get_motion(bw_solid *solid, bool velocity);
 
 /* own[n_own] values of `bytes` each -> all[n_extended]: fills the copies' values, own ones first.
  * Collective. */
-void bw_solid_fill_extended(bw_solid *pd, size_t bytes, const void *own, void *all);
+void bw_solid_fill_extended(bw_solid *solid, size_t bytes, const void *own, void *all);
+
 /* The way back: adds the copies' vectors of all (n_extended,3) to those of their owners, which come
  * first. Collective. */
-void bw_solid_sum_extended(bw_solid *pd, double *all);
+void bw_solid_sum_extended(bw_solid *solid, double *all);
 
-/* Bytes of this rank's bond lists (slots and blocks). Local. */
-size_t bw_solid_list_bytes(const bw_solid *pd);
+/* Bytes of this rank's bond lists (slots, blocks, factors per bond). Local. */
+size_t bw_solid_list_bytes(const bw_solid *solid);
 
-/* Raised when the set of particles or their surface has changed otherwise than by motion and breaking:
- * whoever keeps lists of particles makes them anew. The same on all ranks. Local. */
-int64_t bw_solid_revision(const bw_solid *pd);
+/* Raised when the set of particles or their surface has changed otherwise than by motion and
+ * breaking: whoever keeps lists of particles makes them anew. The same on all ranks. Local. */
+int64_t bw_solid_revision(const bw_solid *solid);
 
 /* Counts bond-breaking events of this rank so far (pre-cracks and set_bits too, which may also
  * mend): unchanged means nothing to update. Local. */
-int64_t bw_solid_events(const bw_solid *pd);
+int64_t bw_solid_events(const bw_solid *solid);
 
-/* broken[count] <- broken bonds of each own particle (never falls, but by set_bits). Local. */
-void bw_solid_get_broken(const bw_solid *pd, uint16_t broken[]);
+/* broken[n] <- broken bonds of each own particle (never falls, but by set_bits). Local. */
+void bw_solid_get_broken(const bw_solid *solid, uint16_t broken[]);
 
+/* A value of bw_solid_ledger.closest below which particles may have passed between others [-]. */
 #define BW_SOLID_TOO_CLOSE 0.6
 
+/* Where energy and momentum are and have gone, of all ranks. The energies balance to the order of
+ * the integrator: kinetic + elastic + contact + retired + damping + fracture + plastic - external
+ * stays what it was. */
 typedef struct {
-  double kinetic, elastic;        /* [M L^2/T^2] present */
-  double contact;                 /* elastic energy of contact, with walls too, present */
-  double closest;                 /* least distance of a pair in contact so far, over ds; INFINITY:
+  double kinetic, elastic;  /* [M L^2/T^2] present */
+  double contact;           /* elastic energy of contact, with walls too, present [M L^2/T^2] */
+  double closest;           /* least distance of a pair in contact so far, over ds; INFINITY:
                                      none. Below BW_SOLID_TOO_CLOSE a particle may have passed
                                      between others: the impact is too violent for this ds. */
-  double retired;                 /* elastic energy of bonds when their particles were retired */
-  double damping, fracture;       /* dissipated since the start (or restart's stored value) */
-  double plastic;                 /* dissipated inside particles by the law, so far */
-  double external;                /* work of F and of prescribed motion since the start */
-  double momentum[3], angular[3]; /* about the origin; retired particles too, as in kinetic */
+  double retired;           /* elastic energy of bonds when their particles were retired
+                                     [M L^2/T^2] */
+  double damping, fracture; /* dissipated since the start (or restart's stored value)
+                                     [M L^2/T^2] */
+  double plastic;           /* dissipated inside particles by the law, so far [M L^2/T^2] */
+  double external;          /* work of F and of prescribed motion since the start
+                                     [M L^2/T^2] */
+  double momentum[3], angular[3]; /* [M L/T], [M L^2/T] about the origin of space; retired particles
+                                     too, as in kinetic */
   double wall[3];                 /* impulse given to the walls since the start [M L/T] */
   int64_t bonds, broken;          /* undirected bonds: at the start without those a pre-crack cut;
                                      broken by stretch since */
 } bw_solid_ledger;
+
 /* Evaluates the forces first where the state was changed since. BW_EDIVERGED when a particle is
  * beyond a wall, BW_EMEM; *out is then left as it was. Collective. */
-bw_status bw_solid_account(bw_solid *pd, bw_solid_ledger *out) BW_MUST_CHECK;
+bw_status bw_solid_account(bw_solid *solid, bw_solid_ledger *out) BW_MUST_CHECK;
 
-/* State for a checkpoint: rows of `bytes` per particle holding its bonds' bits in stencil order
- * (the same on any number of ranks). Collective on loading. */
-size_t bw_solid_bits_bytes(const bw_solid *pd);
-void bw_solid_get_bits(const bw_solid *pd, uint8_t bits[]);
-bw_status bw_solid_set_bits(bw_solid *pd, const uint8_t bits[]) BW_MUST_CHECK;
-enum { BW_SOLID_RESTART_ROW = 13, BW_SOLID_RESTART_SUMS = 11 };
+/* The bonds that hold, for a checkpoint: bits (n, bytes) <- one bit per direction in stencil order,
+ * the same on any number of ranks. Local. */
+void bw_solid_get_bits(const bw_solid *solid, uint8_t bits[]);
+size_t bw_solid_bits_bytes(const bw_solid *solid); /* bytes of one row */
+
+/* The way back; bits of directions in which a particle has no bond are ignored. Collective. */
+bw_status bw_solid_set_bits(bw_solid *solid, const uint8_t bits[]) BW_MUST_CHECK;
+
+/* Lengths of the arrays of a restart. */
+enum {
+  BW_SOLID_RESTART_ROW = 13, /* numbers per particle */
+  BW_SOLID_RESTART_SUMS = 11 /* numbers of the whole */
+};
+
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
  * part, 1 when retired (n,13), and the ledger's running sums of all ranks (11: damping, fracture,
  * external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them). Set bits
  * and rows, in any order, then force and prescribed velocities: the run goes on to the same bits.
  * Both collective. */
-void bw_solid_get_restart(const bw_solid *pd, double rows[], double sums[]);
-bw_status bw_solid_set_restart(bw_solid *pd, const double rows[],
+void bw_solid_get_restart(const bw_solid *solid, double rows[], double sums[]);
+bw_status bw_solid_set_restart(bw_solid *solid, const double rows[],
                                const double sums[]) BW_MUST_CHECK;
+
+#ifdef __cplusplus
+}
+#endif

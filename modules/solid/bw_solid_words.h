@@ -3,7 +3,15 @@
 #pragma once
 #include "bw_config.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 extern const bw_config_word bw_solid_correction_words[]; /* bw_pd_surface_correction */
 extern const bw_config_word bw_solid_fraction_words[];   /* bw_pd_volume_fraction */
 extern const bw_config_word bw_solid_reach_words[];      /* bw_pd_family_reach */
 extern const bw_config_word bw_solid_integrator_words[]; /* bw_solid_integrator */
+
+#ifdef __cplusplus
+}
+#endif

@@ -29,6 +29,7 @@ static bw_status check_config(const bw_solid_config *c)
 {
   const double value[] = {c->damping_pair, c->damping_mean, c->damping_absolute};
   const char *name[] = {"damping_pair", "damping_mean", "damping_absolute"};
+  /* What is the body's to refuse the body refuses: geometry, materials, lattice. */
   BW_REQUIRE((unsigned)c->integrator <= BW_SOLID_RK3, BW_EINPUT,
              "solid: integrator = %d is unknown", (int)c->integrator);
   BW_REQUIRE(c->n_more >= 0 && c->n_more < BW_PD_GROUPS, BW_EINPUT,
@@ -36,6 +37,7 @@ static bw_status check_config(const bw_solid_config *c)
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
                "solid: %s = %g must be zero or positive", name[q], value[q]);
+  /* A particle may meet another one and its image, but not itself. */
   for (int a = 0; a < 3; a++)
     BW_REQUIRE(c->period[a] == 0 || !c->contact || c->period[a] / c->ds > 3.5, BW_EINPUT,
                "solid: period[%d] = %g with contact needs at least 4 ds", a, c->period[a]);
@@ -54,6 +56,7 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
                          .disorder_seed = c->disorder_seed,
                          .n_group = 1 + c->n_more,
                          .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
+  /* Group 0 is the configuration's own material; `more` follow it. */
   memcpy(b.origin, c->origin, sizeof b.origin);
   memcpy(b.axes, c->axes, sizeof b.axes);
   memcpy(b.period, c->period, sizeof b.period);
@@ -66,6 +69,7 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
 static bw_status own_arrays(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
+  /* Room for all: retiring allocates nothing. */
   BW_TRY(BW_ALLOCATE(&s->retired, pd->n));
   if (s->config.contact) BW_TRY(bw_pd_contact_create(pd, &s->contact));
   for (int k = 0; k < 3 && s->config.integrator == BW_SOLID_RK3; k++) {
@@ -96,6 +100,7 @@ bw_status bw_solid_create(const bw_comm *comm, const bw_solid_config *config,
   *out = NULL;
   bw_status st = BW_ALLOCATE(&s, 1);
   BW_THEN(st, check_config(config));
+  /* One rank's refusal is everybody's. */
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     s->config = *config;
@@ -111,6 +116,7 @@ bw_status bw_solid_create_same(const bw_comm *comm, const bw_solid_config *confi
 {
   const int64_t rank = bw_comm_rank(comm), size = bw_comm_size(comm);
   const int64_t all = n > 0 && site != NULL ? n : 0;
+  /* In two parts, so that products of 64-bit numbers do not overflow. */
   const int64_t first = all / size * rank + all % size * rank / size;
   const int64_t last = all / size * (rank + 1) + all % size * (rank + 1) / size;
   const bw_pd_sites part = {.n = last - first,

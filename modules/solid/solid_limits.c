@@ -13,6 +13,7 @@ double bw_solid_dt_max(const bw_solid *s)
   double rho = INFINITY; /* the lightest group is damped fastest */
   for (int g = 0; g < pd->config.n_group; g++)
     rho = fmin(rho, pd->config.material[g].rho);
+  /* Rate of damping: pairs and mean take twice as much where neighbours move against each other. */
   const double w = sqrt(pd->frequency2);
   const double g = (2 * d->pair * d->most_weight + 2 * d->mean + d->absolute) / rho;
   if (s->config.integrator == BW_SOLID_RK3) return 1 / (w / sqrt(3.0) + g / 2.51);

@@ -29,6 +29,7 @@ static bw_status make_cut(const bw_pd_body *pd, const double a[3], const double 
   const bool planar = pd->dimension == 2;
   BW_REQUIRE(planar || c != NULL, BW_EINPUT,
              "solid_precrack: in 3D a crack is a parallelogram; give its third corner c");
+  /* In the plane the second edge is the direction across: the parallelogram stands upright. */
   for (int k = 0; k < 3; k++) {
     out->a[k] = a[k];
     out->e1[k] = planar && k == 2 ? 0 : b[k] - a[k];
@@ -40,6 +41,7 @@ static bw_status make_cut(const bw_pd_body *pd, const double a[3], const double 
              "solid_precrack: the crack at (%g, %g, %g) has no extent", a[0], a[1], a[2]);
   for (int k = 0; k < 3; k++)
     out->normal[k] /= area;
+  /* Ends belong to the crack, to rounding. */
   out->planar = planar;
   out->margin1 = TOUCH * ds / sqrt(dot(out->e1, out->e1));
   out->margin2 = TOUCH * ds / sqrt(dot(out->e2, out->e2));
@@ -52,6 +54,7 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
 {
   double d[2], x[3];
   const double *end[2] = {p, q};
+  /* Which side of the plane the ends are on. */
   for (int side = 0; side < 2; side++) {
     for (int k = 0; k < 3; k++)
       x[k] = end[side][k] - c->a[k];
@@ -59,9 +62,11 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
   }
   const bool above_p = d[0] > -TOUCH * ds, above_q = d[1] > -TOUCH * ds;
   if (above_p == above_q) return false;
+  /* Where the line meets the plane ... */
   const double t = fmax(0, fmin(1, d[0] / (d[0] - d[1])));
   for (int k = 0; k < 3; k++)
     x[k] = p[k] + t * (q[k] - p[k]) - c->a[k];
+  /* ... and that point in coordinates along the two edges, which need not be at right angles. */
   const double g11 = dot(c->e1, c->e1), g12 = dot(c->e1, c->e2), g22 = dot(c->e2, c->e2);
   const double b1 = dot(c->e1, x), b2 = dot(c->e2, x), det = g11 * g22 - g12 * g12;
   const double s1 = (b1 * g22 - b2 * g12) / det, s2 = (b2 * g11 - b1 * g12) / det;
@@ -73,6 +78,7 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
 static void ends(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot, int lane,
                  double p[3], double q[3])
 {
+  /* Directions come in opposite pairs around the middle of the stencil. */
   const bool forward = 2 * slot->direction >= pd->level->stencil.n;
   bw_pd_body_reference(pd, (size_t)bw_pd_body_owner(block, lane), forward ? p : q);
   bw_pd_body_reference(pd, (size_t)pd->points.occupant[slot->base + lane], forward ? q : p);
@@ -82,6 +88,7 @@ static void ends(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slo
 static bool crosses_image(const bw_pd_body *pd, const cut *c, const double p[3], const double q[3])
 {
   const bw_pd_body_config *g = &pd->config;
+  /* Bonds across a period are met by the crack's image there. */
   int image[3];
   const int reach[3] = {g->period[0] > 0, g->period[1] > 0, g->period[2] > 0};
   for (image[2] = -reach[2]; image[2] <= reach[2]; image[2]++)
@@ -104,9 +111,11 @@ static void cut_block(bw_solid *s, bw_pd_block *block, const cut *c)
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
       if (!(slot->mask >> lane & 1)) continue;
       double x[3], y[3];
+      /* Where the particles began: a pre-crack is cut into the unloaded shape. */
       ends(pd, block, slot, lane, x, y);
       if (!crosses_image(pd, c, x, y)) continue;
       bw_pd_body_cut(pd, block, slot, lane);
+      /* Cut, not broken by stretch: the ledger tells them apart. */
       s->book.precracked++;
     }
   }
@@ -121,6 +130,7 @@ bw_status bw_solid_precrack(bw_solid *s, const double a[3], const double b[3], c
   bw_pd_body_refresh(pd, false);
   for (size_t q = 0; q < pd->bonds.n_block; q++)
     cut_block(s, &pd->bonds.block[q], &crack);
+  /* Forces of the cut bonds are still in the acceleration: it is evaluated anew. */
   pd->current = false;
   return BW_OK;
 }

@@ -12,6 +12,7 @@ void bw_solid_get_bits(const bw_solid *s, uint8_t bits[])
 {
   const bw_pd_body *pd = s->body;
   const size_t bytes = bw_solid_bits_bytes(s);
+  /* By direction, not by slot: slots differ with the number of ranks. */
   memset(bits, 0, pd->n * bytes);
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++)
@@ -31,6 +32,7 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
     pd->bonds.block[b].broken = false;
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
       bw_pd_slot *slot = &pd->bonds.slot[q];
+      /* A bond that never was cannot come to hold. */
       slot->mask = 0;
       for (int lane = 0; lane < BW_PD_LANES; lane++) {
         if (!(slot->family >> lane & 1)) continue;
@@ -38,9 +40,11 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
         const int d = slot->direction;
         if (bits[h * bytes + (size_t)d / 8] >> d % 8 & 1) slot->mask |= (uint8_t)(1u << lane);
       }
+      /* Contact looks for broken bonds in these blocks. */
       if (slot->mask != slot->family) pd->bonds.block[b].broken = true;
     }
   }
+  /* Whoever keeps lists of bonds makes them anew; forces given by a restart stay. */
   pd->bonds.events++;
   if (s->contact != NULL) bw_pd_contact_recheck(s->contact);
   if (!s->restored) pd->current = false;
@@ -91,6 +95,7 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
 {
   bw_pd_body *pd = s->body;
   for (size_t i = 0; i < pd->n; i++)
+    /* The acceleration is taken over, not evaluated: the run goes on to the same bits. */
     for (size_t k = 0; k < 3; k++) {
       const double *row = rows + BW_SOLID_RESTART_ROW * i + k;
       pd->u[k][pd->points.place[i]] = (bw_real)row[0];
@@ -102,6 +107,7 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);
+  /* Copies follow; with a given, the state counts as evaluated. */
   bw_pd_body_refresh(pd, true);
   pd->current = s->restored = true;
   s->loaded = s->contact != NULL || bw_pd_body_damped(pd);

@@ -6,18 +6,21 @@
 static void renew(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
+  /* Who is not pushed: prescribed, and retired. */
   s->n_retired = 0;
   for (size_t i = 0; i < pd->n; i++) {
     pd->held.mobile[i] = (pd->points.kind[i] & (BW_PD_PRESCRIBED | BW_PD_RETIRED)) == 0;
     if (pd->points.kind[i] & BW_PD_RETIRED) s->retired[s->n_retired++] = (int32_t)i;
   }
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    /* A block of which all are gone has no slots: it costs nothing any more. */
     bw_pd_block *block = &pd->bonds.block[b];
     block->gone = 0;
     for (int lane = 0; lane < BW_PD_LANES; lane++)
       if (block->mask >> lane & 1 && pd->points.kind[bw_pd_body_owner(block, lane)] & BW_PD_RETIRED)
         block->gone |= (uint8_t)(1u << lane);
   }
+  /* Copies of retired particles have to be known as such, so that nobody touches them. */
   bw_pd_body_fill_extended(pd, 1, pd->points.kind, pd->points.kind);
   if (s->contact != NULL) bw_pd_contact_forget(s->contact);
 }
@@ -25,6 +28,7 @@ static void renew(bw_solid *s)
 void bw_solid__still_retired(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
+  /* They are in the kernels' loops still; what came of that is put to zero. */
   for (int k = 0; k < pd->dimension; k++)
     for (size_t q = 0; q < s->n_retired; q++) {
       const int32_t i = s->retired[q];
@@ -35,6 +39,7 @@ void bw_solid__still_retired(bw_solid *s)
 /* Energy of the bonds of the block's lanes that are retired now and were not before. */
 static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool gone[])
 {
+  /* Booked once: who was retired before is not counted again. */
   uint8_t fresh = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++)
     if ((block->mask & ~block->gone) >> lane & 1) {
@@ -47,18 +52,22 @@ static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool 
 bw_status bw_solid_retire(bw_solid *s, const bool gone[])
 {
   bw_pd_body *pd = s->body;
+  /* Bonds hold what present places of both ends say. */
   if (!pd->current) bw_pd_body_refresh(pd, false);
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     s->book.retired += stored(pd, &pd->bonds.block[b], gone);
+  /* Energies are booked: now the kinds may change. */
   for (size_t i = 0; i < pd->n; i++)
     if (gone[i] && !(pd->points.kind[i] & BW_PD_PRESCRIBED)) pd->points.kind[i] |= BW_PD_RETIRED;
   renew(s);
+  /* Forces anew: those of the retired are gone from everybody's. */
   return bw_comm_agree(pd->comm, bw_solid__evaluate(s, false));
 }
 
 void bw_solid__retire_rows(bw_solid *s, const double rows[])
 {
   bw_pd_body *pd = s->body;
+  /* A restart may have more of them, or less. */
   int64_t changed = 0;
   for (size_t i = 0; i < pd->n; i++) {
     const bool gone = rows[BW_SOLID_RESTART_ROW * i + BW_SOLID_RESTART_ROW - 1] != 0;

@@ -24,6 +24,7 @@ static void impose(bw_solid *s)
   for (size_t q = 0; q < pd->held.n; q++)
     for (int k = 0; k < 3; k++) {
       const size_t i = (size_t)pd->held.particle[q];
+      /* A jump of velocity is work of whoever prescribes it. */
       bw_real *v = &pd->v[k][i];
       const double before = (double)*v;
       *v = (bw_real)pd->held.velocity[3 * q + (size_t)k];
@@ -37,7 +38,9 @@ static void internal_forces(bw_pd_body *pd, bool check)
 {
   const bool damped = bw_pd_body_damped(pd);
   const bool fused = damped && pd->damping.mean == 0 && pd->law->damps;
+  /* Copies are told where all are now; velocities only where damping reads them. */
   bw_pd_body_refresh(pd, damped);
+  /* a = L/rho of the present motion, and load.damp where the law does it on the way. */
   bw_pd_body_internal_force(pd, check, fused);
   if (fused)
     bw_pd_body_damp_absolute(pd);
@@ -50,6 +53,7 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
   bw_pd_body *pd = s->body;
   const bool damped = bw_pd_body_damped(pd), contact = s->contact != NULL;
   internal_forces(pd, check);
+  /* Zeroed once more after the last load went, then left alone. */
   if (contact || damped || s->loaded)
     for (int k = 0; k < pd->dimension; k++)
       memset(pd->load.extra[k], 0, pd->n * sizeof(bw_real));
@@ -57,10 +61,12 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
   /* A particle beyond a wall is an error of its rank alone, which goes on to where all agree. */
   const bw_status st = contact ? bw_pd_contact_update(s->contact) : BW_OK;
   if (contact && st == BW_OK) bw_pd_contact_force(s->contact);
+  /* extra = (C + D)/rho is complete; damp alone is kept for the ledger. */
   for (int k = 0; damped && k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++)
       pd->load.extra[k][i] += pd->load.damp[k][i];
   bw_solid__still_retired(s);
+  /* From here on the forces are those of u and v. */
   pd->current = true;
   return st;
 }
@@ -102,6 +108,7 @@ static void wall_force(bw_solid *s, double force[3])
 static void prescribed_work(bw_solid *s, double dt)
 {
   const bw_pd_body *pd = s->body;
+  /* Whoever holds a particle bears the forces on it: their power has the other sign. */
   double power = 0;
   for (size_t q = 0; q < pd->held.n; q++) {
     const size_t i = (size_t)pd->held.particle[q];
@@ -119,6 +126,7 @@ static inline __attribute__((always_inline)) void kick_all(bw_pd_body *pd, bw_re
 {
   const bw_real *mobile = pd->held.mobile, *weight = pd->weight;
   double external = 0, damping = 0;
+  /* One pass moves and books; sums are in double whatever the precision of the motion. */
   for (int k = 0; k < pd->dimension; k++) {
     bw_real *restrict v = pd->v[k];
     const bw_real *a = pd->a[k], *extra = pd->load.extra[k], *f = pd->load.f[k];
@@ -141,6 +149,7 @@ static inline __attribute__((always_inline)) void kick_all(bw_pd_body *pd, bw_re
 static void kick(bw_solid *s, double h)
 {
   bw_pd_body *pd = s->body;
+  /* Three loops from one source: arrays that hold nothing are not read. */
   double work[2], on_walls[3];
   if (pd->weight != NULL)
     kick_all(pd, (bw_real)h, true, false, work);
@@ -148,6 +157,7 @@ static void kick(bw_solid *s, double h)
     kick_all(pd, (bw_real)h, true, true, work);
   else
     kick_all(pd, (bw_real)h, false, true, work);
+  /* (before + v) h/2: the mean velocity is in the sum, h and a half are here. */
   const double scale = 0.5 * h * pd->config.material[0].rho * pd->level->dv;
   s->book.external += scale * work[0];
   if (bw_pd_body_damped(pd)) s->book.damping += scale * work[1];
@@ -164,6 +174,7 @@ static bool drift(bw_pd_body *pd, double alpha, double beta, bw_real *const befo
   const int dimension = pd->dimension;
   int bad = 0;
   for (size_t r = 0; r < pd->bonds.n_run; r++) {
+    /* A run is contiguous in storage and among own particles: the loop has no indirection. */
     const bw_pd_run run = pd->bonds.run[r];
     bw_real *restrict ux = pd->u[0] + run.place, *restrict uy = pd->u[1] + run.place;
     bw_real *restrict uz = pd->u[2] + run.place;
@@ -178,6 +189,7 @@ static bool drift(bw_pd_body *pd, double alpha, double beta, bw_real *const befo
       ux[i] += dx;
       uy[i] += dy;
       uz[i] += dz;
+      /* NaN fails the comparison, so that it counts as bad. */
       bad += !(dx * dx + dy * dy + dz * dz <= limit2);
     }
   }
@@ -189,6 +201,7 @@ static bw_status diverged(const bw_pd_body *pd, double dt)
 {
   const double horizon = pd->level->horizon;
   for (size_t i = 0; i < pd->n; i++) {
+    /* The sweep only said that there is one; here it gets its name. */
     double v2 = 0, X0[3];
     for (int k = 0; k < 3; k++)
       v2 += (double)pd->v[k][i] * (double)pd->v[k][i];
@@ -206,11 +219,13 @@ static bw_status diverged(const bw_pd_body *pd, double dt)
 bw_status bw_solid__leap(bw_solid *s, double dt)
 {
   kick(s, 0.5 * dt);
+  /* v is at the half step, u still at the beginning. */
   return drift(s->body, dt, 0, s->body->v) ? BW_OK : diverged(s->body, dt);
 }
 
 void bw_solid__land(bw_solid *s, double dt)
 {
+  /* u is at the end, a and extra too; v follows. */
   kick(s, 0.5 * dt);
 }
 
@@ -226,14 +241,17 @@ static bw_status step_verlet(bw_solid *s, double dt)
 /* Rates of the book: work of external forces and of damping. */
 static void power(const bw_pd_body *pd, double rate[2])
 {
+  /* Work per time of what acts now: the integrator's weights come on it later. */
   const bool damped = bw_pd_body_damped(pd);
   double external = 0, damping = 0;
   for (int k = 0; k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++) {
       const double weight = weight_of(pd, i);
+      /* Free particles feel F; damping takes what it takes from all. */
       external += weight * (double)(pd->held.mobile[i] * pd->load.f[k][i] * pd->v[k][i]);
       damping -= weight * (double)(pd->load.damp[k][i] * pd->v[k][i]);
     }
+  /* Prescribed ones are worked on by whoever moves them. */
   for (size_t q = 0; q < pd->held.n; q++)
     for (int k = 0; k < pd->dimension; k++) {
       const size_t i = (size_t)pd->held.particle[q];
@@ -254,6 +272,7 @@ static void stage_velocity(bw_solid *s, double alpha, double beta)
     const bw_real *mobile = pd->held.mobile;
 #pragma omp simd
     for (size_t i = 0; i < pd->n; i++) {
+      /* v <- v + alpha a + beta a_before; both stages are kept for the next one. */
       const bw_real now = mobile[i] * (a[i] + extra[i] + f[i]);
       vb[i] = v[i];
       v[i] += al * now + be * ab[i];
@@ -269,6 +288,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
   double before[2] = {0}, rate[2], wall_now[3], wall_before[3] = {0};
   bw_status st = BW_OK;
   for (int r = 0; r < 3; r++) {
+    /* The ledger is integrated with the same weights as the motion (ERRATA 5). */
     power(pd, rate);
     s->book.external += dt * (alpha[r] * rate[0] + beta[r] * before[0]);
     s->book.damping += dt * (alpha[r] * rate[1] + beta[r] * before[1]);
@@ -280,6 +300,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
     /* Positions take the velocity that the stage began with. */
     const bool fine = drift(pd, dt * alpha[r], dt * beta[r], s->v_before);
     if (!fine && st == BW_OK) st = diverged(pd, dt);
+    /* Velocities take the acceleration at the stage's beginning, too; then forces are new. */
     stage_velocity(s, dt * alpha[r], dt * beta[r]);
     const bw_status seen = bw_solid__evaluate(s, r == 2);
     st = st == BW_OK ? seen : st;
@@ -289,6 +310,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
 
 bw_status bw_solid__begin(bw_solid *s)
 {
+  /* Forces are old when a state, walls or damping have been set since the last step. */
   impose(s);
   /* A failure of one rank is one of all before anybody moves. */
   return s->body->current ? BW_OK : bw_solid_evaluate(s);
@@ -301,13 +323,16 @@ void bw_solid__end(bw_solid *s)
 
 bw_status bw_solid_step(bw_solid *s, double dt)
 {
+  /* The bound counts bonds and damping; contact has its own (bw_solid_dt_contact). */
   const double limit = bw_solid_dt_max(s);
   BW_REQUIRE(dt > 0 && dt <= limit * (1 + 1e-12), BW_ECFL,
              "solid_step: dt = %g must be positive and at most %g; take smaller sub-steps", dt,
              limit);
   bw_status st = bw_solid__begin(s);
   if (st == BW_OK) st = s->config.integrator == BW_SOLID_RK3 ? step_rk3(s, dt) : step_verlet(s, dt);
+  /* Bonds held during the whole step; now those beyond their limit go (3.34). */
   if (st == BW_OK) bw_solid__end(s);
+  /* Forces are this run's own from now on. */
   s->restored = false;
   return bw_comm_agree(s->body->comm, st);
 }

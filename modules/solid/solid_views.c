@@ -15,6 +15,7 @@ void bw_solid_set_damping(bw_solid *s, double pair, double mean, double absolute
 
 void bw_solid_set_G0(bw_solid *s, double G0)
 {
+  /* c0 and s0 are the law's: it makes its constants anew. */
   s->config.G0 = s->body->config.material[0].G0 = G0;
   s->body->law->constants(s->body);
 }

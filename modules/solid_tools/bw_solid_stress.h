@@ -1,4 +1,4 @@
-/* bw_solid_stress.h -- stress and strain at the particles of a solid of bonds, and their statistics.
+/* bw_solid_stress.h -- stress and strain at the particles of a solid, and their statistics.
  *
  *   P_h     = 1/2 sum_l f_hl (x) xi dV_l,   f_hl = c0 alpha s e Gamma      (first Piola-Kirchhoff)
  *   sigma_h = P F^T/J = 1/(2J) sum_l c0 alpha s |xi + eta| e (x) e Gamma dV_l          (Cauchy)
@@ -16,14 +16,22 @@
 #include "bw_pd_tensor.h"
 #include "bw_solid.h"
 
-/* F (n,9) row-major and Cauchy stress (n,6) [M/(L T^2)] of the own particles at the present
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* F (n,9) row-major [-] and Cauchy stress (n,6) [M/(L T^2)] of the own particles at the present
  * positions; either may be NULL. Collective (updates the copies). */
-void bw_solid_stress_compute(bw_solid *pd, double F[], double stress[]);
+void bw_solid_stress_compute(bw_solid *solid, double F[], double stress[]);
 
 /* Probability density of `value` (n) over all ranks in `bins` equal bins of lower .. upper:
  * density[bins] [1/unit of value], with sum density width = 1 - *outside, the share that is out of
  * range or not finite. weight (n): NULL for equal weights. BW_EINPUT for an empty range, no bins or
- * no weight at all. Collective. */
+ * no weight at all; BW_EMEM. Collective. */
 bw_status bw_solid_stress_pdf(const bw_comm *comm, size_t n, const double value[],
                               const double weight[], double lower, double upper, int bins,
                               double density[], double *outside) BW_MUST_CHECK;
+
+#ifdef __cplusplus
+}
+#endif

@@ -6,6 +6,7 @@
 
 double bw_solid_ramp_value(const bw_solid_ramp *ramp, double time)
 {
+  /* A step has no duration to divide by: it has been dealt with when x is asked for. */
   if (time < ramp->start) return 0;
   if (time >= ramp->start + ramp->duration) return 1;
   const double x = (time - ramp->start) / ramp->duration;
@@ -14,6 +15,7 @@ double bw_solid_ramp_value(const bw_solid_ramp *ramp, double time)
 
 static void prescribe(bw_pd_body *pd, double factor, const double field[])
 {
+  /* Only those that listen; the row of the own particle is read. */
   for (size_t q = 0; q < pd->held.n; q++)
     for (size_t k = 0; k < 3; k++)
       pd->held.velocity[3 * q + k] = factor * field[3 * (size_t)pd->held.particle[q] + k];
@@ -22,6 +24,7 @@ static void prescribe(bw_pd_body *pd, double factor, const double field[])
 void bw_solid_load_displace(bw_solid *s, const bw_solid_ramp *ramp, double time, double dt,
                             const double U[])
 {
+  /* The step goes straight from one place to the next: no error adds up. */
   prescribe(bw_solid_body(s),
             (bw_solid_ramp_value(ramp, time + dt) - bw_solid_ramp_value(ramp, time)) / dt, U);
 }
@@ -34,6 +37,7 @@ void bw_solid_load_move(bw_solid *s, const bw_solid_ramp *ramp, double time, dou
 
 static bool in_box(const bw_pd_body *pd, size_t i, const double lower[3], const double upper[3])
 {
+  /* By reference places, so that the same particles are loaded all the time. */
   double X0[3];
   bool in = (pd->points.kind[i] & BW_PD_PRESCRIBED) == 0;
   bw_pd_body_reference(pd, i, X0);
@@ -48,6 +52,7 @@ bw_status bw_solid_load_traction(const bw_solid *s, const double lower[3], const
   const bw_pd_body *pd = bw_solid_body(s);
   BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT,
              "solid_load_traction: area = %g must be positive", area);
+  /* Counted over all ranks: each gets the same share of the whole force. */
   int64_t chosen = 0;
   for (size_t i = 0; i < pd->n; i++)
     chosen += in_box(pd, i, lower, upper);
@@ -56,7 +61,7 @@ bw_status bw_solid_load_traction(const bw_solid *s, const double lower[3], const
              "solid_load_traction: no free particle has its place in the box %g %g %g .. %g %g %g",
              lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]);
   for (size_t i = 0; i < pd->n; i++)
-    for (int k = 0; k < pd->dimension && in_box(pd, i, lower, upper); k++)
+    for (int k = 0; k < pd->dimension && in_box(pd, i, lower, upper); k++) /* sum F dV = t A */
       F[3 * i + (size_t)k] += traction[k] * area / ((double)chosen * pd->level->dv);
   return BW_OK;
 }
@@ -72,6 +77,7 @@ void bw_solid_load_gravity(const bw_solid *s, const double g[3], double F[])
 bw_status bw_solid_load_velocity(bw_solid *s, bw_solid_load_field field, const void *data)
 {
   const bw_pd_body *pd = bw_solid_body(s);
+  /* The state is set as a whole: places are read and given back unchanged. */
   double *X = NULL, *V = NULL, X0[3];
   bw_status st = BW_ALLOCATE(&X, 3 * pd->n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * pd->n));
@@ -93,6 +99,7 @@ bw_status bw_solid_load_launch(bw_solid *s, const double velocity[3], const doub
                                const double centre[3])
 {
   const bw_pd_body *pd = bw_solid_body(s);
+  /* About present places: a body that has moved is launched from where it is. */
   double *X = NULL, *V = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * pd->n);
   BW_THEN(st, BW_ALLOCATE(&V, 3 * pd->n));
@@ -101,6 +108,7 @@ bw_status bw_solid_load_launch(bw_solid *s, const double velocity[3], const doub
     bw_solid_get_position(s, X);
     for (size_t i = 0; i < pd->n; i++)
       for (size_t k = 0; k < 3; k++) {
+        /* spin x (X - centre). */
         const size_t a = (k + 1) % 3, b = (k + 2) % 3;
         V[3 * i + k] = velocity[k] + spin[a] * (X[3 * i + b] - centre[b]) -
                        spin[b] * (X[3 * i + a] - centre[a]);

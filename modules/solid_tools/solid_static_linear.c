@@ -14,6 +14,7 @@ typedef struct {
 /* kp = K x. Collective. */
 static void product(bw_pd_body *pd, const solver *s, const double x[])
 {
+  /* Families reach over ranks: x of the copies first. */
   for (int k = 0; k < 3; k++) {
     for (size_t i = 0; i < pd->n; i++)
       s->copy[k][pd->points.place[i]] = (bw_real)x[3 * i + (size_t)k];
@@ -28,6 +29,7 @@ static void norms(const bw_pd_body *pd, const solver *s, double sum[4])
   memset(sum, 0, 4 * sizeof *sum);
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < (size_t)pd->dimension; k++) {
+      /* Residual on free rows, reactions on prescribed ones: both go into the measure. */
       const double mobile = (double)pd->held.mobile[i], r = s->r[3 * i + k];
       const double f = bw_pd_body_material(pd, i)->rho * (double)pd->load.f[k][i];
       sum[0] += mobile * r * r;
@@ -40,6 +42,7 @@ static void norms(const bw_pd_body *pd, const solver *s, double sum[4])
 
 static double dot(const bw_pd_body *pd, const double a[], const double b[])
 {
+  /* Rows of prescribed particles are zero in p: all may be summed. */
   double sum = 0;
   for (size_t q = 0; q < 3 * pd->n; q++)
     sum += a[q] * b[q];
@@ -52,6 +55,7 @@ static void turn(const bw_pd_body *pd, const solver *s, double beta)
 {
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < (size_t)pd->dimension; k++) {
+      /* The preconditioner is diagonal; directions leave prescribed rows alone. */
       double *p = &s->p[3 * i + k];
       *p = (double)pd->held.mobile[i] * s->r[3 * i + k] / s->mass[i] + beta * *p;
     }
@@ -62,12 +66,14 @@ static bw_status iterate(bw_pd_body *pd, const bw_solid_static_config *config, c
 {
   double sum[4], before = 0;
   bw_solid_static_scale by = {.first = -1};
+  /* r = F - K U, with the prescribed displacements in U. */
   pd->law->rows(pd, s->mass);
   product(pd, s, U);
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++)
       s->r[3 * i + k] =
           bw_pd_body_material(pd, i)->rho * (double)pd->load.f[k][i] - s->kp[3 * i + k];
+  /* Conjugate gradients: r.r/m tells how much of the old direction is kept. */
   for (int q = 0; q <= config->max_iterations; q++) {
     norms(pd, s, sum);
     report->residual = bw_solid_static__residual(sum[0], sum[1], sum[2], &by);
@@ -77,6 +83,7 @@ static bw_status iterate(bw_pd_body *pd, const bw_solid_static_config *config, c
     before = sum[3];
     product(pd, s, s->p);
     report->iterations++;
+    /* The step that minimises the energy along p. */
     const double step = sum[3] / dot(pd, s->p, s->kp);
     for (size_t x = 0; x < 3 * pd->n; x++) {
       U[x] += step * s->p[x];
@@ -94,6 +101,7 @@ bw_status bw_solid_static_linear(bw_solid *solid, const bw_solid_static_config *
                                  bw_solid_static_report *report)
 {
   bw_pd_body *pd = bw_solid_body(solid);
+  /* The arrays of the copies' velocities serve as storage: no step is going on. */
   solver s = {.copy = pd->vs};
   *report = (bw_solid_static_report){.residual = NAN};
   bw_status st = bw_solid_static__check(solid, config);

@@ -26,6 +26,7 @@ bw_status bw_solid_static__check(const bw_solid *s, const bw_solid_static_config
 double bw_solid_static__residual(double free2, double F2, double reaction2,
                                  bw_solid_static_scale *s)
 {
+  /* Measured by loads and reactions, or by where it began when there are neither. */
   s->scale = fmax(sqrt(fmax(F2, reaction2)), s->floor);
   if (s->first < 0) s->first = sqrt(free2);
   if (s->scale == 0) s->scale = s->first;
@@ -45,6 +46,7 @@ static void measure(const bw_pd_body *pd, relaxation *x, bool started, double su
   memset(sum, 0, SUMS * sizeof *sum);
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < (size_t)pd->dimension; k++) {
+      /* L + F: the residual on free rows, the reaction on prescribed ones. */
       const double rho = bw_pd_body_material(pd, i)->rho;
       const double f = rho * (double)pd->load.f[k][i], r = rho * (double)pd->a[k][i] + f;
       const double mobile = (double)pd->held.mobile[i], v = x->v[3 * i + k];
@@ -52,6 +54,7 @@ static void measure(const bw_pd_body *pd, relaxation *x, bool started, double su
       sum[FREE] += mobile * r * r;
       sum[EXTERNAL] += mobile * f * f;
       sum[REACTION] += (1 - mobile) * r * r;
+      /* K v without K: the change of the force during the last step, which was v long. */
       if (started) sum[VKV] -= x->mass[i] * v * (acc - x->acc[3 * i + k]);
       sum[VMV] += x->mass[i] * v * v;
       x->acc[3 * i + k] = acc;
@@ -62,8 +65,10 @@ static void measure(const bw_pd_body *pd, relaxation *x, bool started, double su
 /* v from acc with the damping of the sums, u += v. */
 static void advance(bw_pd_body *pd, relaxation *x, bool started, const double sum[SUMS])
 {
+  /* Critical damping of the motion that there is: twice its Rayleigh frequency. */
   double c = sum[VKV] > 0 && sum[VMV] > 0 ? 2 * sqrt(sum[VKV] / sum[VMV]) : 0;
   c = fmin(c, 1.9); /* below the limit 2 of the scheme */
+  /* Central differences with unit step; the first one starts from rest. */
   const double keep = (2 - c) / (2 + c), push = started ? 2 / (2 + c) : 0.5;
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < (size_t)pd->dimension; k++) {
@@ -80,8 +85,10 @@ static bw_status settle(bw_solid *s, const bw_solid_static_config *config, relax
   bw_pd_body *pd = bw_solid_body(s);
   double sum[SUMS];
   bw_solid_static_scale by = {.floor = floor, .first = -1};
+  /* At rest, with the masses of the bonds that hold now. */
   memset(x->v, 0, 3 * pd->n * sizeof *x->v);
   pd->law->rows(pd, x->mass);
+  /* Every pass measures the state before it moves it: the last one is at rest to the tolerance. */
   for (int q = 0; q < config->max_iterations; q++) {
     BW_TRY(bw_solid_evaluate(s));
     report->iterations++;
@@ -102,10 +109,12 @@ static bw_status settle(bw_solid *s, const bw_solid_static_config *config, relax
 /* Breaks what is beyond s0; returns how many bonds of all ranks. */
 static int64_t break_all(bw_pd_body *pd)
 {
+  /* At rest: nothing has moved since the evaluation, so that lengths are known. */
   int64_t before = pd->bonds.events;
   bw_pd_body_internal_force(pd, true, false);
   bw_pd_body_break_hits(pd);
   int64_t broken = pd->bonds.events - before;
+  /* Both ends count, here or elsewhere. */
   bw_comm_sum_int(pd->comm, 1, &broken);
   return broken / 2;
 }
@@ -114,12 +123,14 @@ static void at_rest(bw_pd_body *pd)
 {
   for (int k = 0; k < 3; k++)
     memset(pd->v[k], 0, pd->n * sizeof(bw_real));
+  /* Velocities have changed, and with them damping. */
   pd->current = false;
 }
 
 bw_status bw_solid_static_relax(bw_solid *s, const bw_solid_static_config *config,
                                 bw_solid_static_report *report)
 {
+  /* What the caller set is put back at the end: damping, and velocities are zero. */
   bw_pd_body *pd = bw_solid_body(s);
   relaxation x = {0};
   double scale = 0;
@@ -133,6 +144,7 @@ bw_status bw_solid_static_relax(bw_solid *s, const bw_solid_static_config *confi
   if (st == BW_OK) {
     at_rest(pd);
     pd->damping.pair = pd->damping.mean = pd->damping.absolute = 0;
+    /* Each break changes the equilibrium: again until nothing breaks any more. */
     for (bool again = true; again && st == BW_OK;) {
       st = settle(s, config, &x, scale, report, &scale);
       const int64_t broken = st == BW_OK && config->breaks ? break_all(pd) : 0;

@@ -11,6 +11,7 @@ bw_status bw_solid_stress_pdf(const bw_comm *comm, size_t n, const double value[
   BW_REQUIRE(isfinite(lower) && isfinite(upper) && upper > lower, BW_EINPUT,
              "solid_stress_pdf: the range %g .. %g has to be finite and not empty", lower, upper);
   BW_REQUIRE(bins > 0, BW_EINPUT, "solid_stress_pdf: bins = %d has to be positive", bins);
+  /* What is out of range or no number is in the total weight, and in no bin. */
   double total[2] = {0}; /* all weight; weight inside */
   gsl_histogram *h = gsl_histogram_alloc((size_t)bins);
   const bw_status st = bw_comm_agree(
@@ -19,6 +20,7 @@ bw_status bw_solid_stress_pdf(const bw_comm *comm, size_t n, const double value[
     if (h != NULL) gsl_histogram_free(h);
     return st;
   }
+  /* Each rank counts its own, then bins are added up. */
   gsl_histogram_set_ranges_uniform(h, lower, upper);
   for (size_t i = 0; i < n; i++) {
     const double w = weight != NULL ? weight[i] : 1;
@@ -31,6 +33,7 @@ bw_status bw_solid_stress_pdf(const bw_comm *comm, size_t n, const double value[
   bw_comm_sum(comm, bins, density);
   bw_comm_sum(comm, 2, total);
   BW_REQUIRE(total[0] > 0, BW_EINPUT, "solid_stress_pdf: there is nothing to count");
+  /* From weights to a density: over all weight and the width of a bin. */
   for (int q = 0; q < bins; q++) {
     total[1] += density[q];
     density[q] *= bins / ((upper - lower) * total[0]);

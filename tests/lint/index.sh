@@ -5,6 +5,7 @@
 # - Every function named anywhere in theory.md and errata.md (in backticks, our own: with an
 #   underscore) and every file under modules, cases, validation, tests, data, docs is there.
 # - Every ERRATA number that the code cites has an entry in docs/errata.md.
+# - The table of who includes whom in docs/architecture.md is that of the sources.
 # - Every author who is cited with a year has a line in docs/sources.md.
 # First a planted row has to be noticed.
 # usage: index.sh SOURCE
@@ -55,6 +56,13 @@ for page in docs/theory.md docs/errata.md docs/sources.md docs/glossary.md; do
     while read -r name; do [ -e "$name" ] || echo "$page: there is no $name"; done
 done >"$work/found"
 while read -r line; do complain "$line"; done <"$work/found"
+
+# Who includes whom: a table with one arrow less has to be noticed.
+sed '0,/^    pd_body .* x/s/^\(    pd_body .*\) x/\1 ./' docs/architecture.md >"$work/architecture.md"
+python3 tools/who_includes_whom.py "$work/architecture.md" >/dev/null &&
+  complain "a planted error in the table of who includes whom was not noticed"
+python3 tools/who_includes_whom.py docs/architecture.md >"$work/found" ||
+  complain "$(cat "$work/found")"
 
 # Cited numbers.
 grep -rhoE 'ERRATA [0-9]+(, [0-9]+)*' modules cases validation tests bench data docs README.md 2>/dev/null |

@@ -1,4 +1,4 @@
-/* pd_cloud.h -- a disordered cloud and its pairs, for the tests of pd_bond. */
+/* pd_cloud.h -- a disordered cloud and its pairs, for the tests of the solid. */
 #pragma once
 #include "pd_test.h"
 

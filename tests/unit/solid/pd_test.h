@@ -1,4 +1,4 @@
-/* pd_test.h -- lattices, and states gathered by global id, for the tests of pd_bond. */
+/* pd_test.h -- lattices, and states gathered by global id, for the tests of the solid. */
 #pragma once
 #include "bw_check.h"
 #include "bw_memory.h"

@@ -22,6 +22,7 @@
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
+#include <stdio.h>
 
 typedef struct bw_solid bw_solid;
 
@@ -41,8 +42,9 @@ typedef struct {
   bw_pd_material more[BW_PD_GROUPS - 1];       /* of particles of group 1 and above */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
-  const bw_pd_law *law;    /* NULL (default): bonds; else a row of bw_solid_laws, or one's own */
-  const void *law_options; /* of a law of one's own                  default NULL */
+  const bw_pd_law *law; /* a row of bw_solid_laws, or one's own; NULL (default): the first row */
+  const void
+      *law_options; /* what that law's header asks for; NULL (default) for bonds: those below */
   bw_pd_volume_fraction volume_fraction;       /* default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* default volume */
   bw_pd_calibration calibration;               /* default none */
@@ -63,6 +65,11 @@ typedef struct {
 } bw_solid_config;
 
 bw_solid_config bw_solid_config_default(void);
+
+/* The laws that a case file can name, ends with NULL; the first one is that of config.law = NULL. */
+extern const bw_pd_law *const bw_solid_laws[];
+const bw_pd_law *bw_solid_law_by_name(const char *name); /* NULL: there is none. Local. */
+void bw_solid_laws_describe(FILE *out); /* each law and the keys it reads, a line each. Local. */
 
 /* Build particles, families and bonds of the lattice sites that the ranks give, each its part (see
  * bw_pd_sites). BW_EINPUT names the field; two particles on one site are an error; BW_EMEM.
@@ -216,9 +223,12 @@ bw_status bw_solid_account(bw_solid *pd, bw_solid_ledger *out) BW_MUST_CHECK;
 size_t bw_solid_bits_bytes(const bw_solid *pd);
 void bw_solid_get_bits(const bw_solid *pd, uint8_t bits[]);
 bw_status bw_solid_set_bits(bw_solid *pd, const uint8_t bits[]) BW_MUST_CHECK;
-enum { BW_SOLID_RESTART_ROW = 13, BW_SOLID_RESTART_SUMS = 11 };
+enum { BW_SOLID_RESTART_SUMS = 11 };
+/* Numbers per particle in a row of a restart: 13, and one for each field that the law wants saved. The
+ * same on all ranks. Local. */
+size_t bw_solid_restart_row(const bw_solid *pd);
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
- * part, 1 when retired (n,13), and the ledger's running sums of all ranks (11: damping, fracture,
+ * part, 1 when retired, the law's saved fields (n, restart_row), and the ledger's running sums of all ranks (11: damping, fracture,
  * external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them). Set bits
  * and rows, in any order, then force and prescribed velocities: the run goes on to the same bits.
  * Both collective. */

@@ -84,10 +84,10 @@ static inline double bw_pd_springs_bond_energy(const bw_pd_body *pd, const bw_pd
 }
 
 static inline double bw_pd_springs_energy(const bw_pd_body *pd, const bw_pd_block *block,
-                                          uint8_t lanes)
+                                          uint8_t asked)
 {
   double sum = 0;
-  for (bw_pd_walk b = bw_pd_walk_of(pd, block, lanes); bw_pd_walk_next(&b);)
+  for (bw_pd_walk b = bw_pd_walk_of(pd, block, asked); bw_pd_walk_next(&b);)
     sum += bw_pd_springs_half(pd, &b);
   return sum;
 }

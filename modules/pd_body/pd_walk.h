@@ -13,7 +13,7 @@ typedef struct {
   const bw_pd_body *pd;
   bw_pd_slot *slot, *end; /* of the bond; where the block's slots end */
   int32_t first, own;     /* of the block */
-  uint8_t mask, lanes;    /* of the block; those asked for */
+  uint8_t mask, asked;    /* lanes of the block: own particles, and those whose bonds are walked */
   bool whole;             /* broken bonds too */
   uint8_t left;           /* lanes of the slot that are still to come */
 
@@ -25,7 +25,7 @@ typedef struct {
 } bw_pd_walk;
 
 static inline bw_pd_walk bw_pd_walk_begin(const bw_pd_body *pd, const bw_pd_block *block,
-                                          uint8_t lanes, bool whole)
+                                          uint8_t asked, bool whole)
 {
   return (bw_pd_walk){.pd = pd,
                       .slot = pd->bonds.slot + block[0].slot - 1,
@@ -33,15 +33,15 @@ static inline bw_pd_walk bw_pd_walk_begin(const bw_pd_body *pd, const bw_pd_bloc
                       .first = block->first,
                       .own = block->own,
                       .mask = block->mask,
-                      .lanes = lanes,
+                      .asked = asked,
                       .whole = whole};
 }
 
 /* The bonds that hold, of the owners in these lanes. */
 static inline bw_pd_walk bw_pd_walk_of(const bw_pd_body *pd, const bw_pd_block *block,
-                                       uint8_t lanes)
+                                       uint8_t asked)
 {
-  return bw_pd_walk_begin(pd, block, lanes, false);
+  return bw_pd_walk_begin(pd, block, asked, false);
 }
 
 /* Whole families, broken bonds too. */
@@ -65,7 +65,7 @@ static inline bool bw_pd_walk_next(bw_pd_walk *b)
 {
   while (b->left == 0) {
     if (++b->slot >= b->end) return false;
-    b->left = (uint8_t)((b->whole ? b->slot->family : b->slot->mask) & b->lanes);
+    b->left = (uint8_t)((b->whole ? b->slot->family : b->slot->mask) & b->asked);
   }
   bw_pd_walk_look(b, __builtin_ctz(b->left));
   b->left = (uint8_t)(b->left & (b->left - 1));

@@ -3,13 +3,10 @@
  * BUILD modules=solid_tools,checkpoint
  * TEST  ranks=1,2,3 */
 #include "bw_checkpoint.h"
-#include "bw_solid_static.h"
+#include "law_test.h"
 #include "mean_law.h"
-#include "pd_test.h"
 
 #include <unistd.h>
-
-static const double ROUND_OFF = 200 * BW_REAL_EPSILON;
 
 /* theta^2 stays below a thousandth or so: a particle loses a tenth of K, less than where the force
  * falls while it is stretched (a third). */
@@ -30,60 +27,22 @@ static void shake(const double X0[3], double v[3])
   v[2] = 0.04 * sin(X0[2] * X0[0]);
 }
 
-static void wave(const double X0[3], double u[3])
-{
-  for (int k = 0; k < 3; k++)
-    u[k] = 0.05 * sin(1.3 * X0[(k + 1) % 3] + X0[k]);
-}
-
-static void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}
-
 static double whole(bw_solid *pd)
 {
   return pd_energy(pd) + ledger_of(pd).plastic;
 }
 
-/* Central differences of the energy while nothing is remembered. */
 START_TEST(force_is_the_derivative_of_energy)
 {
-  const double h = 1e-4 * 0.5;
   const bw_solid_config c = with(&ELASTIC);
-  bw_comm *self = pd_alone();
-  pd_body body = pd_box(4, 4, 3);
-  bw_solid *pd = pd_make(self, &c, &body);
-  double X[3 * 48], V[3 * 48] = {0}, a[3 * 48], most = 0;
-  pd_set(pd, wave, NULL);
-  bw_check_ok(bw_solid_evaluate(pd));
-  bw_solid_get_acceleration(pd, a);
-  bw_solid_get_position(pd, X);
-  for (size_t q = 0; q < 3 * 48; q += 7) {
-    double E[2];
-    for (int side = 0; side < 2; side++) {
-      X[q] += side == 0 ? h : -2 * h;
-      bw_solid_set_state(pd, X, V);
-      E[side] = ledger_of(pd).elastic;
-    }
-    X[q] += h;
-    const double force = c.rho * bw_solid_volume(pd) * a[q];
-    most = fmax(most, fabs(force));
-    bw_check_near(-(E[0] - E[1]) / (2 * h), force, 1e-7); /* h^2/6 of third derivatives near 10 */
-  }
-  ck_assert_double_gt(most, 1e-3);
-  bw_solid_destroy(&pd);
-  pd_body_release(&body);
-  bw_comm_destroy(&self);
+  check_force(&c);
+}
+END_TEST
+
+START_TEST(rest_by_relaxation_and_by_the_linear_solve)
+{
+  const bw_solid_config c = with(&ELASTIC);
+  check_rest(&c);
 }
 END_TEST
 
@@ -167,45 +126,6 @@ START_TEST(neighbours_on_other_ranks_and_a_checkpoint)
     bw_solid_destroy(&made[q]);
   pd_body_release(&body);
   bw_comm_destroy(&self);
-}
-END_TEST
-
-/* A bar drawn by a strain of 1e-4: its tangent sends values too. */
-START_TEST(rest_by_relaxation_and_by_the_linear_solve)
-{
-  const bw_solid_config c = with(&ELASTIC);
-  pd_body body = pd_box(10, 4, 4);
-  for (int64_t q = 0; q < body.n; q++)
-    if (body.site[3 * q] < 2 || body.site[3 * q] > 7) body.kind[q] = BW_PD_PRESCRIBED;
-  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
-  const size_t n = bw_solid_count(pd);
-  double *U = NULL, *X = NULL, *X0 = NULL, *V = NULL, most[2] = {0};
-  double **array[] = {&U, &X, &X0, &V};
-  for (int q = 0; q < 4; q++)
-    bw_check_ok(BW_ALLOCATE(array[q], 3 * n));
-  bw_solid_get_reference(pd, X0);
-  for (size_t i = 0; i < n; i++) {
-    U[3 * i] = bw_solid_kind(pd)[i] & BW_PD_PRESCRIBED ? 1e-4 * X0[3 * i] : 0;
-    for (size_t k = 0; k < 3; k++)
-      X[3 * i + k] = X0[3 * i + k] + U[3 * i + k];
-  }
-  bw_solid_set_state(pd, X, V);
-  bw_solid_static_config how = bw_solid_static_config_default();
-  bw_solid_static_report report;
-  how.tolerance = 1e-8;
-  bw_check_ok(bw_solid_static_linear(pd, &how, U, &report));
-  bw_check_ok(bw_solid_static_relax(pd, &how, &report));
-  bw_solid_get_position(pd, X);
-  for (size_t q = 0; q < 3 * n; q++) {
-    most[0] = fmax(most[0], fabs(X[q] - X0[q] - U[q]));
-    most[1] = fmax(most[1], fabs(U[q]));
-  }
-  bw_comm_max(bw_check_world(), 2, most);
-  ck_assert_double_lt(most[0], 10 * 1e-4 * most[1]); /* terms of second order in the strain */
-  for (int q = 0; q < 4; q++)
-    bw_release(array[q]);
-  bw_solid_destroy(&pd);
-  pd_body_release(&body);
 }
 END_TEST
 

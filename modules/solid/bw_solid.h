@@ -120,7 +120,7 @@ void bw_solid_set_prescribed(bw_solid *pd, const double V[]);
 bw_status bw_solid_step(bw_solid *pd, double dt) BW_MUST_CHECK;
 
 /* Largest stable step of the intact network with its damping at small strain [T]: a bound below
- * that of ERRATA 6 by its square root of three (two in the plane), see pd_bond_bounds.c; contact
+ * that of ERRATA 6 by its square root of three (two in the plane), see pd_tensor_bound.h; contact
  * not counted; the same on all ranks. Local. */
 double bw_solid_dt_max(const bw_solid *pd);
 /* Step that resolves a collision of two particles [T], 1/w of their oscillation: they part with

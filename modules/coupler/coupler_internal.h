@@ -14,7 +14,7 @@ typedef struct {
   bool filled;
   double fluid_numbers[2]; /* time, gradient of the forcing */
   bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
-  double *rows;            /* (n,BW_SOLID_RESTART_ROW) of bw_solid_get_restart */
+  double *rows;            /* (n, bw_solid_restart_row) of bw_solid_get_restart */
   double sums[BW_SOLID_RESTART_SUMS], work[2]; /* of all ranks: given, late */
   uint8_t *bits;                               /* (n, bits_bytes) */
   double *V_before, *F;                        /* (n,3) */

@@ -34,7 +34,7 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   /* In two dimensions there is no w. */
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
-  BW_TRY(BW_ALLOCATE(&s->rows, BW_SOLID_RESTART_ROW * c->n));
+  BW_TRY(BW_ALLOCATE(&s->rows, bw_solid_restart_row(c->solid) * c->n));
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   return BW_ALLOCATE(&s->F, 3 * c->n);
@@ -92,8 +92,8 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
   /* Everything of the particles, as rows. */
-  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id, BW_SOLID_RESTART_ROW,
-                                 BW_CK_DOUBLE, s->rows));
+  BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id,
+                                 (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
@@ -113,8 +113,8 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
   /* Rows find their particles by id. */
-  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id, BW_SOLID_RESTART_ROW,
-                                 BW_CK_DOUBLE, s->rows));
+  BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id,
+                                 (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));

@@ -222,8 +222,9 @@ void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
  * caller. BW_EINPUT for two on one site and for extents; BW_EMEM. Collective. */
 bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given,
                                 bw_particles_map *near) BW_MUST_CHECK;
-void bw_pd_body_refresh(bw_pd_body *pd, bool velocity);       /* copies' u (and v). Collective. */
-void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places); /* copies' values. Collective. */
+void bw_pd_body_refresh(bw_pd_body *pd, bool velocity); /* copies' u (and v). Collective. */
+void bw_pd_body_fill_places(const bw_pd_body *pd,
+                            bw_real *places); /* copies' values. Collective. */
 
 /* pd_slots.c: storage places, runs, blocks and slots; near as above. BW_EINPUT for too many bonds
  * on one rank; BW_EMEM. Local. */

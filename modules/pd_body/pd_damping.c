@@ -4,6 +4,7 @@
  *   absolute  - k/rho V_h */
 #include "bw_pd_tensor.h"
 #include "pd_sweep.h"
+#include "pd_walk.h"
 
 bool bw_pd_body_damped(const bw_pd_body *pd)
 {
@@ -89,7 +90,7 @@ void bw_pd_body_damp(bw_pd_body *pd, size_t n, const uint32_t list[])
   }
 }
 
-/* The law's partner of this bound says why a sum of dyads bounds a network (pd_bond_bounds.c). */
+/* The law's partner of this bound says why a sum of dyads bounds a network (pd_tensor_bound.h). */
 bw_status bw_pd_body_damping_bound(bw_pd_body *pd)
 {
   double most = 0;
@@ -97,15 +98,8 @@ bw_status bw_pd_body_damping_bound(bw_pd_body *pd)
   for (size_t b = 0; b < pd->bonds.n_block && st == BW_OK; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
     double t[BW_PD_LANES][BW_PD_SYMMETRIC] = {{0}}, value[BW_PD_LANES][3];
-    for (uint32_t q = block->slot; q < block[1].slot; q++) {
-      const bw_pd_slot *slot = &pd->bonds.slot[q];
-      for (int lane = 0; lane < BW_PD_LANES; lane++) {
-        if (!(slot->family >> lane & 1)) continue;
-        const bw_pd_rest rest =
-            bw_pd_body_rest(pd, slot->direction, block->first + lane, slot->base + lane);
-        bw_pd_tensor_add_dyad(rest.fraction * pd->level->dv, rest.xi, rest.r0, t[lane]);
-      }
-    }
+    for (bw_pd_walk x = bw_pd_walk_families(pd, block); bw_pd_walk_next(&x);)
+      bw_pd_tensor_add_dyad(x.weight, x.rest.xi, x.rest.r0, t[x.lane]);
     st = bw_pd_tensor_principal(BW_PD_LANES, t[0], value[0], NULL);
     for (int lane = 0; lane < BW_PD_LANES && st == BW_OK; lane++)
       most = fmax(most, value[lane][0]);

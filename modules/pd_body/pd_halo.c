@@ -308,7 +308,7 @@ void bw_pd_body_refresh(bw_pd_body *pd, bool velocity)
 }
 
 /* Copies' values of a storage array from their owners. Collective. */
-void bw_pd_body_fill_places(bw_pd_body *pd, bw_real *places)
+void bw_pd_body_fill_places(const bw_pd_body *pd, bw_real *places)
 {
   bw_particles_copies *c = pd->halo.copies;
   const size_t copies = pd->n_extended - pd->n, rows = bw_particles_copies_rows(c);

@@ -8,7 +8,7 @@ void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping)
   /* Checks and damping need the final force: the last pass alone does them. */
   for (int pass = 0; pass < law->n_sweep; pass++) {
     const bool last = pass == law->n_sweep - 1;
-    law->sweep[pass](pd, 0, pd->bonds.n_block, check && last, damping && last);
+    law->sweep[pass](pd, 0, pd->bonds.n_block, check && pd->breakage && last, damping && last);
     /* The next pass reads neighbours: those that others own have to be told. */
     for (int q = 0; q < pd->n_field; q++)
       if (pd->field[q].after == pass) bw_pd_body_fill_places(pd, pd->field[q].value);

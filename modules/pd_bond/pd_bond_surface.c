@@ -1,6 +1,7 @@
 /* Surface corrections by one factor per particle. */
 #include "bw_memory.h"
 #include "pd_bond.h"
+#include "pd_walk.h"
 
 /* Own factors: volume method, V_h/V_0 (3.44, ERRATA 11); energy method, the ratio of the classical
  * energy of an isotropic dilation to that of the family (Madenci & Oterkus 2014, section 4.2,
@@ -31,17 +32,11 @@ bw_status bw_pd_bond__surface_factors(bw_pd_body *pd)
   bw_status st = BW_ALLOCATE(&volume, pd->n);
   BW_THEN(st, BW_ALLOCATE(&moment, pd->n));
   st = bw_comm_agree(pd->comm, st);
-  for (size_t b = 0; b < pd->bonds.n_block && st == BW_OK; b++)
-    for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++)
-      for (int lane = 0; lane < BW_PD_LANES; lane++) {
-        if (!(pd->bonds.slot[q].family >> lane & 1)) continue;
-        const int32_t h = bw_pd_body_owner(&pd->bonds.block[b], lane);
-        const bw_pd_rest rest =
-            bw_pd_body_rest(pd, pd->bonds.slot[q].direction, pd->bonds.block[b].first + lane,
-                            pd->bonds.slot[q].base + lane);
-        volume[h] += rest.fraction * pd->level->dv;
-        moment[h] += rest.fraction * pd->level->dv * rest.r0;
-      }
+  for (size_t q = 0; q < pd->bonds.n_block && st == BW_OK; q++)
+    for (bw_pd_walk b = bw_pd_walk_families(pd, &pd->bonds.block[q]); bw_pd_walk_next(&b);) {
+      volume[bw_pd_walk_owner(&b)] += b.weight;
+      moment[bw_pd_walk_owner(&b)] += b.weight * b.rest.r0;
+    }
   for (size_t p = 0; p < pd->points.n_storage && st == BW_OK; p++)
     w[p] = 1;
   for (size_t h = 0; h < pd->n && st == BW_OK; h++)

@@ -23,6 +23,7 @@
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,8 +52,11 @@ typedef struct {
   bw_pd_material more[BW_PD_GROUPS - 1];       /* of particles of group 1 and above */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
-  const bw_pd_law *law;    /* borrowed; NULL (default): the bond law; else one's own (pd_law.h) */
-  const void *law_options; /* of a law of one's own                  default NULL */
+  const bw_pd_law *law; /* borrowed: a row of bw_solid_laws, or one's own (pd_law.h); NULL
+                              (default): the first row, the bond law */
+  const void
+      *law_options; /* borrowed by create: what that law's header asks for; NULL (default) for
+                              bonds: the two named so below */
   bw_pd_volume_fraction volume_fraction;       /* Gamma; default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* of the bond law; default volume */
   bw_pd_calibration calibration;               /* of the bond law; default none */
@@ -74,6 +78,11 @@ typedef struct {
 
 /* The defaults; ds, rho and E are still to be set. Local. */
 bw_solid_config bw_solid_config_default(void);
+
+/* The laws that a case file can name, ends with NULL; the first one is that of config.law = NULL. */
+extern const bw_pd_law *const bw_solid_laws[];
+const bw_pd_law *bw_solid_law_by_name(const char *name); /* NULL: there is none. Local. */
+void bw_solid_laws_describe(FILE *out); /* each law and the keys it reads, a line each. Local. */
 
 /* Build particles, families and bonds of the lattice sites that the ranks give, each its part (see
  * bw_pd_sites). BW_EINPUT names the field; two particles on one site are an error; BW_EMEM.
@@ -163,7 +172,12 @@ double bw_solid_micromodulus(const bw_solid *solid);     /* c0 of the first grou
 double bw_solid_critical_stretch(const bw_solid *solid); /* s0 of the first group [-]; NaN: the
                                                                 law has none */
 double bw_solid_volume(const bw_solid *solid);           /* of one particle [L^3] */
-bw_pd_body *bw_solid_body(const bw_solid *solid);        /* for laws and tools */
+/* What one own particle i is, by its group and its lattice; settings() holds those of the first
+ * group. Local. */
+int bw_solid_group(const bw_solid *solid, size_t i);      /* row of the materials, 0: the first */
+double bw_solid_density(const bw_solid *solid, size_t i); /* [M/L^3] */
+double bw_solid_spacing(const bw_solid *solid, size_t i); /* [L] */
+bw_pd_body *bw_solid_body(const bw_solid *solid);         /* for laws and tools */
 
 /* Copies in the caller's array (n,3). Positions are not wrapped in periodic directions. Local. */
 void bw_solid_get_reference(const bw_solid *solid, double X0[]); /* [L] */
@@ -267,17 +281,17 @@ size_t bw_solid_bits_bytes(const bw_solid *solid); /* bytes of one row */
 /* The way back; bits of directions in which a particle has no bond are ignored. Collective. */
 bw_status bw_solid_set_bits(bw_solid *solid, const uint8_t bits[]) BW_MUST_CHECK;
 
-/* Lengths of the arrays of a restart. */
-enum {
-  BW_SOLID_RESTART_ROW = 13, /* numbers per particle */
-  BW_SOLID_RESTART_SUMS = 11 /* numbers of the whole */
-};
+enum { BW_SOLID_RESTART_SUMS = 11 }; /* sums of the whole solid in a restart */
+
+/* Numbers per particle in a row of a restart: 13, and one for each field that the law wants saved.
+ * The same on all ranks. Local. */
+size_t bw_solid_restart_row(const bw_solid *solid);
 
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
- * part, 1 when retired (n,13), and the ledger's running sums of all ranks (11: damping, fracture,
- * external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them). Set bits
- * and rows, in any order, then force and prescribed velocities: the run goes on to the same bits.
- * Both collective. */
+ * part, 1 when retired, the law's saved fields (n, restart_row), and the ledger's running sums of all
+ * ranks (11: damping, fracture, external, directed bonds cut by pre-cracks, retired, impulse on
+ * walls, force on them). Set bits and rows, in any order, then force and prescribed velocities: the
+ * run goes on to the same bits. Both collective. */
 void bw_solid_get_restart(const bw_solid *solid, double rows[], double sums[]);
 bw_status bw_solid_set_restart(bw_solid *solid, const double rows[],
                                const double sums[]) BW_MUST_CHECK;

@@ -84,9 +84,10 @@ static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *give
   bw_solid_config *c = &s->config;
   const bw_pd_body_config body = body_config(c);
   const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
-  const bool own = c->law != NULL && c->law != &bw_pd_bond_law;
-  BW_TRY(bw_pd_body_create(comm, &body, own ? c->law : &bw_pd_bond_law,
-                           own ? c->law_options : &bonds, given, &s->body));
+  const bw_pd_law *law = c->law != NULL ? c->law : bw_solid_laws[0];
+  const void *options = c->law_options;
+  if (options == NULL && law == &bw_pd_bond_law) options = &bonds;
+  BW_TRY(bw_pd_body_create(comm, &body, law, options, given, &s->body));
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;
   bw_pd_body_set_damping(s->body, c->damping_pair, c->damping_mean, c->damping_absolute);

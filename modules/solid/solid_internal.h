@@ -3,6 +3,10 @@
 #include "bw_solid.h"
 #include "pd_law.h"
 
+enum {
+  BW_SOLID__ROW = 13
+}; /* of a restart: u, v, a, damping, 1 when retired; then the law's fields */
+
 /* What has gone where since the start, of this rank. */
 typedef struct {
   double damping;     /* dissipated [M L^2/T^2] */

@@ -51,19 +51,58 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
   return BW_OK;
 }
 
+size_t bw_solid_restart_row(const bw_solid *s)
+{
+  size_t width = BW_SOLID__ROW;
+  for (int q = 0; q < s->body->n_field; q++)
+    width += s->body->field[q].saved;
+  return width;
+}
+
+/* The law's saved fields of the own particles, behind the rest of each row. */
+static void get_fields(const bw_solid *s, double rows[])
+{
+  const bw_pd_body *pd = s->body;
+  const size_t width = bw_solid_restart_row(s);
+  size_t column = BW_SOLID__ROW;
+  for (int q = 0; q < pd->n_field; q++) {
+    if (!pd->field[q].saved) continue;
+    for (size_t i = 0; i < pd->n; i++)
+      rows[width * i + column] = (double)pd->field[q].value[pd->points.place[i]];
+    column++;
+  }
+}
+
+/* Copies get a field at once: nothing is evaluated before the next step moves the particles. */
+static void set_fields(bw_solid *s, const double rows[])
+{
+  bw_pd_body *pd = s->body;
+  const size_t width = bw_solid_restart_row(s);
+  size_t column = BW_SOLID__ROW;
+  for (int q = 0; q < pd->n_field; q++) {
+    if (!pd->field[q].saved) continue;
+    for (size_t i = 0; i < pd->n; i++)
+      pd->field[q].value[pd->points.place[i]] = (bw_real)rows[width * i + column];
+    if (pd->field[q].after >= 0) bw_pd_body_fill_places(pd, pd->field[q].value);
+    column++;
+  }
+}
+
 void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
+  const size_t width = bw_solid_restart_row(s);
   for (size_t i = 0; i < pd->n; i++) {
-    double *row = rows + BW_SOLID_RESTART_ROW * i;
+    double *row = rows + width * i;
     for (size_t k = 0; k < 3; k++) {
       row[k] = (double)pd->u[k][pd->points.place[i]];
       row[3 + k] = (double)pd->v[k][i];
       row[6 + k] = (double)(pd->a[k][i] + pd->load.extra[k][i]);
       row[9 + k] = (double)pd->load.damp[k][i];
     }
-    row[BW_SOLID_RESTART_ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
+    row[BW_SOLID__ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
   }
+  get_fields(s, rows);
   const bw_solid_book *book = &s->book;
   const double none[3] = {0};
   const double *on_walls = s->contact != NULL ? bw_pd_contact_wall_force(s->contact) : none;
@@ -94,16 +133,18 @@ static void set_sums(bw_solid *s, const double sums[])
 bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double sums[])
 {
   bw_pd_body *pd = s->body;
+  const size_t width = bw_solid_restart_row(s);
   for (size_t i = 0; i < pd->n; i++)
     /* The acceleration is taken over, not evaluated: the run goes on to the same bits. */
     for (size_t k = 0; k < 3; k++) {
-      const double *row = rows + BW_SOLID_RESTART_ROW * i + k;
+      const double *row = rows + width * i + k;
       pd->u[k][pd->points.place[i]] = (bw_real)row[0];
       pd->v[k][i] = (bw_real)row[3];
       pd->a[k][i] = (bw_real)row[6];
       pd->load.damp[k][i] = (bw_real)row[9]; /* for the book: that of Verlet is of the half step */
       pd->load.extra[k][i] = 0;              /* inside a */
     }
+  set_fields(s, rows);
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);

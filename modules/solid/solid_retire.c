@@ -70,7 +70,7 @@ void bw_solid__retire_rows(bw_solid *s, const double rows[])
   /* A restart may have more of them, or less. */
   int64_t changed = 0;
   for (size_t i = 0; i < pd->n; i++) {
-    const bool gone = rows[BW_SOLID_RESTART_ROW * i + BW_SOLID_RESTART_ROW - 1] != 0;
+    const bool gone = rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] != 0;
     const uint8_t kind =
         (uint8_t)((pd->points.kind[i] & ~BW_PD_RETIRED) | (gone ? BW_PD_RETIRED : 0));
     changed |= kind != pd->points.kind[i];

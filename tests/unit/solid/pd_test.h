@@ -122,14 +122,14 @@ static inline void pd_move_rows(const bw_solid *from, const bw_solid *to, size_t
 static inline void pd_restart_from(const bw_solid *from, bw_solid *to)
 {
   const size_t n = bw_solid_count(from), m = bw_solid_count(to);
-  const size_t bytes = bw_solid_bits_bytes(from);
+  const size_t bytes = bw_solid_bits_bytes(from), width = bw_solid_restart_row(from);
   double *rows = NULL, *moved = NULL, sums[BW_SOLID_RESTART_SUMS];
   uint8_t *bits = NULL;
-  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + BW_SOLID_RESTART_ROW)));
-  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + BW_SOLID_RESTART_ROW)));
+  bw_check_ok(BW_ALLOCATE(&rows, (n + m) * (bytes + width)));
+  bw_check_ok(BW_ALLOCATE(&moved, (n + m) * (bytes + width)));
   bw_check_ok(BW_ALLOCATE(&bits, (n + m) * bytes));
   bw_solid_get_restart(from, rows, sums);
-  pd_move_rows(from, to, BW_SOLID_RESTART_ROW, rows, moved);
+  pd_move_rows(from, to, width, rows, moved);
   bw_check_ok(bw_solid_set_restart(to, moved, sums));
   bw_solid_get_bits(from, bits);
   for (size_t q = 0; q < n * bytes; q++)

@@ -35,7 +35,9 @@ typedef struct {
 typedef struct {
   int64_t label, particles;
   int64_t order; /* keeps sums in order of ranks */
-  double X[3], V[3], L[3], I[6];
+  double
+      weight; /* mass over that of a particle of the first group: a whole number with one group */
+  double X[3], V[3], L[3], I[6]; /* sums with that weight */
 } piece;
 
 static int32_t root_of(int32_t parent[], int32_t h)
@@ -152,6 +154,7 @@ static size_t merge(size_t n, piece list[])
     }
     piece *sum = &list[last];
     sum->particles += list[q].particles;
+    sum->weight += list[q].weight;
     for (int d = 0; d < 3; d++) {
       sum->X[d] += list[q].X[d];
       sum->V[d] += list[q].V[d];
@@ -195,6 +198,12 @@ static void placed(const joiner *j, size_t h, double x[3])
     x[d] = j->X[3 * h + d] + (double)j->own[h].image[d] * j->period[d];
 }
 
+/* Density of own particle h over that of the first group. */
+static double weight_of(const joiner *j, size_t h)
+{
+  return bw_solid_density(j->pd, h) / bw_solid_settings(j->pd)->rho;
+}
+
 /* The pieces of this rank's particles with their sums of positions and velocities. */
 static bw_status sum_pieces(const joiner *j, const double V[], size_t *n, piece **out)
 {
@@ -208,17 +217,19 @@ static bw_status sum_pieces(const joiner *j, const double V[], size_t *n, piece 
   *n = merge(roots, *out);
   for (size_t h = 0; h < j->n; h++) {
     piece *p = find(*n, *out, j->own[h].label);
+    const double weight = weight_of(j, h);
     double x[3];
     placed(j, h, x);
     p->particles++;
+    p->weight += weight;
     for (size_t d = 0; d < 3; d++)
-      p->X[d] += x[d], p->V[d] += V[3 * h + d];
+      p->X[d] += weight * x[d], p->V[d] += weight * V[3 * h + d];
   }
   return BW_OK;
 }
 
-/* Angular momentum and inertia (xx yy zz xy xz yz) about the pieces' centres, per unit mass of a
- * particle; `mean` holds the centres and velocities of all pieces. */
+/* Angular momentum and inertia (xx yy zz xy xz yz) about the pieces' centres over the mass of a
+ * particle of the first group; `mean` holds the centres and velocities of all pieces. */
 static bw_status sum_moments(const joiner *j, const double V[], size_t n_mean, piece mean[],
                              size_t *n, piece **out)
 {
@@ -228,19 +239,20 @@ static bw_status sum_moments(const joiner *j, const double V[], size_t n_mean, p
   for (size_t h = 0; h < j->n; h++) {
     const piece *c = find(n_mean, mean, j->own[h].label);
     piece *p = &(*out)[c - mean];
+    const double weight = weight_of(j, h);
     double x[3], v[3];
     placed(j, h, x);
     for (size_t d = 0; d < 3; d++)
       x[d] -= c->X[d], v[d] = V[3 * h + d] - c->V[d];
-    p->L[0] += x[1] * v[2] - x[2] * v[1];
-    p->L[1] += x[2] * v[0] - x[0] * v[2];
-    p->L[2] += x[0] * v[1] - x[1] * v[0];
-    p->I[0] += x[1] * x[1] + x[2] * x[2];
-    p->I[1] += x[0] * x[0] + x[2] * x[2];
-    p->I[2] += x[0] * x[0] + x[1] * x[1];
-    p->I[3] -= x[0] * x[1];
-    p->I[4] -= x[0] * x[2];
-    p->I[5] -= x[1] * x[2];
+    p->L[0] += weight * (x[1] * v[2] - x[2] * v[1]);
+    p->L[1] += weight * (x[2] * v[0] - x[0] * v[2]);
+    p->L[2] += weight * (x[0] * v[1] - x[1] * v[0]);
+    p->I[0] += weight * (x[1] * x[1] + x[2] * x[2]);
+    p->I[1] += weight * (x[0] * x[0] + x[2] * x[2]);
+    p->I[2] += weight * (x[0] * x[0] + x[1] * x[1]);
+    p->I[3] -= weight * (x[0] * x[1]);
+    p->I[4] -= weight * (x[0] * x[2]);
+    p->I[5] -= weight * (x[1] * x[2]);
     p->particles++;
   }
   size_t kept = 0; /* those with particles here */
@@ -278,8 +290,8 @@ static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fra
   BW_THEN(st, bw_comm_agree(comm, share(comm, &n_mean, &mean)));
   for (size_t q = 0; st == BW_OK && q < n_mean; q++)
     for (int d = 0; d < 3; d++) {
-      mean[q].X[d] /= (double)mean[q].particles;
-      mean[q].V[d] /= (double)mean[q].particles;
+      mean[q].X[d] /= mean[q].weight;
+      mean[q].V[d] /= mean[q].weight;
     }
   if (st == BW_OK) st = bw_comm_agree(comm, sum_moments(j, V, n_mean, mean, &n_moment, &moment));
   BW_THEN(st, bw_comm_agree(comm, share(comm, &n_moment, &moment)));
@@ -288,7 +300,7 @@ static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fra
     bw_pd_fragment *f = &(*out)[q];
     f->label = mean[q].label;
     f->particles = mean[q].particles;
-    f->mass = mass * (double)mean[q].particles;
+    f->mass = mass * mean[q].weight;
     memcpy(f->centre, mean[q].X, sizeof f->centre);
     memcpy(f->velocity, mean[q].V, sizeof f->velocity);
     solve_spin(&moment[q], f->spin);

@@ -83,7 +83,8 @@ bw_status bw_solid_precrack(bw_solid *pd, const double a[3], const double b[3],
 
 void bw_solid_enable_breakage(bw_solid *pd, bool on); /* default on. Local. */
 void bw_solid_set_damping(bw_solid *pd, double pair, double mean, double absolute); /* Local */
-void bw_solid_set_G0(bw_solid *pd, double G0); /* new s0. Local. */
+/* New fracture energy of the first group [M/T^2], and so of its joints without a joint_G0. Local. */
+void bw_solid_set_G0(bw_solid *pd, double G0);
 
 /* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
  * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by
@@ -134,10 +135,15 @@ const uint8_t *bw_solid_kind(const bw_solid *pd); /* (n) */
 const bw_solid_config *bw_solid_settings(const bw_solid *pd);
 const bw_comm *bw_solid_comm(const bw_solid *pd); /* of create, borrowed */
 double bw_solid_horizon(const bw_solid *pd);
-double bw_solid_micromodulus(const bw_solid *pd);     /* c0 [M/(L^7 T^2)] */
-double bw_solid_critical_stretch(const bw_solid *pd); /* s0 [-] */
+double bw_solid_micromodulus(const bw_solid *pd);     /* c0 of the first group [M/(L^7 T^2)] */
+double bw_solid_critical_stretch(const bw_solid *pd); /* s0 of the first group [-] */
 double bw_solid_volume(const bw_solid *pd);           /* of one particle [L^3] */
-bw_pd_body *bw_solid_body(const bw_solid *pd);        /* for laws and tools, borrowed */
+/* What one own particle i is, by its group and its lattice; settings() holds those of the first group.
+ * Local. */
+int bw_solid_group(const bw_solid *pd, size_t i);      /* row of the materials, 0: the first */
+double bw_solid_density(const bw_solid *pd, size_t i); /* [M/L^3] */
+double bw_solid_spacing(const bw_solid *pd, size_t i); /* [L] */
+bw_pd_body *bw_solid_body(const bw_solid *pd);         /* for laws and tools, borrowed */
 
 /* Copies in the caller's array (n,3) or (n). Positions are not wrapped in periodic directions.
  * Local. */

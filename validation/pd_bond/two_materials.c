@@ -7,19 +7,20 @@
  *            (lattice_sum.h) and of 1 - (k delta)^2/24, k = 1/width of the pulse; the momentum of the
  *            pulse thrown back is (Z2 - Z1)/(Z2 + Z1) of the one that came, Z = rho c, and turned.
  * Measured   displacements and stress of the linear solve (correction by tensor) in windows one
- *            width of the bar and more away from the joint and the ends; the bar's mean stress over
- *            every cross-section within a width of the joint; centroids of kinetic energy of the
- *            pulse before and after the joint at two times each; momentum of the first half before
- *            and after.
- * Tolerance  modulus 1 %, asked for; cross-sections within a width of the joint 5 %: what a free face
- *            costs there is not the same in both materials (the skin is some 3 %,
- *            pd_bond.uniform_stress). Speeds: half the relative error of the family's modulus as
- *            lattice_sum.h predicts it, plus 5e-4 for its midpoint fractions, plus 3e-4: the next
- *            term of the dispersion and what a pulse of the amplitude 1e-6 has of Verlet's error.
- *            Momentum thrown back: both halves have the same relative error of their modulus, so that
- *            Z2/Z1 has none, and of the integral over the whole pulse dispersion takes nothing, as it
- *            vanishes with the wave number. What is left is what the start, made with the speed of
- *            the reference, sends the other way: half the relative error of that speed.
+ *            width of the bar and more away from the joint and the ends; mean stress of particles
+ *            over every cross-section near the joint but further from it than a horizon, and over
+ *            all within two horizons; centroids of kinetic energy of the pulse before and after the
+ *            joint at two times each; momentum of the first half before and after.
+ * Tolerance  modulus and stress in the windows 1 %, asked for. Cross-sections near the joint 2 %: the
+ *            skin of the free faces is some 3 % (pd_bond.uniform_stress), not the same in both
+ *            materials, on a fifth of the height. Within a horizon of the joint a particle's stress
+ *            is no flux of momentum: a bond across gives half of its virial to either end, however
+ *            soft that end's own bonds are (-17 and +20 %); the mean over both sides is 1.
+ *            Speeds and the momentum thrown back: 5e-4 for the midpoint fractions of lattice_sum.h
+ *            (pd_bond.wave_speed), plus 3e-4: the next term of the dispersion and Verlet's error.
+ *            Both halves have the same relative error of their modulus, so that Z2/Z1 has none, and
+ *            dispersion takes nothing of the integral over a whole pulse. Momentum in all: 1e4
+ *            roundings.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1,2 */
 #include "body.h"
@@ -73,7 +74,7 @@ static void claim(bw_validation *v, const char *quantity, double measured, doubl
                                    .source = "elasticity of bars, waves at a joint"});
 }
 
-enum { HALF = 90, WIDE = 20, HELD = 3 };
+enum { HALF = 90, WIDE = 20, HELD = 3, BESIDE = 4 };
 
 static double column_mean(const bw_solid *s, const body_rows *r, double from, double to,
                           const double value[], size_t stride)
@@ -114,11 +115,14 @@ static bw_status tension(bw_validation *v)
   claim(v, "stress_of_second_over_first_half", right / left, 1, 0.01);
   double least = INFINITY, most = -INFINITY;
   for (int x = HALF - WIDE; x < HALF + WIDE; x++) {
+    if (x >= HALF - BESIDE && x < HALF + BESIDE) continue;
     const double mean = column_mean(s, &r, x, x + 1, r.stress, 6) / left;
     least = fmin(least, mean), most = fmax(most, mean);
   }
-  claim(v, "least_stress_near_the_joint", least, 1, 0.05);
-  claim(v, "largest_stress_near_the_joint", most, 1, 0.05);
+  claim(v, "least_stress_near_the_joint", least, 1, 0.02);
+  claim(v, "largest_stress_near_the_joint", most, 1, 0.02);
+  claim(v, "stress_at_the_joint",
+        column_mean(s, &r, HALF - 2 * BESIDE, HALF + 2 * BESIDE, r.stress, 6) / left, 1, 0.02);
   body_rows_release(&r);
   bw_solid_destroy(&s);
   return BW_OK;
@@ -203,8 +207,8 @@ static bw_status waves(bw_validation *v)
   const pulse p = {0.35 * LONG, 60, c1};
   const double slow1 = 1 - 9 / (p.width * p.width) / 48, dt = 0.3 * bw_solid_dt_max(s);
   const double slow2 = 1 - 9 / pow(p.width * c2 / c1, 2) / 48;
-  const double until[] = {0.3 * LONG / c1, 1.2 * LONG / c1, 1.2 * LONG / c1 + 0.2 * LONG / c2};
-  double time = 0, came, back, P, x0, x1, y0, y1, skip;
+  const double until[] = {0.3 * LONG / c1, LONG / c1, LONG / c1 + 0.2 * LONG / c2};
+  double time = 0, came, back, passed, P, x0, x1, y0, y1, skip;
   start(s, &r, &p);
   half_sums(s, &r, 0, &came, &x0);
   BW_TRY(go(s, dt, until[0], &time));
@@ -213,15 +217,15 @@ static bw_status waves(bw_validation *v)
   BW_TRY(go(s, dt, until[1], &time));
   const double then = time;
   half_sums(s, &r, 0, &back, &skip);
-  half_sums(s, &r, 1, &P, &y0);
+  half_sums(s, &r, 1, &passed, &y0);
   BW_TRY(go(s, dt, until[2], &time));
   half_sums(s, &r, 1, &P, &y1);
-  const double error = 0.5 * fabs(ratio - 1);
-  claim(v, "speed_in_first_half", measured1, c1 * slow1, (error + 8e-4) * c1);
-  claim(v, "speed_in_second_half", (y1 - y0) / (time - then), c2 * slow2, (error + 8e-4) * c2);
+  const double error = 8e-4;
+  claim(v, "speed_in_first_half", measured1, c1 * slow1, error * c1);
+  claim(v, "speed_in_second_half", (y1 - y0) / (time - then), c2 * slow2, error * c2);
   const double Z1 = RHO * c1, Z2 = RHO2 * c2;
-  claim(v, "momentum_thrown_back", -back / came, (Z2 - Z1) / (Z2 + Z1), error + 5e-4);
-  claim(v, "momentum_kept", (back + P) / came, 1, 1e-9);
+  claim(v, "momentum_thrown_back", -back / came, (Z2 - Z1) / (Z2 + Z1), error);
+  claim(v, "momentum_kept", (back + passed) / came, 1, 1e4 * BW_REAL_EPSILON);
   body_rows_release(&r);
   bw_solid_destroy(&s);
   return BW_OK;

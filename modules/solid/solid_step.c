@@ -49,6 +49,8 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
 {
   bw_pd_body *pd = s->body;
   const bool damped = bw_pd_body_damped(pd), contact = s->contact != NULL;
+  s->evaluated++;
+  s->restored = false;
   internal_forces(pd, check);
   if (contact || damped || s->loaded)
     for (int k = 0; k < pd->dimension; k++)
@@ -290,7 +292,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
 bw_status bw_solid__begin(bw_solid *s)
 {
   impose(s);
-  return s->body->current ? BW_OK : bw_solid__evaluate(s, false);
+  return s->body->current ? BW_OK : bw_solid_evaluate(s);
 }
 
 void bw_solid__end(bw_solid *s)

@@ -350,13 +350,49 @@ START_TEST(contact_between_two_materials_takes_the_harmonic_mean)
 }
 END_TEST
 
-/* The halves part at a weak joint and are thrown at each other: the book closes over both. */
+static void stretch(const double X0[3], double u[3])
+{
+  u[0] = 0.01 * X0[0];
+  u[1] = u[2] = 0;
+}
+
+/* Elastic energy of two bonded particles at x and x + 1. */
+static double bond_energy(int32_t x, double A[6])
+{
+  bw_solid_config c = two_halves(BW_PD_3D);
+  c.horizon_ratio = 1;
+  c.surface_correction = BW_PD_SURFACE_NONE;
+  pd_body two = pd_box(2, 1, 1);
+  two.site[0] = x, two.site[3] = x + 1;
+  bw_solid *s = make(bw_check_world(), &c, &two, by_half);
+  pd_set(s, stretch, NULL);
+  const double energy = ledger_of(s).elastic;
+  pd_gather(s, bw_solid_get_acceleration, A);
+  bw_solid_destroy(&s);
+  pd_body_release(&two);
+  return energy;
+}
+
+/* E is 1 : 5: a bond across has 2 5/6 of the softer one's stiffness, and moves 2 and 6 of density. */
+START_TEST(a_bond_across_takes_the_harmonic_mean)
+{
+  double soft[6], across[6], stiff[6];
+  const double e = bond_energy(3, soft), e5 = bond_energy(9, stiff), em = bond_energy(7, across);
+  bw_check_near(e5 / e, 5, 1e4 * BW_REAL_EPSILON);
+  bw_check_near(em / e, 10.0 / 6, 1e4 * BW_REAL_EPSILON);
+  bw_check_near(across[0] / soft[0], 10.0 / 6, 1e4 * BW_REAL_EPSILON);
+  bw_check_near(across[3] / soft[3], 10.0 / 18, 1e4 * BW_REAL_EPSILON);
+  bw_check_near(stiff[0] / soft[0], 5.0 / 3, 1e4 * BW_REAL_EPSILON);
+}
+END_TEST
+
 static void meet_again(const double X0[3], double v[3])
 {
   v[0] = X0[0] < 4 ? 0.15 : -0.05;
   v[1] = v[2] = 0;
 }
 
+/* Halves that a pre-crack has parted are thrown at each other: the book closes over the bounce. */
 START_TEST(halves_that_parted_bounce)
 {
   bw_solid_config c = two_halves(BW_PD_3D);
@@ -457,6 +493,7 @@ static const bw_check_test tests[] = {
     BW_TEST(a_restart_goes_on_to_the_same_bits),
     BW_TEST(a_weak_joint_breaks_at_the_joint),
     BW_TEST(contact_between_two_materials_takes_the_harmonic_mean),
+    BW_TEST(a_bond_across_takes_the_harmonic_mean),
     BW_TEST(halves_that_parted_bounce),
     BW_TEST(weight_goes_with_density),
     BW_TEST(relaxation_and_linear_solve_agree_across_the_joint)};

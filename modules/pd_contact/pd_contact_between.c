@@ -95,6 +95,27 @@ static bw_status constants(bw_pd_contact_between *c)
   return BW_OK;
 }
 
+static int64_t revision_of(const bw_pd_contact_between *c)
+{
+  int64_t revision = 0;
+  for (int b = 0; b < c->n_body; b++)
+    revision += c->body[b]->revision;
+  return revision;
+}
+
+/* What is as long as the bodies' lists. */
+static bw_status arrays_of(bw_pd_contact_between *c)
+{
+  for (int b = 0; b < c->n_body; b++)
+    for (int k = 0; k < 3; k++) {
+      bw_release(&c->u_built[k][b]);
+      BW_TRY(BW_ALLOCATE(&c->u_built[k][b], c->body[b]->n));
+    }
+  c->revision = revision_of(c);
+  c->built = false;
+  return BW_OK;
+}
+
 static bw_status build(bw_pd_contact_between *c, int n, bw_pd_body *const body[])
 {
   BW_TRY(BW_ALLOCATE(&c->body, (size_t)n));
@@ -104,12 +125,10 @@ static bw_status build(bw_pd_contact_between *c, int n, bw_pd_body *const body[]
     c->period[k] = body[0]->config.period[k];
   }
   c->n_body = n;
-  for (int b = 0; b < n; b++) {
+  for (int b = 0; b < n; b++)
     c->body[b] = body[b];
-    for (int k = 0; k < 3; k++)
-      BW_TRY(BW_ALLOCATE(&c->u_built[k][b], body[b]->n));
-  }
   c->closest = INFINITY;
+  BW_TRY(arrays_of(c));
   return constants(c);
 }
 
@@ -169,21 +188,12 @@ static bool moved(const bw_pd_contact_between *c, int b)
   return far > 0;
 }
 
-static int64_t revision_of(const bw_pd_contact_between *c)
-{
-  int64_t revision = 0;
-  for (int b = 0; b < c->n_body; b++)
-    revision += c->body[b]->revision;
-  return revision;
-}
-
 static void remember(bw_pd_contact_between *c)
 {
   for (int b = 0; b < c->n_body; b++)
     for (size_t i = 0; i < c->body[b]->n; i++)
       for (int k = 0; k < 3; k++)
         c->u_built[k][b][i] = c->body[b]->u[k][c->body[b]->points.place[i]];
-  c->revision = revision_of(c);
   c->built = true;
 }
 
@@ -200,7 +210,9 @@ static void positions(bw_pd_contact_between *c)
 bw_status bw_pd_contact_between_update(bw_pd_contact_between *c)
 {
   const bw_comm *comm = c->body[0]->comm;
-  int64_t needed = !c->built || c->revision != revision_of(c);
+  /* Another set of particles: nothing that was listed holds. */
+  if (c->revision != revision_of(c)) BW_TRY(bw_comm_agree(comm, arrays_of(c)));
+  int64_t needed = !c->built;
   for (int b = 0; b < c->n_body && !needed; b++)
     needed = moved(c, b);
   bw_comm_max_int(comm, 1, &needed);

@@ -24,7 +24,7 @@ struct bw_pd_contact_between {
   bw_pd_pair *law; /* (n_kind, n_kind) owner's kind, other's; reach 0: the same body */
   double closest;  /* least distance of a pair over its reach so far */
   bool built;
-  int64_t revision; /* of all bodies at the last search */
+  int64_t revision; /* of all bodies that the arrays are for */
 
   size_t n_mine, n_theirs, n_sent, n_busy;
   bw_pd_between_row *mine; /* (n_mine) */

@@ -1,127 +1,6 @@
 /* Several solids in one space: contact between lattices of their own spacing, turn and material.
  * TEST ranks=1,2,3 */
-#include "bw_solid_set.h"
-#include "pd_test.h"
-
-#include <string.h>
-
-static const double TURN = 17 * 3.14159265358979323846 / 180;
-
-static void turn_about_y(bw_solid_config *c, double angle)
-{
-  const double axes[3][3] = {{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}};
-  memcpy(c->axes, axes, sizeof axes);
-}
-
-static pd_body ball_sites(int radius)
-{
-  const int side = 2 * radius + 1;
-  pd_body b = pd_box(side, side, side);
-  int64_t kept = 0;
-  for (int64_t q = 0; q < b.n; q++) {
-    const int32_t *s = b.site + 3 * q;
-    const double r2 = pow(s[0] - radius, 2) + pow(s[1] - radius, 2) + pow(s[2] - radius, 2);
-    if (r2 > (radius + 0.3) * (radius + 0.3)) continue;
-    memmove(b.site + 3 * kept++, s, 3 * sizeof *s);
-  }
-  b.n = kept;
-  return b;
-}
-
-/* A plate turned by 17 degrees and a ball of spacing 0.7 above it. */
-typedef struct {
-  bw_solid *plate, *ball;
-  bw_solid_set *set;
-} scene;
-
-static double speed[3];
-
-static void thrown(const double X0[3], double v[3])
-{
-  (void)X0;
-  memcpy(v, speed, sizeof speed);
-}
-
-static bw_solid_config plate_config(void)
-{
-  bw_solid_config c = pd_soft(BW_PD_3D);
-  c.ds = 1;
-  c.rho = 8;
-  c.E = 40;
-  turn_about_y(&c, TURN);
-  /* The middle of the plate's upper face is at the origin. */
-  const double half[3] = {6, 6, 3};
-  for (int k = 0; k < 3; k++)
-    c.origin[k] = 0;
-  for (int a = 0; a < 3; a++)
-    for (int k = 0; k < 3; k++)
-      c.origin[k] -= c.axes[a][k] * half[a];
-  return c;
-}
-
-static bw_solid_config ball_config(double height)
-{
-  bw_solid_config c = pd_soft(BW_PD_3D);
-  c.ds = 0.7;
-  c.rho = 3;
-  c.E = 7;
-  const double middle = 0.7 * 3.5;
-  const double at[3] = {0.3, -0.2, height};
-  for (int k = 0; k < 3; k++)
-    c.origin[k] = at[k] - middle;
-  return c;
-}
-
-static scene throw_ball(const bw_comm *comm, bw_solid_config plate, bw_solid_config ball,
-                        uint8_t kind, double v)
-{
-  scene s = {0};
-  pd_body flat = pd_box(12, 12, 3), round = ball_sites(3);
-  memset(flat.kind, kind, (size_t)flat.n);
-  s.plate = pd_make(comm, &plate, &flat);
-  s.ball = pd_make(comm, &ball, &round);
-  bw_check_ok(bw_solid_set_create(2, (bw_solid *[]){s.plate, s.ball}, &s.set));
-  memcpy(speed, (double[]){0.1 * v, 0.05 * v, -v}, sizeof speed);
-  pd_set(s.ball, NULL, thrown);
-  pd_body_release(&flat);
-  pd_body_release(&round);
-  return s;
-}
-
-static void scene_release(scene *s)
-{
-  bw_solid_set_destroy(&s->set);
-  bw_solid_destroy(&s->plate);
-  bw_solid_destroy(&s->ball);
-}
-
-static bw_solid_ledger book(const scene *s)
-{
-  bw_solid_ledger l = {0};
-  bw_check_ok(bw_solid_set_account(s->set, &l));
-  return l;
-}
-
-static double energy(const bw_solid_ledger *l)
-{
-  return l->kinetic + l->elastic + l->contact + l->retired + l->damping + l->fracture - l->external;
-}
-
-static void steps(const scene *s, int n, double dt)
-{
-  for (int q = 0; q < n; q++)
-    bw_check_ok(bw_solid_set_step(s->set, dt));
-}
-
-/* Upward momentum of the ball. */
-static double upward(const scene *s)
-{
-  return ledger_of(s->ball).momentum[2];
-}
-
-static const double THROW = 0.15; /* some 0.12 of the plate's wave speed */
-static const double HEIGHT = 3; /* of the ball's middle: its lowest particle is 0.9 over the face */
-static const double FLIGHT = 27; /* there and back again */
+#include "set_scene.h"
 
 /* Error of the energy over a bounce, relative, its root mean square over the time in contact, in steps of
  * `factor` of the stable one. */
@@ -173,20 +52,6 @@ START_TEST(a_ball_bounces_off_a_turned_plate)
   ck_assert_double_lt(coarse / fine, 5.3);
 }
 END_TEST
-
-static void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}
 
 START_TEST(a_bounce_does_not_depend_on_ranks)
 {
@@ -350,80 +215,6 @@ START_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact)
 }
 END_TEST
 
-/* In the middle of a bounce both solids go on from a checkpoint, in a new set. */
-START_TEST(a_restart_in_a_bounce_goes_on)
-{
-  scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  scene t = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.2 * bw_solid_set_dt(s.set);
-  int n = 0;
-  while (book(&s).contact < 0.02 && n++ < 2000)
-    steps(&s, 1, dt);
-  ck_assert_double_gt(book(&s).contact, 0);
-  pd_restart_from(s.plate, t.plate);
-  pd_restart_from(s.ball, t.ball);
-  const bw_solid_ledger before = book(&s), after = book(&t);
-  bw_check_near(energy(&after), energy(&before), 1e3 * BW_REAL_EPSILON);
-  steps(&s, 60, dt);
-  steps(&t, 60, dt);
-  compare(s.ball, t.ball, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
-  compare(s.plate, t.plate, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
-  scene_release(&s);
-  scene_release(&t);
-}
-END_TEST
-
-/* Retired in the middle of a bounce: no pairs any more, what was stored is booked or flies on. */
-START_TEST(a_retired_ball_is_left_alone)
-{
-  scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.2 * bw_solid_set_dt(s.set);
-  int n = 0;
-  while (book(&s).contact < 0.02 && n++ < 2000)
-    steps(&s, 1, dt);
-  ck_assert_int_gt(bw_solid_set_pairs(s.set), 0);
-  bool *gone = NULL;
-  bw_check_ok(BW_ALLOCATE(&gone, bw_solid_count(s.ball)));
-  for (size_t i = 0; i < bw_solid_count(s.ball); i++)
-    gone[i] = true;
-  bw_check_ok(bw_solid_retire(s.ball, gone));
-  const double before = upward(&s);
-  steps(&s, 20, dt);
-  ck_assert_int_eq(bw_solid_set_pairs(s.set), 0);
-  ck_assert_double_eq(book(&s).contact, 0);
-  ck_assert_double_eq(upward(&s), before);
-  bw_release(&gone);
-  scene_release(&s);
-}
-END_TEST
-
-/* A new state of one solid alone: forces between are those of the new state, once. */
-START_TEST(a_new_state_of_one_takes_the_forces_of_both_anew)
-{
-  scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.1 * bw_solid_set_dt(s.set);
-  int n = 0;
-  while (book(&s).contact < 0.02 && n++ < 4000)
-    steps(&s, 1, dt);
-  const size_t m = bw_solid_count(s.ball);
-  double *X = NULL, *V = NULL;
-  bw_check_ok(BW_ALLOCATE(&X, 3 * m));
-  bw_check_ok(BW_ALLOCATE(&V, 3 * m));
-  bw_solid_get_position(s.ball, X);
-  bw_solid_get_velocity(s.ball, V);
-  bw_solid_set_state(s.ball, X, V); /* what it was */
-  const bw_solid_ledger before = book(&s);
-  steps(&s, 40, dt);
-  const bw_solid_ledger after = book(&s);
-  for (int k = 0; k < 3; k++)
-    bw_check_near(after.momentum[k], before.momentum[k], 1e4 * BW_REAL_EPSILON);
-  bw_check_near(energy(&after) / energy(&before), 1, 0.002);
-  bw_release(&X);
-  bw_release(&V);
-  scene_release(&s);
-}
-END_TEST
-
 /* In the plane, with bodies that break where they hit. */
 START_TEST(discs_that_break_keep_their_book)
 {
@@ -457,54 +248,11 @@ START_TEST(discs_that_break_keep_their_book)
 }
 END_TEST
 
-static void refused(bw_solid_config c, bw_solid_config d, const char *word)
-{
-  pd_body one = pd_box(4, 4, 1);
-  bw_solid *two[] = {pd_make(bw_check_world(), &c, &one), pd_make(bw_check_world(), &d, &one)};
-  bw_solid_set *set = NULL;
-  bw_check_status(bw_solid_set_create(2, two, &set), BW_EINPUT);
-  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "%s", bw_last_message());
-  ck_assert_ptr_null(set);
-  for (int b = 0; b < 2; b++)
-    bw_solid_destroy(&two[b]);
-  pd_body_release(&one);
-}
-
-START_TEST(what_does_not_go_together_is_named)
-{
-  bw_solid_config c = pd_soft(BW_PD_3D), d = c;
-  d.origin[0] = 3;
-  d.integrator = BW_SOLID_RK3;
-  refused(c, d, "rk3");
-  d = c;
-  refused(c, d, "pierce");
-  d.origin[0] = 30, d.period[1] = 4;
-  refused(c, d, "period[1]");
-  c = pd_soft(BW_PD_PLANE_STRESS), d = c;
-  d.origin[0] = 3, d.thickness = 2;
-  refused(c, d, "thickness");
-  pd_body one = pd_box(4, 4, 1);
-  bw_solid *s = pd_make(bw_check_world(), &c, &one);
-  bw_solid_set *set = NULL;
-  bw_check_status(bw_solid_set_create(2, (bw_solid *[]){s, s}, &set), BW_EINPUT);
-  bw_check_ok(bw_solid_set_create(1, &s, &set));
-  bw_check_status(bw_solid_set_step(set, 2 * bw_solid_dt_max(s)), BW_ECFL);
-  bw_check_ok(bw_solid_set_step(set, bw_solid_set_dt(set)));
-  bw_solid_set_destroy(&set);
-  bw_solid_destroy(&s);
-  pd_body_release(&one);
-}
-END_TEST
-
 static const bw_check_test tests[] = {BW_TEST(a_ball_bounces_off_a_turned_plate),
                                       BW_TEST(a_bounce_does_not_depend_on_ranks),
                                       BW_TEST(a_held_body_pushes_and_its_work_is_booked),
                                       BW_TEST(a_body_that_passes_far_away_costs_no_pairs),
                                       BW_TEST(a_pair_takes_the_smaller_reach_and_the_harmonic_mean),
                                       BW_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact),
-                                      BW_TEST(a_restart_in_a_bounce_goes_on),
-                                      BW_TEST(a_retired_ball_is_left_alone),
-                                      BW_TEST(a_new_state_of_one_takes_the_forces_of_both_anew),
-                                      BW_TEST(discs_that_break_keep_their_book),
-                                      BW_TEST(what_does_not_go_together_is_named)};
+                                      BW_TEST(discs_that_break_keep_their_book)};
 BW_CHECK_MAIN("solid_set", tests)

@@ -237,6 +237,7 @@ static bw_status sum_moments(const joiner *j, const double V[], size_t n_mean, p
   for (size_t q = 0; q < n_mean; q++)
     (*out)[q].label = mean[q].label;
   for (size_t h = 0; h < j->n; h++) {
+    /* Everything is relative to the centre and its velocity, so that moments are those of the piece. */
     const piece *c = find(n_mean, mean, j->own[h].label);
     piece *p = &(*out)[c - mean];
     const double weight = weight_of(j, h);
@@ -286,6 +287,7 @@ static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fra
   const double mass = bw_solid_settings(j->pd)->rho * bw_solid_volume(j->pd);
   size_t n_mean = 0, n_moment = 0;
   piece *mean = NULL, *moment = NULL;
+  /* First round: centres and velocities of the pieces, the same list on all ranks. */
   bw_status st = bw_comm_agree(comm, sum_pieces(j, V, &n_mean, &mean));
   BW_THEN(st, bw_comm_agree(comm, share(comm, &n_mean, &mean)));
   for (size_t q = 0; st == BW_OK && q < n_mean; q++)
@@ -293,6 +295,7 @@ static bw_status measure(const joiner *j, const double V[], size_t *n, bw_pd_fra
       mean[q].X[d] /= mean[q].weight;
       mean[q].V[d] /= mean[q].weight;
     }
+  /* Second round: moments about those centres. */
   if (st == BW_OK) st = bw_comm_agree(comm, sum_moments(j, V, n_mean, mean, &n_moment, &moment));
   BW_THEN(st, bw_comm_agree(comm, share(comm, &n_moment, &moment)));
   BW_THEN(st, bw_comm_agree(comm, BW_ALLOCATE(out, n_mean)));

@@ -4,6 +4,8 @@
 #include "bw_pd_interface.h"
 #include "groups.h"
 
+#include <string.h>
+
 static void part(const double X0[3], double v[3])
 {
   v[0] = X0[0] < 4 ? -0.03 : 0.01;
@@ -181,8 +183,47 @@ START_TEST(halves_that_parted_bounce)
 }
 END_TEST
 
+static void refused(const bw_solid_config *c, grouping of, const char *words)
+{
+  pd_body body = bar(true);
+  bw_solid *s = NULL;
+  uint8_t *group = NULL;
+  bw_check_ok(BW_ALLOCATE(&group, (size_t)body.n));
+  for (int64_t q = 0; q < body.n; q++)
+    group[q] = of(body.site + 3 * q);
+  const bw_pd_sites given = {
+      .n = bw_comm_rank(bw_check_world()) == 0 ? body.n : 0, .site = body.site, .group = group};
+  bw_check_status(bw_solid_create(bw_check_world(), c, &given, &s), BW_EINPUT);
+  /* Other ranks are told by whom. */
+  if (bw_comm_rank(bw_check_world()) == 0)
+    ck_assert_msg(strstr(bw_last_message(), words) != NULL, "%s", bw_last_message());
+  bw_release(&group);
+  pd_body_release(&body);
+}
+
+static uint8_t third(const int32_t site[3])
+{
+  return site[0] == 5 ? 2 : 0;
+}
+
+START_TEST(what_is_wrong_with_a_group_is_named)
+{
+  const bw_solid_config good = two_halves(BW_PD_PLANE_STRESS);
+  bw_solid_config c = good;
+  c.more[0].E = 0;
+  refused(&c, by_half, "more[0].E");
+  c = good;
+  c.more[0].nu = 0.3;
+  refused(&c, by_half, "nu = 0.3");
+  c = good;
+  c.joint_G0[0][1] = 2;
+  refused(&c, by_half, "joint_G0[0][1]");
+  refused(&good, third, "group 2");
+}
+END_TEST
+
 static const bw_check_test tests[] = {
     BW_TEST(a_weak_joint_breaks_at_the_joint), BW_TEST(a_bond_across_takes_the_harmonic_mean),
     BW_TEST(contact_between_two_materials_takes_the_harmonic_mean),
-    BW_TEST(halves_that_parted_bounce)};
+    BW_TEST(halves_that_parted_bounce), BW_TEST(what_is_wrong_with_a_group_is_named)};
 BW_CHECK_MAIN("solid_joint", tests)

@@ -50,26 +50,27 @@ void bw_coupler__bodies_release(bw_coupler *c)
 void bw_coupler__push_solid(bw_coupler *c)
 {
   const bool probed = c->config.load == BW_LOAD_PROBES;
-  const double excess = bw_solid_settings(c->solid)->rho - c->config.rho;
-  double more[3];
-  for (int d = 0; d < 3; d++)
-    /* Weight less buoyancy. */
-    more[d] = excess * c->config.gravity[d];
   /* The gradient that drives the fluid pushes the solid's volume as well (ERRATA 31). */
-  if (probed) more[0] += c->config.rho * bw_ns_channel_driving(c->fluid);
+  const double driven = probed ? c->config.rho * bw_ns_channel_driving(c->fluid) : 0.0;
   /* V is scratch here: velocities are read anew after the solid has moved. */
-  for (size_t i = 0; i < c->n; i++)
-    for (int d = 0; d < 3; d++)
-      c->V[3 * i + d] = c->F[3 * i + d] + more[d];
+  for (size_t i = 0; i < c->n; i++) {
+    const double excess = bw_solid_density(c->solid, i) - c->config.rho;
+    for (int d = 0; d < 3; d++) {
+      /* Weight less buoyancy. */
+      double more = excess * c->config.gravity[d];
+      if (d == 0 && probed) more += driven;
+      c->V[3 * i + d] = c->F[3 * i + d] + more;
+    }
+  }
   bw_solid_set_force(c->solid, c->V);
 }
 
-/* Is the whole cube of a particle at x beyond an outflow (open), or any side of the box? */
-static bool is_beyond(const bw_coupler *c, const double x[3], bool open_only)
+/* Is the whole cube of particle i, at x, beyond an outflow (open), or any side of the box? */
+static bool is_beyond(const bw_coupler *c, size_t i, const double x[3], bool open_only)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   /* To leave, all of the cube has to be outside; to be inside, its centre. */
-  const double half = open_only ? 0.5 * bw_solid_settings(c->solid)->ds : 0.0;
+  const double half = open_only ? 0.5 * bw_solid_spacing(c->solid, i) : 0.0;
   for (int d = 0; d < 3; d++) {
     if (g->periodic[d] || (g->n[d] == 1 && g->halo[d] == 0)) continue;
     if ((!open_only || c->open[d][0]) && x[d] < -half) return true;
@@ -83,7 +84,7 @@ double bw_coupler__wetted(bw_coupler *c)
   size_t n = 0;
   bw_solid_get_position(c->solid, c->X);
   for (size_t i = 0; i < c->n; i++)
-    n += !is_beyond(c, c->X + 3 * i, false);
+    n += !is_beyond(c, i, c->X + 3 * i, false);
   return (double)n * bw_solid_volume(c->solid);
 }
 
@@ -95,7 +96,7 @@ static int64_t find_beyond(bw_coupler *c)
   bw_solid_get_position(c->solid, c->X);
   /* Held particles stay, retired ones are gone already. */
   for (size_t i = 0; i < c->n; i++) {
-    c->gone[i] = !(kind[i] & settled) && is_beyond(c, c->X + 3 * i, true);
+    c->gone[i] = !(kind[i] & settled) && is_beyond(c, i, c->X + 3 * i, true);
     n += c->gone[i];
   }
   bw_comm_sum_int(bw_solid_comm(c->solid), 1, &n);
@@ -147,15 +148,16 @@ bw_status bw_coupler__let_go(bw_coupler *c)
 void bw_coupler__count_mass(bw_coupler *c, double mass[3])
 {
   const uint8_t *kind = bw_solid_kind(c->solid);
-  const double of_one = bw_solid_settings(c->solid)->rho * bw_solid_volume(c->solid);
-  int64_t count[3] = {0};
+  const double rho = bw_solid_settings(c->solid)->rho, of_one = rho * bw_solid_volume(c->solid);
+  double count[3] = {0};
   bw_solid_get_position(c->solid, c->X);
-  /* Counted, not summed: the three add up to all particles to the last bit. */
+  /* Counted by the density of the first group: with one group the three add up to all particles to
+   * the last bit. */
   for (size_t i = 0; i < c->n; i++) {
-    const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, c->X + 3 * i, false);
-    count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0]++;
+    const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, i, c->X + 3 * i, false);
+    count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0] += bw_solid_density(c->solid, i) / rho;
   }
-  bw_comm_sum_int(bw_solid_comm(c->solid), 3, count);
+  bw_comm_sum(bw_solid_comm(c->solid), 3, count);
   for (int q = 0; q < 3; q++)
-    mass[q] = of_one * (double)count[q];
+    mass[q] = of_one * count[q];
 }

@@ -3,6 +3,7 @@
 #include "pd_body.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double MOST_DISORDER = 0.4; /* neighbours stay 0.2 ds apart */
 
@@ -20,18 +21,43 @@ static bw_status positive(const char *name, double value, bool infinite_allowed)
   return BW_OK;
 }
 
+/* The same of a group; the first one's keys have no prefix. */
+static bw_status positive_of(int group, const char *key, double value, bool infinite_allowed)
+{
+  char name[32];
+  if (group == 0) return positive(key, value, infinite_allowed);
+  snprintf(name, sizeof name, "more[%d].%s", group - 1, key);
+  return positive(name, value, infinite_allowed);
+}
+
+/* Both ends of a bond have to decide alike whether it breaks. */
+static bw_status check_joints(const bw_pd_body_config *c)
+{
+  for (int g = 0; g < c->n_group; g++)
+    for (int h = 0; h < c->n_group; h++) {
+      const double G0 = c->joint_G0[g][h], back = c->joint_G0[h][g];
+      if (g == h || (isnan(G0) && isnan(back))) continue;
+      BW_REQUIRE(G0 > 0 && G0 == back, BW_EINPUT,
+                 "solid: joint_G0[%d][%d] = %g and joint_G0[%d][%d] = %g must be positive and the "
+                 "same; leave both out for the smaller G0 of the two groups",
+                 g, h, G0, h, g, back);
+    }
+  return BW_OK;
+}
+
 static bw_status check_positive(const bw_pd_body_config *c)
 {
   BW_TRY(positive("ds", c->ds, false));
   BW_REQUIRE(c->n_group >= 1 && c->n_group <= BW_PD_GROUPS, BW_EINPUT,
              "solid: n_group = %d must be from 1 to %d", c->n_group, (int)BW_PD_GROUPS);
   for (int g = 0; g < c->n_group; g++) {
-    BW_TRY(positive("rho", c->material[g].rho, false));
-    BW_TRY(positive("E", c->material[g].E, false));
+    BW_TRY(positive_of(g, "rho", c->material[g].rho, false));
+    BW_TRY(positive_of(g, "E", c->material[g].E, false));
   }
   BW_TRY(positive("thickness", c->thickness, false));
   for (int g = 0; g < c->n_group; g++)
-    BW_TRY(positive("G0", c->material[g].G0, true));
+    BW_TRY(positive_of(g, "G0", c->material[g].G0, true));
+  BW_TRY(check_joints(c));
   BW_TRY(positive("horizon_ratio", c->horizon_ratio, false));
   BW_REQUIRE(c->horizon_ratio >= 1 && c->horizon_ratio <= 12, BW_EINPUT,
              "solid: horizon_ratio = %g is outside 1 .. 12; 3 is usual", c->horizon_ratio);

@@ -138,6 +138,33 @@ static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
   return n;
 }
 
+/* The group of a block's owners and of all their neighbours, also of those whose bonds break later;
+ * BW_PD_MIXED where they differ. */
+static uint8_t group_of(const bw_pd_body *pd, const bw_pd_block *block)
+{
+  int group = -1;
+  for (int lane = 0; lane < BW_PD_LANES; lane++) {
+    if (!(block->mask >> lane & 1)) continue;
+    const int own = bw_pd_body_group_at(pd, block->first + lane);
+    if (group >= 0 && own != group) return BW_PD_MIXED;
+    group = own;
+    for (uint32_t q = block->slot; q < block[1].slot; q++) {
+      const bw_pd_slot *slot = &pd->bonds.slot[q];
+      if (!(slot->family >> lane & 1)) continue;
+      if (bw_pd_body_group_at(pd, slot->base + lane) != group) return BW_PD_MIXED;
+    }
+  }
+  return (uint8_t)group;
+}
+
+/* Kernels look a block's material up once: here its group is decided. */
+static void block_groups(bw_pd_body *pd)
+{
+  if (pd->config.n_group == 1) return; /* 0 everywhere */
+  for (size_t b = 0; b < pd->bonds.n_block; b++)
+    pd->bonds.block[b].group = group_of(pd, &pd->bonds.block[b]);
+}
+
 /* near: site -> extended index. */
 bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
 {
@@ -166,5 +193,6 @@ bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
   /* Each bond counts from both of its ends, on whichever rank. */
   for (size_t q = 0; q < pd->bonds.n_slot; q++)
     pd->bonds.directed += __builtin_popcount(pd->bonds.slot[q].family);
+  block_groups(pd);
   return BW_OK;
 }

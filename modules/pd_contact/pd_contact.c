@@ -9,8 +9,7 @@
 
 #include <math.h>
 
-static const double K_CONTACT = 15; /* k_c/c0: Macek & Silling 2007 */
-static const double SKIN = 0.5;     /* of the search, in ds: a new one after a move of ds/4 */
+static const double SKIN = 0.5; /* of the search, in ds: a new one after a move of ds/4 */
 
 /* Between two materials the harmonic mean of their stiffnesses. */
 static bw_pd_pair pair_law(const bw_pd_body *pd, int g, int h)
@@ -21,7 +20,7 @@ static bw_pd_pair pair_law(const bw_pd_body *pd, int g, int h)
   const double modulus = g == h ? a : 2 * a * b / (a + b);
   /* An acceleration of h: its own density below, the partner's volume above. */
   return (bw_pd_pair){.reach = pd->level->ds,
-                      .k = K_CONTACT * modulus * pd->level->dv / m[g].rho,
+                      .k = BW_PD_CONTACT_STIFFNESS * modulus * pd->level->dv / m[g].rho,
                       .weight = m[g].rho / m[0].rho,
                       .closest = INFINITY};
 }

@@ -8,6 +8,8 @@
 #include "bw_pd_contact.h"
 #include "pd_law.h"
 
+enum { BW_PD_CONTACT_STIFFNESS = 15 }; /* k_c/c: Macek & Silling 2007 */
+
 typedef struct {
   int32_t particle;
   int8_t wall;
@@ -64,6 +66,8 @@ bw_status bw_pd_contact__wall_search(bw_pd_contact *c) BW_MUST_CHECK;
 bw_status bw_pd_contact__wall_update(bw_pd_contact *c) BW_MUST_CHECK;
 double bw_pd_contact__wall_act(bw_pd_contact *c, bool force);
 
+/* Present position, in space and in lattice axes. */
+void bw_pd_contact__place(const bw_pd_body *pd, size_t i, double X[3]);
 void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_contact *c) BW_MUST_CHECK; /* Collective. */
 /* pd_contact_share.c: from the candidates in mine: sent, plan, and y, site, group, shift of own and

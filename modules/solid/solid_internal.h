@@ -23,13 +23,14 @@ struct bw_solid {
   bw_real *v_before[3], *a_before[3]; /* (n) RK3's previous stage */
   bool loaded;                        /* load.extra may differ from zero */
   bool restored;                      /* a was given by set_restart */
+  int64_t evaluated;                  /* raised when the forces were: what a set added is gone */
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
   bw_solid_book book;
 };
 
-/* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. leap: BW_EDIVERGED when
- * a particle moved more than a horizon. */
+/* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. begin is collective and its
+ * status the same on all ranks; leap: BW_EDIVERGED when a particle moved more than a horizon. */
 bw_status bw_solid__begin(bw_solid *s) BW_MUST_CHECK;
 bw_status bw_solid__leap(bw_solid *s, double dt) BW_MUST_CHECK;
 void bw_solid__land(bw_solid *s, double dt);

@@ -52,6 +52,8 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
 {
   bw_pd_body *pd = s->body;
   const bool damped = bw_pd_body_damped(pd), contact = s->contact != NULL;
+  s->evaluated++;
+  s->restored = false;
   internal_forces(pd, check);
   /* Zeroed once more after the last load went, then left alone. */
   if (contact || damped || s->loaded)

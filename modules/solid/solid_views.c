@@ -101,6 +101,21 @@ double bw_solid_volume(const bw_solid *s)
   return s->body->level->dv;
 }
 
+int bw_solid_group(const bw_solid *s, size_t i)
+{
+  return s->body->points.group[i];
+}
+
+double bw_solid_density(const bw_solid *s, size_t i)
+{
+  return bw_pd_body_material(s->body, i)->rho;
+}
+
+double bw_solid_spacing(const bw_solid *s, size_t i)
+{
+  return bw_pd_body_level(s->body, i)->ds;
+}
+
 void bw_solid_get_reference(const bw_solid *s, double X0[])
 {
   bw_pd_body_get_reference(s->body, X0);

@@ -62,7 +62,7 @@ bw_status bw_solid_load_traction(const bw_solid *s, const double lower[3], const
              lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]);
   for (size_t i = 0; i < pd->n; i++)
     for (int k = 0; k < pd->dimension && in_box(pd, i, lower, upper); k++) /* sum F dV = t A */
-      F[3 * i + (size_t)k] += traction[k] * area / ((double)chosen * pd->level->dv);
+      F[3 * i + (size_t)k] += traction[k] * area / ((double)chosen * bw_pd_body_level(pd, i)->dv);
   return BW_OK;
 }
 

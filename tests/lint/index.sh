@@ -47,7 +47,7 @@ check_index docs/theory.md >"$work/found"
 while read -r line; do complain "$line"; done <"$work/found"
 
 # Pairs "`function` (`file`)" of the errata.
-grep -oE '`[a-z0-9_]+` \(`[A-Za-z0-9_./-]+`\)' docs/errata.md | tr -d '`()' | sort -u >"$work/pairs"
+tr '\n' ' ' <docs/errata.md | grep -oE '`[a-z0-9_]+` \(`[A-Za-z0-9_./-]+`\)' | tr -d '`()' | sort -u >"$work/pairs"
 [ "$(wc -l <"$work/pairs")" -ge 20 ] || complain "docs/errata.md: too few functions were read"
 while read -r function file; do
   [ ! -f "$file" ] || defined "$function" "$file" || echo "docs/errata.md: $function is not defined in $file"

@@ -17,18 +17,18 @@ static void check_pieces(bw_solid *s)
 {
   const bw_pd_interface_config config = bw_pd_interface_config_default();
   bw_pd_interface *interface = NULL;
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0;
+  bw_pd_fragments all;
   bw_check_ok(bw_pd_interface_create(s, &config, &interface));
-  bw_check_ok(bw_pd_interface_fragments(interface, NULL, &n, &piece));
-  ck_assert_uint_eq(n, 2);
+  bw_check_ok(bw_pd_interface_fragments(interface, NULL, &all));
+  ck_assert_int_eq(all.total, 2);
+  const bw_pd_fragment *piece = all.largest;
   bw_check_near(piece[0].mass, 2 * 128 * 0.125, 1e-12);
   bw_check_near(piece[1].mass, 6 * 128 * 0.125, 1e-12);
   double P = 0;
-  for (size_t q = 0; q < n; q++)
+  for (size_t q = 0; q < all.n_largest; q++)
     P += piece[q].mass * piece[q].velocity[0];
   bw_check_near(P, ledger_of(s).momentum[0], 1e5 * BW_REAL_EPSILON);
-  bw_release(&piece);
+  bw_pd_fragment_release(&all);
   bw_pd_interface_destroy(&interface);
 }
 

@@ -18,8 +18,8 @@ BW_BEGIN_DECLS
 
 /* Where messages travel. */
 typedef struct {
-  MPI_Comm mpi;
-  int tag;
+  MPI_Comm mpi; /* the group of ranks */
+  int tag;      /* that tells these messages from others */
   size_t limit; /* [bytes] of a piece, 1 .. INT_MAX, the same on all ranks */
 } bw_message_way;
 

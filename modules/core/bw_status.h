@@ -28,14 +28,17 @@ BW_BEGIN_DECLS
  * against the format, which is argument number `fmt`. */
 #define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
 
-/* What a function returns, and what a program exits with (see BW_STATUS_LIST). The attribute on the
- * type covers static functions and pointers to functions as well; clang alone knows it
- * (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
 #ifdef __clang__
-typedef enum BW_MUST_CHECK {
+/* The same on a type, which covers static functions and pointers to functions as well. clang alone
+ * knows it (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
+#define BW_MUST_CHECK_TYPE BW_MUST_CHECK
 #else
-typedef enum {
+/* Nothing, where the compiler knows no such attribute of a type. */
+#define BW_MUST_CHECK_TYPE
 #endif
+
+/* What a function returns, and what a program exits with (see BW_STATUS_LIST). */
+typedef enum BW_MUST_CHECK_TYPE {
 #define X(name, value, text) name = value,
   BW_STATUS_LIST(X)
 #undef X

@@ -114,8 +114,8 @@ void bw_solid_enable_breakage(bw_solid *solid, bool on);
 void bw_solid_set_damping(bw_solid *solid, double pair, double mean, double absolute);
 
 /* New fracture energy of the first group [M/T^2], and so of its joints without a joint_G0. The same
- * on all ranks. Local. */
-void bw_solid_set_G0(bw_solid *solid, double G0);
+ * on all ranks; the stable step is found anew. BW_EINPUT unless positive. Collective. */
+bw_status bw_solid_set_G0(bw_solid *solid, double G0) BW_MUST_CHECK;
 
 /* Plane walls that the particles do not cross (contact only; replaces earlier ones; n = 0: none).
  * The domain lies where normal.X > offset, normal a unit vector into it. A particle is pushed by

@@ -13,11 +13,13 @@ void bw_solid_set_damping(bw_solid *s, double pair, double mean, double absolute
   bw_pd_body_set_damping(s->body, pair, mean, absolute);
 }
 
-void bw_solid_set_G0(bw_solid *s, double G0)
+bw_status bw_solid_set_G0(bw_solid *s, double G0)
 {
-  /* c0 and s0 are the law's: it makes its constants anew. */
+  BW_REQUIRE(G0 > 0, BW_EINPUT, "solid: G0 = %g must be positive", G0);
   s->config.G0 = s->body->config.material[0].G0 = G0;
   s->body->law->constants(s->body);
+  /* A law that stiffens up to its limit has another stable step with another limit. */
+  return s->body->law->bound(s->body);
 }
 
 void bw_solid_set_force(bw_solid *s, const double F[])

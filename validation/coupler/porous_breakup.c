@@ -135,7 +135,7 @@ static bw_status coarse_runs(bw_validation *v, porous_run *p, const char *path)
                                                        round(q->medium.length / ds) *
                                                        q->domain.cells[2];
   for (int s = 0; s < 3; s++) {
-    bw_solid_set_G0(p->solid, to_coarse * G0_S[s]);
+    BW_TRY(bw_solid_set_G0(p->solid, to_coarse * G0_S[s]));
     BW_TRY(advance(p, PHASE_BREAKAGE, 3e-3));
     BW_TRY(porous_measure(p, o.last));
     rows(v, run_name[s], q, &o);

@@ -164,7 +164,7 @@ static bw_status cut(bw_validation *v, int surface, int h)
   body_rows r;
   c.G0 = 1;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){24, h, 1}, NULL, NULL, &pd));
-  bw_solid_set_G0(pd, s0 * s0 / (bw_solid_critical_stretch(pd) * bw_solid_critical_stretch(pd)));
+  BW_TRY(bw_solid_set_G0(pd, s0 * s0 / pow(bw_solid_critical_stretch(pd), 2)));
   BW_TRY(body_rows_make(pd, &r));
   for (size_t i = 0; i < 3 * bw_solid_count(pd); i++)
     r.X[i] = r.X0[i] * (1 + s0);

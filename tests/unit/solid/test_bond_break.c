@@ -66,7 +66,7 @@ START_TEST(unbreakable_at_one_end_is_enough)
   bw_solid_destroy(&pd);
   pd = pair(0.002, BW_PD_PRESCRIBED);
   ck_assert_int_eq(broken_after_step(pd, 3 * bw_solid_critical_stretch(pd)), 1);
-  bw_solid_set_G0(pd, 0.01);
+  bw_check_ok(bw_solid_set_G0(pd, 0.01));
   bw_check_near(bw_solid_critical_stretch(pd), sqrt(5 * 0.01 / (6 * 3 * 1.5)), 1e-12);
   bw_solid_destroy(&pd);
 }

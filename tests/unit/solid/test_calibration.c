@@ -78,7 +78,7 @@ START_TEST(fracture_energy_is_exact)
             energy += 0.5 * c0 * s0 * s0 * r * bw_solid_stencil_fraction(pd, q) * dv * dv;
       }
       bw_check_near(energy / (dv / 0.5), turn == 0 ? 7 : 21, 1e-9); /* area dv/ds */
-      bw_solid_set_G0(pd, 21);
+      bw_check_ok(bw_solid_set_G0(pd, 21));
     }
     bw_solid_destroy(&pd);
     pd_body_release(&one);

@@ -150,7 +150,8 @@ START_TEST(relaxation_breaks_what_is_beyond)
   bw_check_ok(bw_solid_static_relax(pd, &config, &report));
   ck_assert_int_eq(report.broken, 0);
   const double elastic = ledger_of(pd).elastic;
-  bw_solid_set_G0(pd, 1e-6); /* s0 = sqrt(5 G0/(6 E delta)) = 5e-4; the strain is near 1e-2 */
+  bw_check_ok(
+      bw_solid_set_G0(pd, 1e-6)); /* s0 = sqrt(5 G0/(6 E delta)) = 5e-4; the strain is near 1e-2 */
   const bw_status st = bw_solid_static_relax(pd, &config, &report);
   ck_assert_msg(st == BW_OK, "%s", bw_last_message());
   ck_assert_int_gt(report.broken, 20);

@@ -22,10 +22,11 @@ int bw_finish(bw_comm **world, bw_status mine);
 /* A group of this rank alone (for serial programs and tests inside a parallel run). Local. */
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 
-/* The same ranks as a group of its own, whose messages do not meet those of `comm`. What is longer than
- * `limit` bytes (1 .. INT_MAX; 0: as `comm`) travels in several MPI messages: a small limit lets a test
- * see that, the default of 1 GiB is below what an MPI count can say. Results do not depend on it, but for
- * the order in which sums add. Destroyed by the caller. On failure *out is NULL. Collective. */
+/* The same ranks as a group of its own, whose messages do not meet those of `comm`. What is longer
+ * than `limit` bytes (1 .. INT_MAX; 0: as `comm`) travels in several MPI messages: a small limit
+ * lets a test see that, the default of 1 GiB is below what an MPI count can say. Results do not
+ * depend on it, but for the order in which sums add. Destroyed by the caller. On failure *out is
+ * NULL. Collective. */
 bw_status bw_comm_copy(const bw_comm *comm, size_t limit, bw_comm **out) BW_MUST_CHECK;
 void bw_comm_destroy(bw_comm **comm); /* NULL is fine; the world is freed by bw_finish */
 
@@ -38,7 +39,7 @@ MPI_Comm bw_comm_mpi(const bw_comm *comm);         /* for libraries that want it
  * replaces the others'. Call before branching on a result that may differ. Collective. */
 bw_status bw_comm_agree(const bw_comm *comm, bw_status mine) BW_MUST_CHECK;
 
-/* Element-wise over ranks, in place, result on all ranks; any n, the same on all ranks. Collective. */
+/* Element-wise over ranks, in place, result on all ranks; any n, the same on all. Collective. */
 void bw_comm_sum(const bw_comm *comm, size_t n, double x[]);
 void bw_comm_max(const bw_comm *comm, size_t n, double x[]);
 void bw_comm_min(const bw_comm *comm, size_t n, double x[]);
@@ -52,10 +53,10 @@ int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x);
 /* Rank 0's bytes on all ranks; any number, the same on all ranks. Collective. */
 void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data);
 
-/* Bytes of every rank, in rank order, on rank 0 (gather) or on all (allgather). *out is
- * allocated and owned by the caller (bw_release); NULL on ranks that receive nothing.
- * *total counts its bytes; any number, each rank its own. BW_EMEM on all ranks where they do not fit into
- * the memory of one. Collective. */
+/* Bytes of every rank, in rank order, on rank 0 (gather) or on all (allgather). *out is allocated
+ * and owned by the caller (bw_release); NULL on ranks that receive nothing. *total counts its
+ * bytes; any number, each rank its own. BW_EMEM on all ranks where they do not fit into the memory
+ * of one. Collective. */
 bw_status bw_comm_gather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
                          void **out) BW_MUST_CHECK;
 bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,

@@ -19,8 +19,8 @@ BW_BEGIN_DECLS
 
 /* Where messages travel. */
 typedef struct {
-  MPI_Comm mpi;
-  int tag;
+  MPI_Comm mpi; /* the communicator that they travel on */
+  int tag;      /* of all of them; each use of a communicator has its own */
   size_t limit; /* [bytes] of a piece, 1 .. INT_MAX, the same on all ranks */
 } bw_message_way;
 

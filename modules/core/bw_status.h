@@ -28,18 +28,21 @@ BW_BEGIN_DECLS
  * against the format, which is argument number `fmt`. */
 #define BW_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
 
-/* What a function returns, and what a program exits with (see BW_STATUS_LIST). The attribute on the
- * type covers static functions and pointers to functions as well; clang alone knows it
- * (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
+/* On the type the attribute covers static functions and pointers to functions as well. Clang alone
+ * knows it there (tests/lint/statuses.sh), so that declarations in headers have BW_MUST_CHECK. */
 #ifdef __clang__
-typedef enum BW_MUST_CHECK {
+#define BW_STATUS_ATTRIBUTE BW_MUST_CHECK
 #else
-typedef enum {
+#define BW_STATUS_ATTRIBUTE
 #endif
+
+/* What a function returns, and what a program exits with (see BW_STATUS_LIST). */
+typedef enum BW_STATUS_ATTRIBUTE {
 #define X(name, value, text) name = value,
   BW_STATUS_LIST(X)
 #undef X
 } bw_status;
+#undef BW_STATUS_ATTRIBUTE
 
 /* Record the message (printf's format, cut at 4095 bytes) as this thread's last one and return
  * `code` unchanged. `file` and `line` say where, for a debugger. Use through BW_FAIL. Local. */

@@ -9,6 +9,7 @@
 extern "C" {
 #endif
 
+/* What a user chooses. */
 typedef struct {
   double lower[3], upper[3]; /* corners of the box of the centres [L]           required */
   double radius_min;         /* the smallest radius [L]                         required */

@@ -66,7 +66,8 @@ static inline bool porous(const int at[3])
 
 static inline bool full(const int at[3])
 {
-  return at[0] == at[0];
+  (void)at;
+  return true;
 }
 
 /* n sites scattered over a box, every one once. */

@@ -106,9 +106,8 @@ struct bw_coupler {
 bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
-/* Velocity (n_surface,3) of points that far outside the surface particles' centres, and of the
- * markers, by the solid's present velocities; c->spin and c->V are current after. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[]);
+/* Velocity (n_surface,3) of points that far inside the nominal surface, and of the markers, by the solid's present velocities; c->spin and c->V are current after. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[]);
 void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
 /* Sets c->V of the surface particles to what makes the markers move at V (n_surface,3). Collective.
  */
@@ -142,11 +141,11 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__blocks_reaction(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
-/* How far outside the particles' centres markers sit. Local. */
-double bw_coupler__marker_offset(const bw_coupler *c);
+/* How far inside the nominal surface markers sit. Local. */
+double bw_coupler__marker_depth(const bw_coupler *c);
 /* c->force to the particles, c->load (Collective); that, relaxed, to their force density F (Local).
  */
-void bw_coupler__carry_force(bw_coupler *c, double out);
+void bw_coupler__carry_force(bw_coupler *c, double depth);
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation);
 void bw_coupler__state_release(bw_coupler__state *s);
 bw_status bw_coupler__state_create(const bw_coupler *c,

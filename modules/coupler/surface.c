@@ -17,15 +17,21 @@ static bool within_box(const bw_grid_view *g, const double x[3])
   return true;
 }
 
-/* How far outside the particles' centres markers sit (ERRATA 21). */
-double bw_coupler__marker_offset(const bw_coupler *c)
+/* How far inside the nominal surface markers sit (ERRATA 21). */
+double bw_coupler__marker_depth(const bw_coupler *c)
 {
-  return 0.5 * bw_solid_settings(c->solid)->ds - c->config.retraction * c->h;
+  return c->config.retraction * c->h;
 }
 
-/* Velocity V of the points at a distance `out` from the surface particles, along their normals, and
- * their spin; computed once for each motion of the solid. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
+/* How far outside a particle's centre a point is that lies `depth` inside the nominal surface. */
+static double outside(const bw_coupler *c, int32_t particle, double depth)
+{
+  return 0.5 * bw_solid_spacing(c->solid, (size_t)particle) - depth;
+}
+
+/* Velocity V of the points `depth` inside the nominal surface, along the normals of the surface
+ * particles, and their spin; computed once for each motion of the solid. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[])
 {
   /* Collective, and therefore once for each motion of the solid. */
   if (!c->motion_known) {
@@ -36,6 +42,7 @@ void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
   for (size_t q = 0; q < c->n_surface; q++) {
     /* V + out spin x N: a surface that turns moves faster than its particles' centres. */
     const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
+    const double out = outside(c, c->particle[q], depth);
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       c->spin[3 * q + (size_t)d] = spin[d];
@@ -47,7 +54,7 @@ void bw_coupler__surface_velocity(bw_coupler *c, double out, double V[])
 
 void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 {
-  bw_coupler__surface_velocity(c, bw_coupler__marker_offset(c), V);
+  bw_coupler__surface_velocity(c, bw_coupler__marker_depth(c), V);
 }
 
 void bw_coupler__tell_surface(bw_coupler *c, const double V[])
@@ -66,10 +73,11 @@ static void place(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_pd_surface s = bw_pd_interface_surface(c->interface);
-  const double out = 0.5 * bw_solid_settings(c->solid)->ds, in = bw_coupler__marker_offset(c);
+  const double depth = bw_coupler__marker_depth(c);
   size_t n = 0;
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
+    const double out = outside(c, s.particle[q], 0.0), in = outside(c, s.particle[q], depth);
     /* Ghost layers and what has left do not meet the fluid. */
     if (!within_box(g, X)) continue;
     for (int d = 0; d < 3; d++) {
@@ -223,7 +231,7 @@ static void surface_motion(bw_coupler *c, double dt)
 {
   const double drive[3] = {bw_ns_channel_driving(c->fluid)};
   /* On the nominal surface, where probes begin. */
-  bw_coupler__surface_velocity(c, 0.5 * bw_solid_settings(c->solid)->ds, c->root_V);
+  bw_coupler__surface_velocity(c, 0.0, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (int d = 0; d < 3; d++) {
@@ -285,9 +293,9 @@ static double power(bw_coupler *c)
   return sum * bw_solid_volume(c->solid);
 }
 
-/* c->load: the surface points' forces, which act `out` outside the particles' centres, on the
- * particles: force, moment and power are the same. */
-void bw_coupler__carry_force(bw_coupler *c, double out)
+/* c->load: the surface points' forces, which act `depth` inside the nominal surface, on the particles:
+ * force, moment and power are the same. */
+void bw_coupler__carry_force(bw_coupler *c, double depth)
 {
   memset(c->load, 0, 3 * c->n * sizeof *c->load);
   memset(c->moment, 0, 3 * c->n * sizeof *c->moment);
@@ -296,6 +304,7 @@ void bw_coupler__carry_force(bw_coupler *c, double out)
     const double *N = c->normal + 3 * q, *force = c->force + 3 * q;
     double *load = c->load + 3 * (size_t)c->particle[q],
            *moment = c->moment + 3 * (size_t)c->row[q];
+    const double out = outside(c, c->particle[q], depth);
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       load[d] = force[d];

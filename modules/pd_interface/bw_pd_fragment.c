@@ -25,6 +25,7 @@ typedef struct {
   tag *of_root;    /* (n) rows of roots */
   cross_bond *cross;
   double *X, *V, *all_X; /* (n,3), (n,3), (n_all,3) not shifted */
+  double *weight;        /* (n) density over that of the first group */
 } joiner;
 
 static int32_t root_of(int32_t parent[], int32_t h)
@@ -123,6 +124,9 @@ static bw_status prepare(joiner *j)
   BW_TRY(BW_ALLOCATE(&j->X, 3 * j->n));
   BW_TRY(BW_ALLOCATE(&j->V, 3 * j->n));
   BW_TRY(BW_ALLOCATE(&j->all_X, 3 * j->n_all));
+  BW_TRY(BW_ALLOCATE(&j->weight, j->n));
+  for (size_t h = 0; h < j->n; h++)
+    j->weight[h] = bw_solid_density(j->pd, h) / bw_solid_settings(j->pd)->rho;
   for (size_t h = 0; h < j->n; h++)
     j->parent[h] = (int32_t)h;
   return join_own(j);
@@ -138,6 +142,7 @@ static void forget(joiner *j)
   bw_release(&j->X);
   bw_release(&j->V);
   bw_release(&j->all_X);
+  bw_release(&j->weight);
 }
 
 static bw_status measure(joiner *j, bw_pd_fragments *out)
@@ -148,6 +153,7 @@ static bw_status measure(joiner *j, bw_pd_fragments *out)
                                  .parent = j->parent,
                                  .X = j->X,
                                  .V = j->V,
+                                 .weight = j->weight,
                                  .mass = bw_solid_settings(j->pd)->rho * bw_solid_volume(j->pd)};
   memcpy(p.period, j->period, sizeof p.period);
   BW_TRY(bw_pd_fragment__measure(&p, out));

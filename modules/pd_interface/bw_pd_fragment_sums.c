@@ -16,6 +16,7 @@ typedef struct {
   int64_t label, particles;
   int64_t order; /* keeps sums in order of ranks */
   int64_t rank;  /* that the piece belongs to */
+  double weight; /* mass over that of a particle of the first group */
   double X[3], V[3], L[3], I[6];
 } piece;
 
@@ -50,6 +51,7 @@ static size_t merge(size_t n, piece list[])
     }
     piece *sum = &list[last];
     sum->particles += list[q].particles;
+    sum->weight += list[q].weight;
     for (int d = 0; d < 3; d++) {
       sum->X[d] += list[q].X[d];
       sum->V[d] += list[q].V[d];
@@ -94,17 +96,20 @@ static bw_status sum_parts(const particles *p, merger *m)
   m->n = merge(roots, m->part);
   for (size_t h = 0; h < p->n; h++) {
     piece *sum = find(m->n, m->part, p->tag[h].label);
+    const double weight = p->weight[h];
     double x[3];
     placed(p, h, x);
     sum->particles++;
+    sum->weight += weight;
     for (size_t d = 0; d < 3; d++)
-      sum->X[d] += x[d], sum->V[d] += p->V[3 * h + d];
+      sum->X[d] += weight * x[d], sum->V[d] += weight * p->V[3 * h + d];
   }
   return BW_OK;
 }
 
-/* Angular momentum and inertia (xx yy zz xy xz yz) of the parts about the pieces' centres, per unit
- * mass of a particle; X and V of the parts are those of the whole pieces' centres by now. */
+/* Angular momentum and inertia (xx yy zz xy xz yz) of the parts about the pieces' centres, over the
+ * mass of a particle of the first group; X and V of the parts are those of the whole pieces' centres
+ * by now. */
 static void sum_moments(const particles *p, merger *m)
 {
   for (size_t h = 0; h < p->n; h++) {
@@ -113,15 +118,16 @@ static void sum_moments(const particles *p, merger *m)
     placed(p, h, x);
     for (size_t d = 0; d < 3; d++)
       x[d] -= sum->X[d], v[d] = p->V[3 * h + d] - sum->V[d];
-    sum->L[0] += x[1] * v[2] - x[2] * v[1];
-    sum->L[1] += x[2] * v[0] - x[0] * v[2];
-    sum->L[2] += x[0] * v[1] - x[1] * v[0];
-    sum->I[0] += x[1] * x[1] + x[2] * x[2];
-    sum->I[1] += x[0] * x[0] + x[2] * x[2];
-    sum->I[2] += x[0] * x[0] + x[1] * x[1];
-    sum->I[3] -= x[0] * x[1];
-    sum->I[4] -= x[0] * x[2];
-    sum->I[5] -= x[1] * x[2];
+    const double weight = p->weight[h];
+    sum->L[0] += weight * (x[1] * v[2] - x[2] * v[1]);
+    sum->L[1] += weight * (x[2] * v[0] - x[0] * v[2]);
+    sum->L[2] += weight * (x[0] * v[1] - x[1] * v[0]);
+    sum->I[0] += weight * (x[1] * x[1] + x[2] * x[2]);
+    sum->I[1] += weight * (x[0] * x[0] + x[2] * x[2]);
+    sum->I[2] += weight * (x[0] * x[0] + x[1] * x[1]);
+    sum->I[3] -= weight * (x[0] * x[1]);
+    sum->I[4] -= weight * (x[0] * x[2]);
+    sum->I[5] -= weight * (x[1] * x[2]);
   }
 }
 
@@ -155,8 +161,8 @@ static void tell_centres(merger *m)
 {
   for (size_t q = 0; q < m->n_whole; q++)
     for (int d = 0; d < 3; d++) {
-      m->whole[q].X[d] /= (double)m->whole[q].particles;
-      m->whole[q].V[d] /= (double)m->whole[q].particles;
+      m->whole[q].X[d] /= m->whole[q].weight;
+      m->whole[q].V[d] /= m->whole[q].weight;
     }
   for (size_t q = 0; q < m->n_came; q++)
     m->came[q] = *find(m->n_whole, m->whole, m->came[q].label);
@@ -195,7 +201,7 @@ static bw_status list_pieces(const particles *p, const merger *m, bw_pd_fragment
     bw_pd_fragment *f = &out->own[q];
     f->label = m->whole[q].label;
     f->particles = m->whole[q].particles;
-    f->mass = p->mass * (double)m->whole[q].particles;
+    f->mass = p->mass * m->whole[q].weight;
     memcpy(f->centre, m->whole[q].X, sizeof f->centre);
     memcpy(f->velocity, m->whole[q].V, sizeof f->velocity);
   }

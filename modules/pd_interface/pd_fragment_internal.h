@@ -17,7 +17,8 @@ typedef struct {
   const int32_t *parent;          /* (n) of the union; a root is its own */
   const double *X, *V;            /* (n,3) [L], [L/T] */
   double period[3];               /* [L] */
-  double mass;                    /* of a particle [M] */
+  const double *weight;           /* (n) mass over that of a particle of the first group */
+  double mass;                    /* of a particle of the first group [M] */
 } bw_pd_fragment__particles;
 
 /* out->own, n and total. Collective. */

@@ -2,13 +2,14 @@
 # The pages docs/*.md lead where they say.
 # - Every row of the index in docs/theory.md names a file that exists and a function that is defined
 #   in it.
-# - Every function named anywhere in theory.md and errata.md (in backticks, our own: with an
-#   underscore) and every file under modules, cases, validation, tests, data, docs is there.
+# - Every function of ours and every file that theory, errata, sources and glossary name in backticks
+#   is there, and a function with a file behind it in brackets is defined in that file.
 # - Every ERRATA number that the code cites has an entry in docs/errata.md.
 # - The table of who includes whom in docs/architecture.md is that of the sources.
 # - Every author who is cited with a year has a line in docs/sources.md.
 # First a planted row has to be noticed.
 # usage: index.sh SOURCE
+# shellcheck disable=SC2016 # backticks are Markdown's
 cd "$1" || exit 2
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
@@ -20,7 +21,7 @@ grep -rhoE '[A-Za-z_][A-Za-z0-9_]*' modules cases validation tests docs/examples
      --include='*.c' --include='*.h' | sort -u >"$work/words"
 
 defined() { # defined FUNCTION FILE: a line there begins with a type and has the name behind it
-  grep -qE "^[A-Za-z].*[ *]$1\(" "$2"
+  grep -qE "^[A-Za-z].*[ *]$1(\(|\[)" "$2"
 }
 
 index_rows() { # rows "function|file" of the index of a page
@@ -44,6 +45,14 @@ printf '## Index\n| a | b | `no_such_function` | `modules/core/bw_comm.c` |\n| a
 rows=$(index_rows docs/theory.md | wc -l)
 [ "$rows" -ge 40 ] || complain "docs/theory.md: only $rows rows were read from the index"
 check_index docs/theory.md >"$work/found"
+while read -r line; do complain "$line"; done <"$work/found"
+
+# Pairs "`function` (`file`)" of the errata.
+tr '\n' ' ' <docs/errata.md | grep -oE '`[a-z0-9_]+` \(`[A-Za-z0-9_./-]+`\)' | tr -d '`()' | sort -u >"$work/pairs"
+[ "$(wc -l <"$work/pairs")" -ge 20 ] || complain "docs/errata.md: too few functions were read"
+while read -r function file; do
+  [ ! -f "$file" ] || defined "$function" "$file" || echo "docs/errata.md: $function is not defined in $file"
+done <"$work/pairs" >"$work/found"
 while read -r line; do complain "$line"; done <"$work/found"
 
 # Names in backticks.

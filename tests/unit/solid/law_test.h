@@ -32,7 +32,7 @@ static void check_force(const bw_solid_config *c)
   bw_comm *self = pd_alone();
   pd_body body = pd_box(4, 4, 3);
   bw_solid *pd = pd_make(self, c, &body);
-  double X[3 * 48], V[3 * 48] = {0}, a[3 * 48], most = 0;
+  double X[3 * 48], V[3 * 48] = {0}, a[3 * 48], most = 0, difference = 0;
   pd_set(pd, wave, NULL);
   bw_check_ok(bw_solid_evaluate(pd));
   bw_solid_get_acceleration(pd, a);
@@ -47,16 +47,18 @@ static void check_force(const bw_solid_config *c)
     X[q] += h;
     const double force = c->rho * bw_solid_volume(pd) * a[q];
     most = fmax(most, fabs(force));
-    bw_check_near(-(E[0] - E[1]) / (2 * h), force,
-                  1e-6); /* third derivative h^2/6, and rounding/h */
+    difference = fmax(difference, fabs(force + (E[0] - E[1]) / (2 * h)));
   }
-  ck_assert_double_gt(most, 1e-3);
+  /* Third derivatives over h/ds = 1e-4, and rounding of displacements near 0.05 over h. */
+  ck_assert_double_gt(most, 0);
+  ck_assert_double_lt(difference, fmax(1e-6, 1e4 * BW_REAL_EPSILON) * most);
   bw_solid_destroy(&pd);
   pd_body_release(&body);
   bw_comm_destroy(&self);
 }
 
-/* A bar that is held at both ends, drawn by a strain of 1e-4: relaxation and the linear solve agree to the strain. */
+/* A bar that is held at both ends, drawn by a strain of 1e-4 and bent: relaxation and the linear solve
+ * agree to the strain, or in single precision to the residual times what bending multiplies it by. */
 static void check_rest(const bw_solid_config *c)
 {
   pd_body body = pd_box(10, 4, 4);
@@ -79,7 +81,8 @@ static void check_rest(const bw_solid_config *c)
   bw_solid_set_force(pd, F);
   bw_solid_static_config how = bw_solid_static_config_default();
   bw_solid_static_report report;
-  how.tolerance = 1e-8;
+  const bool loose = BW_REAL_EPSILON > 1e-10;
+  how.tolerance = loose ? 1e-4 : 1e-8;
   bw_check_ok(bw_solid_static_linear(pd, &how, U, &report));
   bw_check_ok(bw_solid_static_relax(pd, &how, &report));
   bw_solid_get_position(pd, X);
@@ -90,7 +93,8 @@ static void check_rest(const bw_solid_config *c)
   }
   bw_comm_max(bw_check_world(), 1, &difference);
   bw_comm_max(bw_check_world(), 1, &size);
-  ck_assert_double_lt(difference, 10 * 1e-4 * size); /* terms of second order in the strain */
+  ck_assert_double_lt(difference,
+                      (loose ? 100 : 10) * 1e-4 * size); /* terms of second order in the strain */
   for (int q = 0; q < 5; q++)
     bw_release(array[q]);
   bw_solid_destroy(&pd);

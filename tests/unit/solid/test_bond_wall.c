@@ -238,6 +238,9 @@ START_TEST(a_book_that_cannot_be_made_is_an_error_on_all_ranks)
     bw_check_status(bw_solid_step(pd, 1e-3 * bw_solid_dt_max(pd)), BW_EDIVERGED);
     ck_assert_ptr_nonnull(strstr(bw_last_message(), "through the wall"));
     ck_assert_double_eq(ledger.kinetic, -1); /* as it was */
+    /* Nor can a step begin; nobody goes on to wait for the one that cannot. */
+    pd_set(pd, first_one_below, NULL);
+    bw_check_status(bw_solid_step(pd, 0.1 * bw_solid_dt_max(pd)), BW_EDIVERGED);
   }
   pd_set(pd, NULL, NULL);
   ck_assert_double_eq(ledger_of(pd).kinetic, 0);

@@ -17,20 +17,55 @@ static void check_pieces(bw_solid *s)
 {
   const bw_pd_interface_config config = bw_pd_interface_config_default();
   bw_pd_interface *interface = NULL;
-  bw_pd_fragment *piece = NULL;
-  size_t n = 0;
+  bw_pd_fragments all;
   bw_check_ok(bw_pd_interface_create(s, &config, &interface));
-  bw_check_ok(bw_pd_interface_fragments(interface, NULL, &n, &piece));
-  ck_assert_uint_eq(n, 2);
+  bw_check_ok(bw_pd_interface_fragments(interface, NULL, &all));
+  ck_assert_int_eq(all.total, 2);
+  const bw_pd_fragment *piece = all.largest;
   bw_check_near(piece[0].mass, 2 * 128 * 0.125, 1e-12);
   bw_check_near(piece[1].mass, 6 * 128 * 0.125, 1e-12);
   double P = 0;
-  for (size_t q = 0; q < n; q++)
+  for (size_t q = 0; q < all.n_largest; q++)
     P += piece[q].mass * piece[q].velocity[0];
   bw_check_near(P, ledger_of(s).momentum[0], 1e5 * BW_REAL_EPSILON);
-  bw_release(&piece);
+  bw_pd_fragment_release(&all);
   bw_pd_interface_destroy(&interface);
 }
+
+static void spin(const double X0[3], double v[3])
+{
+  v[0] = 0.1 - 0.03 * X0[1];
+  v[1] = 0.03 * X0[0];
+  v[2] = -0.2;
+}
+
+/* One piece of two materials: its centre is that of its mass, about which it spins. */
+START_TEST(a_piece_of_two_materials_has_its_centre_of_mass)
+{
+  const bw_solid_config c = two_halves(BW_PD_3D);
+  const bw_pd_interface_config config = bw_pd_interface_config_default();
+  bw_pd_interface *interface = NULL;
+  bw_pd_fragments all;
+  pd_body body = bar(false);
+  bw_solid *s = make(bw_check_world(), &c, &body, by_half);
+  pd_set(s, NULL, spin);
+  bw_check_ok(bw_pd_interface_create(s, &config, &interface));
+  bw_check_ok(bw_pd_interface_fragments(interface, NULL, &all));
+  ck_assert_int_eq(all.total, 1);
+  const bw_pd_fragment *f = &all.largest[0];
+  const double centre = (2 * 2 + 6 * 6) / 8.0, e = 1e4 * BW_REAL_EPSILON; /* halves at 2 and 6 */
+  bw_check_near(f->mass, 8 * 160 * 0.125, e);
+  bw_check_near(f->centre[0], centre, e);
+  bw_check_near(f->centre[1], 1.25, e);
+  bw_check_near(f->velocity[0], 0.1 - 0.03 * 1.25, e);
+  bw_check_near(f->velocity[1], 0.03 * centre, e);
+  bw_check_near(f->spin[2], 0.03, 1e-9 + e); /* solve_spin's 1e-10 of the trace */
+  bw_pd_fragment_release(&all);
+  bw_pd_interface_destroy(&interface);
+  bw_solid_destroy(&s);
+  pd_body_release(&body);
+}
+END_TEST
 
 /* A joint weaker than both sides: it parts there, nothing else breaks, and no less than its fracture
  * energy is paid: a bond goes at the end of the step in which it passes s0, so that with the lattice's
@@ -223,7 +258,10 @@ START_TEST(what_is_wrong_with_a_group_is_named)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(a_weak_joint_breaks_at_the_joint), BW_TEST(a_bond_across_takes_the_harmonic_mean),
+    BW_TEST(a_piece_of_two_materials_has_its_centre_of_mass),
+    BW_TEST(a_weak_joint_breaks_at_the_joint),
+    BW_TEST(a_bond_across_takes_the_harmonic_mean),
     BW_TEST(contact_between_two_materials_takes_the_harmonic_mean),
-    BW_TEST(halves_that_parted_bounce), BW_TEST(what_is_wrong_with_a_group_is_named)};
+    BW_TEST(halves_that_parted_bounce),
+    BW_TEST(what_is_wrong_with_a_group_is_named)};
 BW_CHECK_MAIN("solid_joint", tests)

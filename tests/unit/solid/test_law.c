@@ -81,7 +81,7 @@ START_TEST(two_particles_swing_as_long_as_the_integral_says)
   /* The straight line through both says when it passed 0; Verlet swings (w dt)^2/24 too fast. */
   const double missed = after / (after - before) / N;
   ck_assert_double_lt(fabs(missed), pow(2 * w * dt, 2));
-  bw_check_near(pd_energy(pd) / start, 1, pow(2 * w * dt, 2));
+  bw_check_near(pd_energy(pd) / start, 1, fmax(pow(2 * w * dt, 2), ROUND_OFF));
   bw_solid_destroy(&pd);
 }
 END_TEST
@@ -236,7 +236,7 @@ START_TEST(a_pulled_pair_comes_to_rest_where_the_cubic_says)
   bw_solid *pd = pair(&c, kind);
   bw_solid_static_config how = bw_solid_static_config_default();
   bw_solid_static_report report;
-  how.tolerance = 1e-9;
+  how.tolerance = fmax(1e-9, 10 * BW_REAL_EPSILON);
   const double s = 0.12, b = STIFFENING.beta;
   const double pull = bw_solid_micromodulus(pd) * bw_solid_volume(pd);
   double F[6] = {0};
@@ -244,7 +244,7 @@ START_TEST(a_pulled_pair_comes_to_rest_where_the_cubic_says)
     F[3 * i] = bw_solid_id(pd)[i] == 1 ? pull * (s + b * s * s * s) : 0;
   bw_solid_set_force(pd, F);
   bw_check_ok(bw_solid_static_relax(pd, &how, &report));
-  bw_check_near(stretch(pd, &c), s, how.tolerance * (s + b * s * s * s)); /* dF/ds >= pull */
+  bw_check_near(stretch(pd, &c), s, how.tolerance); /* dF/ds >= pull >= F */
   bw_solid_destroy(&pd);
 }
 END_TEST

@@ -23,11 +23,12 @@ int bw_finish(bw_comm **world, bw_status mine);
 
 /* End the run of all ranks now, with this exit code and without any clean-up. For programs that
  * test: a rank that found a fault cannot tell the others, which may be waiting for it in a
- * collective call. Everything else returns a status and lets ranks agree. Local; does not return. */
+ * collective call. Everything else returns a status and lets ranks agree. Local; does not
+ * return. */
 void bw_comm_abort(const bw_comm *comm, int code) __attribute__((noreturn));
 
-/* *out = a group of this rank alone (for serial programs and tests inside a parallel run), destroyed
- * by the caller. BW_EMEM. Local. */
+/* *out = a group of this rank alone (for serial programs and tests inside a parallel run),
+ * destroyed by the caller. BW_EMEM. Local. */
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 
 /* The same ranks as a group of its own, whose messages do not meet those of `comm`. What is longer
@@ -37,7 +38,8 @@ bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
  * NULL. Collective. */
 bw_status bw_comm_copy(const bw_comm *comm, size_t limit, bw_comm **out) BW_MUST_CHECK;
 
-/* Free *comm and set it to NULL; NULL inside is fine. The world is freed by bw_finish. Collective. */
+/* Free *comm and set it to NULL; NULL inside is fine. The world is freed by bw_finish.
+ * Collective. */
 void bw_comm_destroy(bw_comm **comm);
 
 int bw_comm_rank(const bw_comm *comm);             /* 0 .. size-1. Local. */

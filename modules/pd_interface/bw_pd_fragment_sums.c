@@ -108,8 +108,8 @@ static bw_status sum_parts(const particles *p, merger *m)
 }
 
 /* Angular momentum and inertia (xx yy zz xy xz yz) of the parts about the pieces' centres, over the
- * mass of a particle of the first group; X and V of the parts are those of the whole pieces' centres
- * by now. */
+ * mass of a particle of the first group; X and V of the parts are those of the whole pieces'
+ * centres by now. */
 static void sum_moments(const particles *p, merger *m)
 {
   for (size_t h = 0; h < p->n; h++) {

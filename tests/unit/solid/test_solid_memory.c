@@ -17,8 +17,9 @@ enum { FEW = 1000 }; /* particles: what any such program takes */
 #ifdef __SANITIZE_ADDRESS__ /* slow, and it keeps what was freed: nothing is compared then */
 static double asked = 1e4;
 #else
-/* Particles. On four ranks the share is a cube of 63 particles across, which with the copies of three
- * layers on two of its sides is 10 % more; with much fewer the copies alone would fill the fifth. */
+/* Particles. On four ranks the share is a cube of 63 particles across, which with the copies of
+ * three layers on two of its sides is 10 % more; with much fewer the copies alone would fill the
+ * fifth. */
 static double asked = 1e6;
 #endif
 
@@ -30,8 +31,8 @@ static double block_of(double n, bw_shape *block)
   return along * across * across;
 }
 
-/* Makes a solid of about n particles on the ranks of comm, each of which fills its part of the body,
- * and lets it go; returns the peak of this rank's memory so far [bytes]. Collective. */
+/* Makes a solid of about n particles on the ranks of comm, each of which fills its part of the
+ * body, and lets it go; returns the peak of this rank's memory so far [bytes]. Collective. */
 static double peak_of(const bw_comm *comm, double n)
 {
   bw_shape block;

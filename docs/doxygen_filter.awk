@@ -137,7 +137,7 @@ function drop_passing_macros(i, j, name)
     name = code[i]
     sub(/^[ \t]*#[ \t]*undef[ \t]+/, "", name)
     for (j = 1; j < i; j++)
-      if (code[j] ~ "^[ \t]*#[ \t]*define[ \t]+" name "[( \t]") code[j] = out[j] = ""
+      if (code[j] ~ "^[ \t]*#[ \t]*define[ \t]+" name "([( \t]|$)") code[j] = out[j] = ""
     code[i] = out[i] = ""
   }
 }

@@ -21,6 +21,7 @@ if [ -z "$work" ]; then
 fi
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
+# shellcheck source=tests/support/two_commits.sh
 . "$source/tests/support/two_commits.sh"
 
 a=$(commit_of "$1")
@@ -39,7 +40,7 @@ word() { # word FILE KEY: a word of its first line
 }
 
 names=$*
-[ -n "$names" ] || names=$(cd "$(set_ups b)" && ls -- *.yaml | sed 's/\.yaml$//')
+[ -n "$names" ] || names=$(cd "$(set_ups b)" && printf '%s\n' *.yaml | sed 's/\.yaml$//')
 for side in a b; do
   programs=
   for name in $names; do

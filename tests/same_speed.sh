@@ -18,6 +18,7 @@ if [ -z "$work" ]; then
 fi
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
+# shellcheck source=tests/support/two_commits.sh
 . "$source/tests/support/two_commits.sh"
 
 a=$(commit_of "$1")

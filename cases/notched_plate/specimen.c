@@ -138,8 +138,8 @@ static bw_status cut_notches(specimen *p)
   return BW_OK;
 }
 
-/* Which loads act on this rank's particles. Those of a cloud are off their sites, by less than half a
- * spacing, so that the site is the nearest one; it, not the particle, decides. Collective. */
+/* Which loads act on this rank's particles. Those of a cloud are off their sites, by less than half
+ * a spacing, so that the site is the nearest one; it, not the particle, decides. Collective. */
 static bw_status own_loads(specimen *p, const bw_solid_config *c)
 {
   double *X = NULL;

@@ -1,6 +1,6 @@
-/* A cylinder that stands in a channel: markers hold the fluid on its surface, probes read the stress
- * there. The force of the markers is the momentum that a box of fluid around it loses, to round-off;
- * the probes' stress adds up to the same force, to what eight cells per diameter allow.
+/* A cylinder that stands in a channel: markers hold the fluid on its surface, probes read the
+ * stress there. The force of the markers is the momentum that a box of fluid around it loses, to
+ * round-off; the probes' stress adds up to the same force, to what eight cells per diameter allow.
  * BUILD modules=ns_channel,probe,ibm_mdf
  * TEST  ranks=1,2 */
 #include "bw_ibm_mdf.h"

@@ -1,5 +1,5 @@
-/* A disc of soft solid, free in a channel: the stream takes it along. The solid, its surface and the
- * coupled step; the surface is closed, the mass stays, and the disc ends up with the stream.
+/* A disc of soft solid, free in a channel: the stream takes it along. The solid, its surface and
+ * the coupled step; the surface is closed, the mass stays, and the disc ends up with the stream.
  * BUILD modules=coupler
  * TEST  ranks=1,2 */
 #include "bw_coupler.h"

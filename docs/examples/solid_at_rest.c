@@ -1,4 +1,5 @@
-/* A strip is held at one end and pulled at the other until it is at rest; its stress is the traction.
+/* A strip is held at one end and pulled at the other until it is at rest; its stress is the
+ * traction.
  * BUILD modules=solid,solid_tools,shape
  * TEST  ranks=1,2 */
 #include "bw_memory.h"

@@ -7,9 +7,9 @@
  * name of the precision and a mark that it is complete. HDF5's own structures carry checksums
  * too (its newest format). Written as PATH.part, synchronised to the disk and renamed to PATH on
  * a successful close: an interrupted write never replaces a good file.
- * Any size: what one rank writes or reads at once is at most bw_comm_message_limit (1 GiB), in as many
- * operations as it takes; one layer of a field (n[0] x n[1] numbers) or one row of a table is moved
- * whole and must stay below 2 GiB.
+ * Any size: what one rank writes or reads at once is at most bw_comm_message_limit (1 GiB), in as
+ * many operations as it takes; one layer of a field (n[0] x n[1] numbers) or one row of a table is
+ * moved whole and must stay below 2 GiB.
  * Names may have folders ("solid/position"). Each name is written once.
  * Errors: BW_EIO naming path, data set and what was found; BW_EINPUT for arguments that cannot
  * be stored; agreed by all ranks. HDF5's own messages are turned off from create or open on.

@@ -80,8 +80,8 @@ static uint64_t checksum(const bw_checkpoint *ck, const bw_checkpoint__slab *sla
   return hash;
 }
 
-/* Layers of the slowest direction that this share moves in one operation: what MPI's counts of bytes
- * can say for any share, and at least one layer. */
+/* Layers of the slowest direction that this share moves in one operation: what MPI's counts of
+ * bytes can say for any share, and at least one layer. */
 static hsize_t layers_at_once(const bw_checkpoint *ck, const bw_checkpoint__slab *slab)
 {
   hsize_t layer = slab->bytes;
@@ -91,8 +91,8 @@ static hsize_t layers_at_once(const bw_checkpoint *ck, const bw_checkpoint__slab
   return most > 0 ? most : 1;
 }
 
-/* Move layers first .. first + n of the share between memory and the open data set, all ranks in one
- * operation. */
+/* Move layers first .. first + n of the share between memory and the open data set, all ranks in
+ * one operation. */
 static bool transfer_layers(hid_t set, const bw_checkpoint__slab *slab, hsize_t first, hsize_t n,
                             const unsigned char *from, unsigned char *to)
 {
@@ -120,8 +120,8 @@ static bool transfer_layers(hid_t set, const bw_checkpoint__slab *slab, hsize_t 
   return ok;
 }
 
-/* Move the share between memory and the open data set. Every rank makes as many operations as the one
- * with the most layers needs: nearly always one. */
+/* Move the share between memory and the open data set. Every rank makes as many operations as the
+ * one with the most layers needs: nearly always one. */
 static bool transfer(const bw_checkpoint *ck, hid_t set, const bw_checkpoint__slab *slab,
                      const unsigned char *from, unsigned char *to)
 {

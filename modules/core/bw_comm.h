@@ -23,20 +23,23 @@ int bw_finish(bw_comm **world, bw_status mine);
 
 /* End the run of all ranks now, with this exit code and without any clean-up. For programs that
  * test: a rank that found a fault cannot tell the others, which may be waiting for it in a
- * collective call. Everything else returns a status and lets ranks agree. Local; does not return. */
+ * collective call. Everything else returns a status and lets ranks agree. Local; does not
+ * return. */
 void bw_comm_abort(const bw_comm *comm, int code) __attribute__((noreturn));
 
-/* *out = a group of this rank alone (for serial programs and tests inside a parallel run), destroyed
- * by the caller. BW_EMEM. Local. */
+/* *out = a group of this rank alone (for serial programs and tests inside a parallel run),
+ * destroyed by the caller. BW_EMEM. Local. */
 bw_status bw_comm_self(bw_comm **out) BW_MUST_CHECK;
 
-/* The same ranks as a group of its own, whose messages do not meet those of `comm`. What is longer than
- * `limit` bytes (1 .. INT_MAX; 0: as `comm`) travels in several MPI messages: a small limit lets a test
- * see that, the default of 1 GiB is below what an MPI count can say. Results do not depend on it, but for
- * the order in which sums add. Destroyed by the caller. On failure *out is NULL. Collective. */
+/* The same ranks as a group of its own, whose messages do not meet those of `comm`. What is longer
+ * than `limit` bytes (1 .. INT_MAX; 0: as `comm`) travels in several MPI messages: a small limit
+ * lets a test see that, the default of 1 GiB is below what an MPI count can say. Results do not
+ * depend on it, but for the order in which sums add. Destroyed by the caller. On failure *out is
+ * NULL. Collective. */
 bw_status bw_comm_copy(const bw_comm *comm, size_t limit, bw_comm **out) BW_MUST_CHECK;
 
-/* Free *comm and set it to NULL; NULL inside is fine. The world is freed by bw_finish. Collective. */
+/* Free *comm and set it to NULL; NULL inside is fine. The world is freed by bw_finish.
+ * Collective. */
 void bw_comm_destroy(bw_comm **comm);
 
 int bw_comm_rank(const bw_comm *comm);             /* 0 .. size-1. Local. */
@@ -47,7 +50,7 @@ size_t bw_comm_message_limit(const bw_comm *comm); /* [bytes] of one MPI message
  * replaces the others'. Call before branching on a result that may differ. Collective. */
 bw_status bw_comm_agree(const bw_comm *comm, bw_status mine) BW_MUST_CHECK;
 
-/* Element-wise over ranks, in place, result on all ranks; any n, the same on all ranks. Collective. */
+/* Element-wise over ranks, in place, result on all ranks; any n, the same on all. Collective. */
 void bw_comm_sum(const bw_comm *comm, size_t n, double x[]);
 void bw_comm_max(const bw_comm *comm, size_t n, double x[]);
 void bw_comm_min(const bw_comm *comm, size_t n, double x[]);
@@ -61,10 +64,10 @@ int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x);
 /* Rank 0's bytes on all ranks; any number, the same on all ranks. Collective. */
 void bw_comm_broadcast(const bw_comm *comm, size_t bytes, void *data);
 
-/* Bytes of every rank, in rank order, on rank 0 (gather) or on all (allgather). *out is
- * allocated and owned by the caller (bw_release); NULL on ranks that receive nothing.
- * *total counts its bytes; any number, each rank its own. BW_EMEM on all ranks where they do not fit into
- * the memory of one. Collective. */
+/* Bytes of every rank, in rank order, on rank 0 (gather) or on all (allgather). *out is allocated
+ * and owned by the caller (bw_release); NULL on ranks that receive nothing. *total counts its
+ * bytes; any number, each rank its own. BW_EMEM on all ranks where they do not fit into the memory
+ * of one. Collective. */
 bw_status bw_comm_gather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,
                          void **out) BW_MUST_CHECK;
 bw_status bw_comm_allgather(const bw_comm *comm, size_t bytes, const void *mine, size_t *total,

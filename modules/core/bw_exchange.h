@@ -17,7 +17,8 @@ typedef struct bw_exchange bw_exchange;
 
 /* Item i of this rank (0 <= i < n) goes to rank destination[i]; one item may be listed for
  * several ranks by listing it several times. The array is copied. `comm` is borrowed until
- * destroy. Ranks with n = 0 take part. BW_EMEM, agreed by all ranks; *out is NULL then. Collective. */
+ * destroy. Ranks with n = 0 take part. BW_EMEM, agreed by all ranks; *out is NULL then.
+ * Collective. */
 bw_status bw_exchange_create(const bw_comm *comm, size_t n, const int destination[],
                              bw_exchange **out) BW_MUST_CHECK;
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { ALIGNMENT = 64, HUGE_PAGE = 1 << 21 };
@@ -66,4 +67,10 @@ size_t bw_memory_resident(void)
   const int read = fscanf(f, "%ld %ld", &all, &pages);
   fclose(f);
   return read == 2 ? (size_t)pages * (size_t)sysconf(_SC_PAGESIZE) : 0;
+}
+
+size_t bw_memory_peak(void)
+{
+  struct rusage usage;
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0; /* Linux: KiB */
 }

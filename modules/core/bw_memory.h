@@ -20,4 +20,8 @@ void bw_release(void *out);
 /* Memory of this process that is resident now [bytes]; 0 where the system does not tell. Local. */
 size_t bw_memory_resident(void);
 
+/* The most that it has been since this process began [bytes]; 0 where the system does not tell.
+ * Local. */
+size_t bw_memory_peak(void);
+
 BW_END_DECLS

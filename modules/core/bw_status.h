@@ -43,6 +43,7 @@ typedef enum BW_MUST_CHECK_TYPE {
   BW_STATUS_LIST(X)
 #undef X
 } bw_status;
+#undef BW_STATUS_ATTRIBUTE
 
 /* Record the message (printf's format, cut at 4095 bytes) as this thread's last one and return
  * `code` unchanged. `file` and `line` say where, for a debugger. Use through BW_FAIL. Local. */

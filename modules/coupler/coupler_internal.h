@@ -106,7 +106,8 @@ struct bw_coupler {
 bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
-/* Velocity (n_surface,3) of points that far inside the nominal surface, and of the markers, by the solid's present velocities; c->spin and c->V are current after. Collective. */
+/* Velocity (n_surface,3) of points that far inside the nominal surface, and of the markers, by the
+ * solid's present velocities; c->spin and c->V are current after. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[]);
 void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
 /* Sets c->V of the surface particles to what makes the markers move at V (n_surface,3). Collective.

@@ -293,8 +293,8 @@ static double power(bw_coupler *c)
   return sum * bw_solid_volume(c->solid);
 }
 
-/* c->load: the surface points' forces, which act `depth` inside the nominal surface, on the particles:
- * force, moment and power are the same. */
+/* c->load: the surface points' forces, which act `depth` inside the nominal surface, on the
+ * particles: force, moment and power are the same. */
 void bw_coupler__carry_force(bw_coupler *c, double depth)
 {
   memset(c->load, 0, 3 * c->n * sizeof *c->load);

@@ -134,10 +134,10 @@ typedef struct {
  * Local. */
 void bw_grid_traffic(const bw_grid *grid, bw_grid_sent *halo, bw_grid_sent *swap);
 
-/* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order
- * of their coord[d]: receive[receive_start[p] ..] <- send[send_start[me] ..] of rank p. Counts
- * are in bw_reals and agree pairwise; this rank's own entries are skipped. Any number of entries; what
- * is longer than bw_comm_message_limit of the grid's communicator travels in several messages. For
+/* All-to-all among the ranks of this rank's line of blocks in direction d (1: y, 2: z), in order of
+ * their coord[d]: receive[receive_start[p] ..] <- send[send_start[me] ..] of rank p. Counts are in
+ * bw_reals and agree pairwise; this rank's own entries are skipped. Any number of entries; what is
+ * longer than bw_comm_message_limit of the grid's communicator travels in several messages. For
  * solvers that work on lines. Collective over the line. */
 void bw_grid_swap(bw_grid *grid, int d, const size_t send_start[], const size_t send_count[],
                   const bw_real *send, const size_t receive_start[], const size_t receive_count[],

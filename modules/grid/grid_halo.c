@@ -116,7 +116,8 @@ static void wrap(const bw_grid_view *v, int d, bw_real *f)
   }
 }
 
-/* Bytes of what `count` fields send to the neighbour on one side, or receive from it; 0 without one. */
+/* Bytes of what `count` fields send to the neighbour on one side, or receive from it; 0 without
+ * one. */
 static size_t bytes_across(const bw_grid *g, int d, int side, int count)
 {
   const box b = owned_layers(&g->view, d, side); /* of the shape of the halo there */

@@ -180,7 +180,8 @@ bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
   double largest = 0.0;
   bw_real *field = NULL;
   BW_TRY(bw_comm_agree(bw_grid_comm(ib->grid), bw_field_create(ib->grid, &field)));
-  /* Any start will do that is not orthogonal to the largest eigenvector: the same slip everywhere. */
+  /* Any start will do that is not orthogonal to the largest eigenvector: the same slip
+   * everywhere. */
   for (size_t m = 0; m < ib->held; m++)
     ib->reply[m] = 1.0;
   for (int q = 0; q < TURNS; q++)

@@ -48,7 +48,8 @@ bw_status bw_particles_cells_create(size_t n, const double y[], double least,
   memset(g->head, 0xff, g->buckets * sizeof *g->head); /* all -1 */
   for (size_t q = 0; q < n; q++) {
     bw_particles_cells_of(g, y + 3 * q, g->cell + 3 * q);
-    /* What is nowhere is near nothing: a run that diverged must not fill one cell with its points. */
+    /* What is nowhere is near nothing: a run that diverged must not fill one cell with its
+     * points. */
     g->next[q] = -1;
     if (isnan(y[3 * q]) || isnan(y[3 * q + 1]) || isnan(y[3 * q + 2])) continue;
     const size_t b = bw_particles_cells_bucket(g, g->cell + 3 * q);

@@ -8,8 +8,8 @@
  * Life     create -> { of, around, near, reading the lists }* -> destroy; made anew when points
  *          have moved.
  * Limits   n below 2^31. Cells are numbered to 10^9 either way of the first point; what is further
- *          away counts to the outermost cell. A point that has no position (a coordinate that is not
- *          a number) is in no list. */
+ *          away counts to the outermost cell. A point that has no position (a coordinate that is
+ *          not a number) is in no list. */
 #pragma once
 #include "bw_status.h"
 #include <math.h>

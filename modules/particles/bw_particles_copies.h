@@ -46,8 +46,8 @@ bw_status bw_particles_copies_create(const bw_comm *comm, size_t n,
                                      const bw_particles_question *question, size_t width,
                                      bw_particles_copies **out) BW_MUST_CHECK;
 
-/* Copies that their owners give unasked: row q, 0 <= q < rows, is of own particle own[q] and goes to
- * the rank destination[q]. Copies of a rank are ordered by the owner's rank and within it as the
+/* Copies that their owners give unasked: row q, 0 <= q < rows, is of own particle own[q] and goes
+ * to the rank destination[q]. Copies of a rank are ordered by the owner's rank and within it as the
  * owner lists them. Both arrays are copied; all else as above. Collective. */
 bw_status bw_particles_copies_offer(const bw_comm *comm, size_t n, size_t rows, const int32_t own[],
                                     const int destination[], size_t width,

@@ -28,10 +28,10 @@ typedef struct {
 bw_particles_space_config bw_particles_space_config_default(void);
 
 /* Divide space by the points x (n,3) that the ranks have at present, in any division; the
- * configuration is the same on all ranks. A rank's part is whole cells, so that counts are equal but
- * for the points of a few cells. `comm` is borrowed until destroy; x is read during the call only.
- * *out is owned by the caller, NULL after a failure. BW_EINPUT for an edge or a period that is not
- * finite or has the wrong sign, BW_EMEM; the same on all ranks. Collective. */
+ * configuration is the same on all ranks. A rank's part is whole cells, so that counts are equal
+ * but for the points of a few cells. `comm` is borrowed until destroy; x is read during the call
+ * only. *out is owned by the caller, NULL after a failure. BW_EINPUT for an edge or a period that
+ * is not finite or has the wrong sign, BW_EMEM; the same on all ranks. Collective. */
 bw_status bw_particles_space_create(const bw_comm *comm, const bw_particles_space_config *config,
                                     size_t n, const double x[],
                                     bw_particles_space **out) BW_MUST_CHECK;

@@ -145,8 +145,8 @@ static size_t divide(uint64_t key[], size_t begin, size_t end, uint64_t pivot)
   }
 }
 
-/* Divide this rank's open keys of each group about its pivot; shared[q]: how many of all its keys of
- * group q are below. Returns whether a search goes on. */
+/* Divide this rank's open keys of each group about its pivot; shared[q]: how many of all its keys
+ * of group q are below. Returns whether a search goes on. */
 static bool count_below(work *w)
 {
   bool going = false;

@@ -8,9 +8,9 @@
  *
  * No rank holds a list of all sites. Each passes those that it happens to know; a cut is found by
  * bisection of the 63-bit key of a site with counts that are summed over the ranks, for all groups
- * of one depth of the tree at once: at most 63 sums of 64-bit integers per depth, log2(ranks) depths.
- * What remains on every rank is the tree of at most size - 1 cuts, which tells the owner of any
- * site, occupied or not. It depends on the set of sites alone, not on who passed which.
+ * of one depth of the tree at once: at most 63 sums of 64-bit integers per depth, log2(ranks)
+ * depths. What remains on every rank is the tree of at most size - 1 cuts, which tells the owner of
+ * any site, occupied or not. It depends on the set of sites alone, not on who passed which.
  *
  * Life     create -> { owner, count, total }* -> destroy.
  * Limits   sites within 2^21 steps of each other in every direction; counts to 2^62. */

@@ -9,8 +9,8 @@
 /* Bits per direction, and the largest coordinate above the lower corner. */
 enum { BW_PARTICLES_BITS = 21, BW_PARTICLES_MOST = (1 << BW_PARTICLES_BITS) - 1 };
 
-/* Keys rise with axis[2] first, then axis[1], then axis[0]: axis[0] is fastest. above: site less the
- * lower corner, 0 .. BW_PARTICLES_MOST. */
+/* Keys rise with axis[2] first, then axis[1], then axis[0]: axis[0] is fastest. above: site less
+ * the lower corner, 0 .. BW_PARTICLES_MOST. */
 static inline uint64_t bw_particles__key(const int axis[3], const int64_t above[3])
 {
   uint64_t key = 0;

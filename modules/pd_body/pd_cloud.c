@@ -139,7 +139,8 @@ static bw_status make_field(const bw_pd_body_config *c, const int32_t lower[3], 
 {
   const bool planar = c->geometry != BW_PD_3D;
   for (int k = 0; k < 3; k++) {
-    /* A push travels one site per sweep: within the margin places are not final, inside they are. */
+    /* A push travels one site per sweep: within the margin places are not final, inside they
+     * are. */
     const bool flat = planar && k == 2;
     f->lower[k] = flat ? 0 : lower[k] - SWEEPS;
     f->size[k] = flat ? 1 : size + 2 * SWEEPS;

@@ -1,5 +1,5 @@
 /* Damping of three kinds (ERRATA 4), as accelerations:
- *   pair      + k/rho sum_l [(V_l - V_h).e] e Gamma dV     over bonds that hold, e the present direction
+ *   pair      + k/rho sum_l [(V_l - V_h).e] e Gamma dV     over bonds that hold, e as they lie now
  *   mean      - k/rho (V_h - mean of V_l over the family)  members by bonds that hold
  *   absolute  - k/rho V_h */
 #include "bw_pd_tensor.h"

@@ -2,8 +2,8 @@
  *
  * A law is one struct of functions; the table of those that a case file can name is solid/laws.c. A
  * step calls each function once per sweep, never per bond. docs/add-a-law.md is a law with text
- * around it. Helpers: pd_walk.h (bonds one by one), pd_springs.h (all members of a law of springs from
- * one function), pd_sweep.h (BW_PD_LANES bonds at a time).
+ * around it. Helpers: pd_walk.h (bonds one by one), pd_springs.h (all members of a law of springs
+ * from one function), pd_sweep.h (BW_PD_LANES bonds at a time).
  * All functions are local unless they say Collective; none allocates but prepare. */
 #pragma once
 #include "bw_pd_body.h"
@@ -22,10 +22,10 @@ typedef struct {
   const char *meaning; /* a phrase, with the default */
 } bw_pd_law_key;
 
-/* Passes over the blocks first .. last-1. The last pass of a law leaves the acceleration by internal
- * forces, L/rho, in pd->a. check (never while pd->breakage is off): it also notes in pd->bonds.hit
- * (from n_hit on, which it raises) the blocks that hold a bond beyond its limit. damping: it also fills pd->load.damp with the pair damping
- * (asked only of a law that `damps`). */
+/* Passes over the blocks first .. last-1. The last pass of a law leaves the acceleration by
+ * internal forces, L/rho, in pd->a. check (never while pd->breakage is off): it also notes in
+ * pd->bonds.hit (from n_hit on, which it raises) the blocks that hold a bond beyond its limit.
+ * damping: it also fills pd->load.damp with the pair damping (asked only of a law that `damps`). */
 typedef void (*bw_pd_sweep)(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping);
 
 struct bw_pd_law {
@@ -55,20 +55,20 @@ struct bw_pd_law {
   /* Energy of the bond of a lane of a slot, the owner's half [M L^2/T^2]. */
   double (*bond_energy)(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
                         int lane);
-  /* Elastic energy that the given lanes of a block hold [M L^2/T^2]; summed over all blocks and ranks
-   * every bond counts once. Its fields are those of the last evaluation. */
+  /* Elastic energy that the given lanes of a block hold [M L^2/T^2]; summed over all blocks and
+   * ranks every bond counts once. Its fields are those of the last evaluation. */
   double (*energy)(const bw_pd_body *pd, const bw_pd_block *block, uint8_t lanes);
   /* Energy dissipated inside particles so far [M L^2/T^2]; NULL: none. */
   double (*dissipated)(const bw_pd_body *pd);
 
   /* pd->frequency2: a bound of the square of the largest angular frequency [1/T^2]. Collective. */
   bw_status (*bound)(bw_pd_body *pd);
-  /* kx (n,3) <- K x of the own particles: minus the force density linearised about the reference shape,
-   * bonds that hold only; x in storage arrays, copies current [M/(L^2 T^2)]. A law of several passes
-   * may send values on the way: then it is collective. */
+  /* kx (n,3) <- K x of the own particles: minus the force density linearised about the reference
+   * shape, bonds that hold only; x in storage arrays, copies current [M/(L^2 T^2)]. A law of
+   * several passes may send values on the way: then it is collective. */
   void (*tangent)(const bw_pd_body *pd, bw_real *const x[3], double kx[]);
-  /* row (n) <- half of the sum over a particle's bonds of their stiffness: with these masses and unit
-   * step no frequency of a state that holds is above 2 (Gershgorin); never 0, see
+  /* row (n) <- half of the sum over a particle's bonds of their stiffness: with these masses and
+   * unit step no frequency of a state that holds is above 2 (Gershgorin); never 0, see
    * bw_pd_body_fill_rows [M/(L^3 T^2)]. */
   void (*rows)(const bw_pd_body *pd, double row[]);
   /* Adds J times the Cauchy stress at a lane of a block [M/(L T^2)]. */

@@ -1,7 +1,7 @@
 /* pd_level.h -- what all particles of one spacing share: a row of the table of levels.
  *
- * Today a body has one row. Whatever reads a spacing, a volume, a horizon or a stencil takes it from
- * the row of its particle (or block). */
+ * Today a body has one row. Whatever reads a spacing, a volume, a horizon or a stencil takes it
+ * from the row of its particle (or block). */
 #pragma once
 #include "bw_pd_body.h"
 

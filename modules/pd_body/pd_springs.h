@@ -3,9 +3,9 @@
  * A spring pulls along its bond, by what this bond alone does. A source that says
  *   #define BW_PD_SPRING my_spring
  *   #include "pd_springs.h"
- * writes my_spring(pd, b, r), what the bond b does when it is r long, and puts the members below that
- * are of use to it in the table of its law. They are compiled together with my_spring: nothing is
- * called per bond.
+ * writes my_spring(pd, b, r), what the bond b does when it is r long, and puts the members below
+ * that are of use to it in the table of its law. They are compiled together with my_spring: nothing
+ * is called per bond.
  *   L_h = sum_l f e Gamma dV_l,   energy 1/2 sum_h sum_l w Gamma dV_h dV_l,   f = dw/dr
  * over the bonds that hold, e the present direction. A law whose speed matters writes a sweep that
  * takes BW_PD_LANES bonds at a time, as pd_bond does. */

@@ -46,7 +46,8 @@ INLINE const bw_real *rows_of(const sweep *s, const bw_pd_block *block)
   return s->row + g * (size_t)(s->pd->config.n_group + 1) * s->pair;
 }
 
-/* A constant of the law for a slot's bonds: that of the row, or, where groups meet, of each lane. */
+/* A constant of the law for a slot's bonds: that of the row, or, where groups meet, of each
+ * lane. */
 INLINE vec constant_of(const sweep *s, const bw_pd_block *block, const bw_pd_slot *slot,
                        const bw_real *row, int column, bool mixed)
 {

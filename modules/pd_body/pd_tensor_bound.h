@@ -15,7 +15,8 @@
 /* T of a block's lanes, symmetric rows of six [M/(L^3 T^2)]. */
 typedef double bw_pd_tensors[BW_PD_LANES][BW_PD_SYMMETRIC];
 
-/* Raises *most to twice the largest eigenvalue of a block's T over density [1/T^2]. BW_EMEM. Local. */
+/* Raises *most to twice the largest eigenvalue of a block's T over density [1/T^2]. BW_EMEM.
+ * Local. */
 bw_status bw_pd_body_bound_block(const bw_pd_body *pd, const bw_pd_block *block, bw_pd_tensors T,
                                  double *most) BW_MUST_CHECK;
 /* pd->frequency2 from what each rank found, and how it fared. Collective. */

@@ -1,9 +1,10 @@
 /* pd_walk.h -- the bonds of a block one by one, with both ends, rest length and weight.
  *
  *   for (bw_pd_walk b = bw_pd_walk_of(pd, block, lanes); bw_pd_walk_next(&b);) ...
- * For whatever is not the sweep of a fast law, which takes BW_PD_LANES bonds at a time (pd_sweep.h).
- * A slot's lanes follow each other, slots come in stencil order: each family is summed in that order
- * on any number of ranks. The bond that is looked at may be cut (bw_pd_body_cut). Local. */
+ * For whatever is not the sweep of a fast law, which takes BW_PD_LANES bonds at a time
+ * (pd_sweep.h). A slot's lanes follow each other, slots come in stencil order: each family is
+ * summed in that order on any number of ranks. The bond that is looked at may be cut
+ * (bw_pd_body_cut). Local. */
 #pragma once
 #include "pd_body.h"
 

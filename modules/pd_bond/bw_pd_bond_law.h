@@ -2,9 +2,9 @@
  *
  *   L_h = sum_l c0 alpha_hl lambda_hl s_hl e_hl Gamma_hl dV_l,   s = (|xi + eta| - |xi|)/|xi|
  * with e the present direction of the bond, lambda 1 while it holds (POROUS 3.29-3.39 with
- * ERRATA 1, 2, 11, 14). A bond with s > s0 breaks for good, in tension only. Poisson's ratio is 1/4 in 3D and
- * plane strain, 1/3 in plane stress. Between two groups a bond has the harmonic mean of their
- * micromoduli and its own fracture energy (bw_pd_body_config.joint_G0). */
+ * ERRATA 1, 2, 11, 14). A bond with s > s0 breaks for good, in tension only. Poisson's ratio is 1/4
+ * in 3D and plane strain, 1/3 in plane stress. Between two groups a bond has the harmonic mean of
+ * their micromoduli and its own fracture energy (bw_pd_body_config.joint_G0). */
 #pragma once
 #include "bw_pd_body.h"
 

@@ -1,4 +1,5 @@
-/* A bound of the largest frequency of the intact network: that of its tensors (pd_tensor_bound.h). */
+/* A bound of the largest frequency of the intact network: that of its tensors
+ * (pd_tensor_bound.h). */
 #include "pd_bond.h"
 #include "pd_tensor_bound.h"
 #include "pd_walk.h"

@@ -61,8 +61,8 @@ bw_status bw_pd_bond__full_family(bw_pd_body *pd)
   return BW_OK;
 }
 
-/* After material and the sums. Between two groups both c0 and G0 c0 scale with their E, whose harmonic
- * mean the material has taken. */
+/* After material and the sums. Between two groups both c0 and G0 c0 scale with their E, whose
+ * harmonic mean the material has taken. */
 void bw_pd_bond__calibrate(bw_pd_body *pd)
 {
   const bw_pd_body_config *c = &pd->config;

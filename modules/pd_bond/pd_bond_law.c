@@ -40,8 +40,8 @@ double bw_pd_bond__joint_E(const bw_pd_body_config *c, int g, int h)
   return g == h ? a : 2 * a * b / (a + b);
 }
 
-/* POROUS 3.21 and 3.27 with ERRATA 1; both are proportional to E and G0/E, so that bonds between two
- * groups have those of the harmonic mean of the two E. */
+/* POROUS 3.21 and 3.27 with ERRATA 1; both are proportional to E and G0/E, so that bonds between
+ * two groups have those of the harmonic mean of the two E. */
 void bw_pd_bond__material(bw_pd_body *pd)
 {
   bw_pd_body_config *c = &pd->config;
@@ -112,8 +112,8 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   /* Until the correction by tensor says otherwise a full family is not corrected. */
   for (int q = 0; q < directions && st == BW_OK; q++)
     state->bulk[q] = 1;
-  /* The factors of a body's surface refer to the full family's sums, and the tensor's factors change
-   * what a full family holds: in this order. */
+  /* The factors of a body's surface refer to the full family's sums, and the tensor's factors
+   * change what a full family holds: in this order. */
   BW_THEN(st, bw_pd_bond__full_family(pd));
   BW_TRY(bw_comm_agree(pd->comm, st));
   bw_pd_bond__material(pd);

@@ -266,7 +266,8 @@ double bw_pd_contact_time(const bw_pd_contact *c)
   double most = 0;
   for (int g = 0; g < pd->config.n_group; g++)
     for (int h = 0; h < pd->config.n_group; h++) {
-      /* Two masses on one spring of stiffness k_c/r_c dV^2: w^2 is the sum of both accelerations. */
+      /* Two masses on one spring of stiffness k_c/r_c dV^2: w^2 is the sum of both
+       * accelerations. */
       const bw_pd_pair a = bw_pd_contact__pair(c, g, h), b = bw_pd_contact__pair(c, h, g);
       most = fmax(most, (a.k + b.k) / fmin(a.reach, b.reach));
     }

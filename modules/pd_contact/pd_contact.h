@@ -61,7 +61,8 @@ double bw_pd_contact__repel(bw_pd_pair *pair, const double d[3], double r2, doub
 /* The pair law of a particle of group g with one of group h. */
 bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h);
 
-/* pd_contact_wall.c. act returns energy as repel does; with force adds to extra, sets wall_force. */
+/* pd_contact_wall.c. act returns energy as repel does; with force adds to extra, sets
+ * wall_force. */
 bw_status bw_pd_contact__wall_search(bw_pd_contact *c) BW_MUST_CHECK;
 bw_status bw_pd_contact__wall_update(bw_pd_contact *c) BW_MUST_CHECK;
 double bw_pd_contact__wall_act(bw_pd_contact *c, bool force);

@@ -1,8 +1,8 @@
 /* Repulsion between bodies: who may push whom, and the forces of the pairs that a search has found.
  *
- * Every rank computes the force on its own particles. Both ends of a pair see the same distance and the
- * same constants, so that the two forces are opposite to the last bit, and half of the energy is booked
- * at either end. */
+ * Every rank computes the force on its own particles. Both ends of a pair see the same distance and
+ * the same constants, so that the two forces are opposite to the last bit, and half of the energy
+ * is booked at either end. */
 #include "pd_contact_between.h"
 #include "bw_memory.h"
 

@@ -1,8 +1,8 @@
 /* pd_contact_between.h -- state of the contact between bodies, shared by its sources.
  *
- * A row of the lists below is a particle that may be near another body: own ones first, then what other
- * ranks sent. `kind` of a row numbers bodies and their groups in one: the law of a pair follows from
- * the kinds of both. */
+ * A row of the lists below is a particle that may be near another body: own ones first, then what
+ * other ranks sent. `kind` of a row numbers bodies and their groups in one: the law of a pair
+ * follows from the kinds of both. */
 #pragma once
 #include "bw_particles_cells.h"
 #include "bw_pd_contact_between.h"

@@ -1,8 +1,8 @@
 /* Pairs of particles of different bodies: who may be near another body, copies, cells.
  *
- * Each rank tells the box of its part of every body. A particle in no other body's box, with the reach
- * and the skin around it, has nothing to meet and is in no list: bodies that are apart cost nothing
- * beyond the boxes. */
+ * Each rank tells the box of its part of every body. A particle in no other body's box, with the
+ * reach and the skin around it, has nothing to meet and is in no list: bodies that are apart cost
+ * nothing beyond the boxes. */
 #include "bw_memory.h"
 #include "pd_contact_between.h"
 
@@ -30,7 +30,8 @@ static bool acts(const bw_pd_body *pd, size_t i)
   return !(pd->points.kind[i] & BW_PD_RETIRED);
 }
 
-/* Boxes of all ranks' parts of all bodies, (ranks, n_body, BOX) lower and upper corners. Collective. */
+/* Boxes of all ranks' parts of all bodies, (ranks, n_body, BOX) lower and upper corners.
+ * Collective. */
 static bw_status boxes(const bw_pd_contact_between *c, double **box)
 {
   double *mine = NULL, y[3];

@@ -42,6 +42,8 @@ static bw_status join_own(joiner *j)
 {
   bw_pd_link *link = NULL;
   BW_TRY(BW_ALLOCATE(&link, (size_t)bw_solid_max_family(j->pd)));
+  /* Bonds within the rank join at once; those to copies wait until the others have joined
+   * theirs. */
   for (int pass = 0; pass < 2; pass++) { /* count the bonds to copies, then list them */
     size_t found = 0;
     for (size_t h = 0; h < j->n; h++) {

@@ -25,8 +25,8 @@ void bw_pd_fragment_release(bw_pd_fragments *f)
   *f = (bw_pd_fragments){0};
 }
 
-/* Size and label of that piece which comes first of those given, one by each rank (NULL: none); where
- * there is none on any rank, particles are 0. Collective. */
+/* Size and label of that piece which comes first of those given, one by each rank (NULL: none);
+ * where there is none on any rank, particles are 0. Collective. */
 static bw_pd_fragment first_of(const bw_comm *comm, const bw_pd_fragment *mine)
 {
   int64_t particles = mine != NULL ? mine->particles : 0;
@@ -61,8 +61,8 @@ bw_status bw_pd_fragment_visit(const bw_comm *comm, const bw_pd_fragments *f,
 {
   size_t done = 0; /* of own */
   for (int64_t left = f->total; left > 0;) {
-    /* Each rank looks BATCH pieces ahead. What does not come after the last one that any rank sees is
-     * complete: no rank has another piece that belongs between. */
+    /* Each rank looks BATCH pieces ahead. What does not come after the last one that any rank sees
+     * is complete: no rank has another piece that belongs between. */
     const size_t ahead = f->n - done < BATCH ? f->n - done : BATCH;
     const bool more = done + ahead < f->n;
     const bw_pd_fragment last = first_of(comm, more ? &f->own[done + ahead - 1] : NULL);

@@ -1,7 +1,8 @@
-/* What is known of a piece: sums over its particles, rank by rank, added up on the rank it belongs to.
+/* What is known of a piece: sums over its particles, rank by rank, added up on the rank it belongs
+ * to.
  *
- * Two rounds: particles, places and velocities first; then, when the centre has come back to all ranks
- * that have a part of the piece, angular momentum and inertia about it. */
+ * Two rounds: particles, places and velocities first; then, when the centre has come back to all
+ * ranks that have a part of the piece, angular momentum and inertia about it. */
 #include "bw_memory.h"
 #include "pd_fragment_internal.h"
 
@@ -106,8 +107,9 @@ static bw_status sum_parts(const particles *p, merger *m)
   return BW_OK;
 }
 
-/* Angular momentum and inertia (xx yy zz xy xz yz) of the parts about the pieces' centres, over the mass
- * of a particle of the first group; X and V of the parts are those of the whole pieces' centres by now. */
+/* Angular momentum and inertia (xx yy zz xy xz yz) of the parts about the pieces' centres, over the
+ * mass of a particle of the first group; X and V of the parts are those of the whole pieces'
+ * centres by now. */
 static void sum_moments(const particles *p, merger *m)
 {
   for (size_t h = 0; h < p->n; h++) {
@@ -213,7 +215,7 @@ static bw_status merge_all(const particles *p, merger *m, bw_pd_fragments *out)
   add_up(m);
   tell_centres(m);
   BW_TRY(bw_comm_agree(p->comm, list_pieces(p, m, out)));
-  /* Every part knows the centre of its piece: the moments about it can be summed in the same way. */
+  /* Every part knows the centre of its piece: moments about it can be summed the same way. */
   sum_moments(p, m);
   add_up(m);
   for (size_t q = 0; q < m->n_whole; q++) /* the same labels in the same order */

@@ -103,8 +103,8 @@ typedef struct {
   double spin[3];     /* I^-1 L [1/T]; 0 about axes without inertia (single particles, rods) */
 } bw_pd_fragment;
 
-/* The pieces that a body is in. No rank holds the list of all: each piece belongs to the rank of the
- * particle whose id is its label, so that a rank has no more pieces than particles. */
+/* The pieces that a body is in. No rank holds the list of all: each piece belongs to the rank of
+ * the particle whose id is its label, so that a rank has no more pieces than particles. */
 enum { BW_PD_FRAGMENT_LARGEST = 16 };
 typedef struct {
   int64_t total;    /* pieces on all ranks */
@@ -115,20 +115,20 @@ typedef struct {
   bw_pd_fragment *own; /* (n) in the same order; see bw_pd_fragment_release */
 } bw_pd_fragments;
 
-/* Pieces connected by intact bonds, as they are now. label (count of pd): the piece of each own particle;
- * may be NULL. *out is filled, owned by the caller (bw_pd_fragment_release, also after a failure); NULL
- * where only labels are wanted. The centre of a piece that meets itself through a periodic direction
- * depends on where it is cut there. Sums over particles are in order of ranks. BW_EMEM on all ranks.
- * Collective. */
+/* Pieces connected by intact bonds, as they are now. label (count of pd): the piece of each own
+ * particle; may be NULL. *out is filled, owned by the caller (bw_pd_fragment_release, also after a
+ * failure); NULL where only labels are wanted. The centre of a piece that meets itself through a
+ * periodic direction depends on where it is cut there. Sums over particles are in order of ranks.
+ * BW_EMEM on all ranks. Collective. */
 bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[],
                                     bw_pd_fragments *out) BW_MUST_CHECK;
 
 /* Free what *f owns and clear it; a cleared one is fine. Local. */
 void bw_pd_fragment_release(bw_pd_fragments *f);
 
-/* Hand all pieces of all ranks, in the order of `largest`, to visit(context, n, piece) on rank 0, some at
- * a time: it never holds more than a thousand of each rank. `visit` is not called on the other ranks.
- * BW_EMEM on all ranks. Collective. */
+/* Hand all pieces of all ranks, in the order of `largest`, to visit(context, n, piece) on rank 0,
+ * some at a time: it never holds more than a thousand of each rank. `visit` is not called on the
+ * other ranks. BW_EMEM on all ranks. Collective. */
 bw_status bw_pd_fragment_visit(const bw_comm *comm, const bw_pd_fragments *f,
                                void (*visit)(void *context, size_t n, const bw_pd_fragment piece[]),
                                void *context) BW_MUST_CHECK;

@@ -60,7 +60,8 @@ static void lay_out_sectors(bw_pd_interface__stencil *s)
       s->adjacent[k] = 1u << (unsigned)((k + 1) % 8) | 1u << (unsigned)((k + 7) % 8);
       middle[0] = cos(k * acos(-1.0) / 4.0), middle[1] = sin(k * acos(-1.0) / 4.0);
     } else {
-      /* In space: the octant's other two sectors, and the same axis in the two octants beside it. */
+      /* In space: the octant's other two sectors, and the same axis in the two octants beside
+       * it. */
       const int octant = k / 3, axis = k % 3;
       s->adjacent[k] = 0;
       for (int d = 0; d < 3; d++) {

@@ -175,7 +175,8 @@ static bw_status take_patch(surface *s, const bw_shape__chart *c, const double u
       squared += (p.x[d] - middle.x[d]) * (p.x[d] - middle.x[d]);
     reach = fmax(reach, sqrt(squared));
   }
-  /* `shown` changes by no more than the way; patches are curved, so that theirs is a little more. */
+  /* `shown` changes by no more than the way; patches are curved, so that theirs is a little
+   * more. */
   const double f = shown(s, &middle), safe = 1.2 * reach + 4.0 * s->shift;
   if (f > safe) return put(s, &middle, c->area(c, u, v));
   return f < -safe ? BW_OK : take_cut(s, c, u, v);

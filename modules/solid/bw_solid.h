@@ -79,7 +79,8 @@ typedef struct {
 /* The defaults; ds, rho and E are still to be set. Local. */
 bw_solid_config bw_solid_config_default(void);
 
-/* The laws that a case file can name, ends with NULL; the first one is that of config.law = NULL. */
+/* The laws that a case file can name, ends with NULL; the first one is that of config.law =
+ * NULL. */
 extern const bw_pd_law *const bw_solid_laws[];
 const bw_pd_law *bw_solid_law_by_name(const char *name); /* NULL: there is none. Local. */
 void bw_solid_laws_describe(FILE *out); /* each law and the keys it reads, a line each. Local. */
@@ -288,8 +289,8 @@ enum { BW_SOLID_RESTART_SUMS = 11 }; /* sums of the whole solid in a restart */
 size_t bw_solid_restart_row(const bw_solid *solid);
 
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
- * part, 1 when retired, the law's saved fields (n, restart_row), and the ledger's running sums of all
- * ranks (11: damping, fracture, external, directed bonds cut by pre-cracks, retired, impulse on
+ * part, 1 when retired, the law's saved fields (n, restart_row), and the ledger's running sums of
+ * all ranks (11: damping, fracture, external, directed bonds cut by pre-cracks, retired, impulse on
  * walls, force on them). Set bits and rows, in any order, then force and prescribed velocities: the
  * run goes on to the same bits. Both collective. */
 void bw_solid_get_restart(const bw_solid *solid, double rows[], double sums[]);

@@ -29,8 +29,9 @@ struct bw_solid {
   bw_solid_book book;
 };
 
-/* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. begin is collective and its
- * status the same on all ranks; leap: BW_EDIVERGED when a particle moved more than a horizon. */
+/* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. begin is collective
+ * and its status the same on all ranks; leap: BW_EDIVERGED when a particle moved more than a
+ * horizon. */
 bw_status bw_solid__begin(bw_solid *s) BW_MUST_CHECK;
 bw_status bw_solid__leap(bw_solid *s, double dt) BW_MUST_CHECK;
 void bw_solid__land(bw_solid *s, double dt);

@@ -1,8 +1,8 @@
 /* Several solids stepped together: the pieces of a Verlet step in turn, and contact between them.
  *
- * Between steps load.extra of every solid holds the contact between solids too. Whatever evaluates one
- * solid by itself (a new state, retiring) loses that share: the counts of evaluations tell, and the next
- * step begins with the forces of all. */
+ * Between steps load.extra of every solid holds the contact between solids too. Whatever evaluates
+ * one solid by itself (a new state, retiring) loses that share: the counts of evaluations tell, and
+ * the next step begins with the forces of all. */
 #include "bw_memory.h"
 #include "bw_pd_contact_between.h"
 #include "bw_solid_set.h"
@@ -101,8 +101,8 @@ static bw_status add_between(bw_solid_set *set)
   return BW_OK;
 }
 
-/* Forces of all solids and between them. Everybody evaluates, also where one has failed: the exchanges
- * are collective. */
+/* Forces of all solids and between them. Everybody evaluates, also where one has failed: the
+ * exchanges are collective. */
 static bw_status evaluate_all(bw_solid_set *set, bool check_bonds)
 {
   bw_status st = BW_OK;
@@ -114,7 +114,8 @@ static bw_status evaluate_all(bw_solid_set *set, bool check_bonds)
   return st == BW_OK ? between : st;
 }
 
-/* Do all solids hold the forces of the present motion, those between them too? A restart gives them. */
+/* Do all solids hold the forces of the present motion, those between them too? A restart gives
+ * them. */
 static bool is_current(const bw_solid_set *set)
 {
   for (int q = 0; q < set->n; q++) {
@@ -147,8 +148,8 @@ bw_status bw_solid_set_step(bw_solid_set *set, double dt)
 {
   bw_status st = BW_OK;
   BW_TRY(check_step(set, dt));
-  /* Prescribed velocities first, as damping depends on them; where a solid has to evaluate itself for
-   * its new state, all do, with the forces between them. */
+  /* Prescribed velocities first, as damping depends on them; where a solid has to evaluate itself
+   * for its new state, all do, with the forces between them. */
   for (int q = 0; q < set->n; q++)
     BW_TRY(bw_solid__begin(set->solid[q]));
   BW_TRY(make_current(set));

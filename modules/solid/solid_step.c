@@ -122,7 +122,8 @@ static void prescribed_work(bw_solid *s, double dt)
 }
 
 /* v += h (a + extra + f) for the free ones; adds to work[]: external, damping, by the mass of the
- * first group. Without contact and damping (`loaded`) extra is not read; nor weight with one group. */
+ * first group. Without contact and damping (`loaded`) extra is not read; nor weight with one
+ * group. */
 static inline __attribute__((always_inline)) void kick_all(bw_pd_body *pd, bw_real h, bool loaded,
                                                            bool one_group, double work[2])
 {

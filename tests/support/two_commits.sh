@@ -1,3 +1,4 @@
+# shellcheck shell=sh disable=SC2154 # $source and $work are those of who sources this
 # Sourced by tests/same_bits.sh and tests/same_speed.sh: two commits, each with its tree and its build.
 # Before: $work, a folder that may be there from an earlier comparison. Needs git, cmake, python3.
 

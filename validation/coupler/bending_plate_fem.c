@@ -12,13 +12,13 @@
  *            that the correction counts, and up to 8 % because it gives too much to layers
  *            pulled along the surface; measured without fluid (rows cantilever), and E lowered by
  * it. Tolerance  cantilever: `volume`: these three parts. `tensor`: 0.4 (horizon/h)^2 for layers
- * that are lumps and 0.11 horizons of length for the clamp (docs/verification/pd_bond): 0.6 + 1.4 % at h =
- * 0.1, horizon 0.0125; twice that allowed. force: the wall is known to 0.1 h (Breugem 2012); it
- * moves the gap of 0.5 heights and F goes as 1/gap^2 here (velocity head in the gap): 2 (0.1 h)/0.5
- * = 1 % at 40 cells, with 2 % for slip: 3 %. tip: goes with the force, and with the plate's own 2
- * %: 5 %. converging: at least first order between 20 and 40 cells per height, so the error of the
- * force falls to a half or below. That of the tip is reported: a force too low and a plate too soft
- * cancel on the coarse grid.
+ * that are lumps and 0.11 horizons of length for the clamp (docs/verification/pd_bond): 0.6 + 1.4 %
+ * at h = 0.1, horizon 0.0125; twice that allowed. force: the wall is known to 0.1 h (Breugem 2012);
+ * it moves the gap of 0.5 heights and F goes as 1/gap^2 here (velocity head in the gap): 2 (0.1
+ * h)/0.5 = 1 % at 40 cells, with 2 % for slip: 3 %. tip: goes with the force, and with the plate's
+ * own 2 %: 5 %. converging: at least first order between 20 and 40 cells per height, so the error
+ * of the force falls to a half or below. That of the tip is reported: a force too low and a plate
+ * too soft cancel on the coarse grid.
  * BUILD modules=coupler,shape
  * TEST  ranks=1 timeout=3600 */
 #include "bw_validation.h"

@@ -1,18 +1,20 @@
 /* A bar of two halves: modulus and stress at rest, a pulse in passing, two densities.
  *
  * Claim      Each half keeps its own modulus, the stress does not change at the joint, and a long
- *            pulse has its own speed in each half and is thrown back by the joint as impedances say.
- * Reference  Bar in tension: strain = sigma/E of each half. Waves: c = sqrt(M/rho), M = 9 E/8 (plane
- *            stress, held sideways by periods), times the root of the family's own modulus over M
- *            (lattice_sum.h) and of 1 - (k delta)^2/24, k = 1/width of the pulse; the momentum of the
- *            pulse thrown back is (Z2 - Z1)/(Z2 + Z1) of the one that came, Z = rho c, and turned.
+ *            pulse has its own speed in each half and is thrown back by the joint as impedances
+ *            say.
+ * Reference  Bar in tension: strain = sigma/E of each half. Waves: c = sqrt(M/rho), M = 9 E/8
+ *            (plane stress, held sideways by periods), times the root of the family's own modulus
+ *            over M (lattice_sum.h) and of 1 - (k delta)^2/24, k = 1/width of the pulse; the
+ *            momentum of the pulse thrown back is (Z2 - Z1)/(Z2 + Z1) of the one that came, Z = rho
+ *            c, and turned.
  * Measured   displacements and stress of the linear solve (correction by tensor) in windows one
  *            width of the bar and more away from the joint and the ends; mean stress of particles
  *            over every cross-section near the joint but further from it than a horizon, and over
  *            all within two horizons; centroids of kinetic energy of the pulse before and after the
  *            joint at two times each; momentum of the first half before and after.
- * Tolerance  modulus and stress in the windows 1 %, asked for. Cross-sections near the joint 2 %: the
- *            skin of the free faces is some 3 % (pd_bond.uniform_stress), not the same in both
+ * Tolerance  modulus and stress in the windows 1 %, asked for. Cross-sections near the joint 2 %:
+ *            the skin of the free faces is some 3 % (pd_bond.uniform_stress), not the same in both
  *            materials, on a fifth of the height. Within a horizon of the joint a particle's stress
  *            is no flux of momentum: a bond across gives half of its virial to either end, however
  *            soft that end's own bonds are (-17 and +20 %); the mean over both sides is 1.
@@ -37,7 +39,8 @@ static bw_solid_config halves(void)
   return c;
 }
 
-/* `half` columns of each material, `wide` rows; the first and the last `held` columns are prescribed. */
+/* `half` columns of each material, `wide` rows; the first and the last `held` columns are
+ * prescribed. */
 static bw_status make(const bw_comm *comm, const bw_solid_config *c, int half, int wide, int held,
                       bw_solid **out)
 {
@@ -201,7 +204,8 @@ static bw_status waves(bw_validation *v)
   c.period[1] = 1;
   BW_TRY(make(bw_validation_comm(v), &c, LONG, 1, 0, &s));
   BW_TRY(body_rows_make(s, &r));
-  /* A slow and a fast half: the second pulse is c2/c1 as wide. Dispersion is that of k = 1/width. */
+  /* A slow and a fast half: the second pulse is c2/c1 as wide. Dispersion is that of k =
+   * 1/width. */
   const double ratio = family_modulus(), c1 = sqrt(1.125 * E / RHO * ratio);
   const double c2 = sqrt(1.125 * E2 / RHO2 * ratio);
   const pulse p = {0.35 * LONG, 60, c1};

@@ -246,8 +246,9 @@ static bw_status one(bw_validation *v, const body *b)
 }
 
 #define PI           3.14159265358979323846
-#define BALL(r)      .kind = BW_SHAPE_SPHERE, .centre = {30.2, 29.7, 30.1}, .radius = (r)
-#define ROUND(r)     .kind = BW_SHAPE_CYLINDER, .centre = {30.2, 29.7, 30.1}, .radius = (r), .axis = 2
+#define MIDDLE       .centre = {30.2, 29.7, 30.1}
+#define BALL(r)      .kind = BW_SHAPE_SPHERE, MIDDLE, .radius = (r)
+#define ROUND(r)     .kind = BW_SHAPE_CYLINDER, MIDDLE, .radius = (r), .axis = 2
 #define BOX(x, y, z) .kind = BW_SHAPE_BOX, .upper = {(x), (y), (z)}
 /* One pore of radius r > p/2 in a cell of pitch p leaves a sphere less six caps. */
 #define PORE(r, p) (4 * PI * (r) * (r)-6 * 2 * PI * (r) * ((r) - (p) / 2.0))

@@ -1,7 +1,8 @@
 /* A Taylor-Green vortex dies out in a periodic box: energy against its exact decay.
  *
  * u = U sin(k x) cos(k y), v = -U cos(k x) sin(k y), k = 2 pi/L, solves the Navier-Stokes equations
- * in the plane with the factor exp(-2 nu k^2 t) (Taylor and Green 1937), its energy with the square.
+ * in the plane with the factor exp(-2 nu k^2 t) (Taylor and Green 1937), its energy with the
+ * square.
  * Run:   mpirun -n 2 build/bin/taylor_green cases/taylor_green/taylor_green.yaml --out out/vortex
  * BUILD modules=ns_channel,vtk */
 #include "bw_case.h"

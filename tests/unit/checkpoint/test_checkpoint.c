@@ -203,9 +203,9 @@ START_TEST(tables_by_other_ids)
 }
 END_TEST
 
-/* Shares that are moved in many operations, and by some ranks in fewer than by others. 200 bytes are 12
- * rows of a table of 1001, or one layer of a field. What was written so is read in one operation as
- * well, and the other way round. */
+/* Shares that are moved in many operations, and by some ranks in fewer than by others. 200 bytes
+ * are 12 rows of a table of 1001, or one layer of a field. What was written so is read in one
+ * operation as well, and the other way round. */
 START_TEST(in_many_operations)
 {
   bw_comm *cut = NULL;

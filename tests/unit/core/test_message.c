@@ -79,7 +79,8 @@ START_TEST(a_message_is_cut)
 }
 END_TEST
 
-/* n items of ITEM bytes, item i to rank (me + i i) % size; there and back. Filled: received and answer. */
+/* n items of ITEM bytes, item i to rank (me + i i) % size; there and back. Filled: received and
+ * answer. */
 static void move(const bw_comm *comm, size_t n, unsigned char *received, unsigned char *answer)
 {
   const int me = bw_comm_rank(comm), size = bw_comm_size(comm);

@@ -12,7 +12,8 @@ typedef struct {
   const bw_comm *comm; /* NULL: the world */
 } grid_case;
 
-/* The ranks of the world, with messages of at most so many bytes: not a whole number of bw_reals. */
+/* The ranks of the world, with messages of at most so many bytes: not a whole number of bw_reals.
+ */
 enum { GRID_SHORT_MESSAGE = 101 };
 static inline bw_comm *grid_short_messages(void)
 {

@@ -91,7 +91,8 @@ START_TEST(all_pairs_with_periods)
 }
 END_TEST
 
-/* What a sum over neighbours depends on: cells as `around` has them, in each the last point first. */
+/* What a sum over neighbours depends on: cells as `around` has them, in each the last point
+ * first. */
 START_TEST(the_order_of_neighbours_is_fixed)
 {
   const double size[3] = {1, 1, 1}, period[3] = {0, 0.9, 0};

@@ -84,7 +84,8 @@ static void list_places(world *w)
     }
 }
 
-/* Keep the places that are occupied, as their owners tell, and check that against the list of all. */
+/* Keep the places that are occupied, as their owners tell, and check that against the list of
+ * all. */
 static void drop_empty(world *w)
 {
   int32_t *index = NULL;

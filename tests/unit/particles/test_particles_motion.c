@@ -208,8 +208,8 @@ static bool in_sample(const motion *m, size_t i, int step)
   return false;
 }
 
-/* Every own point finds its neighbours and gives each of them its weight; what copies are given goes
- * back to their owners. */
+/* Every own point finds its neighbours and gives each of them its weight; what copies are given
+ * goes back to their owners. */
 static void check_neighbours(motion *m, const surroundings *s, int step)
 {
   enum { ROOM = 200 };

@@ -1,5 +1,5 @@
-/* Fragments that lie over many ranks, against a search through all bonds on one: labels, sums, the order of
- * the list, and that no rank holds more pieces than particles.
+/* Fragments that lie over many ranks, against a search through all bonds on one: labels, sums, the
+ * order of the list, and that no rank holds more pieces than particles.
  * TEST ranks=1,2,3,4
  * BUILD modules=shape */
 #include "body.h"
@@ -119,7 +119,8 @@ typedef struct {
   int64_t seen, particles;
 } visitor;
 
-/* Sums of up to 5000 numbers up to 60: round-off by their number would be 1e-10, by its root 1e-12. */
+/* Sums of up to 5000 numbers up to 60: round-off by their number would be 1e-10, by its root 1e-12.
+ */
 static const double ROUND_OFF = 1e4 * BW_REAL_EPSILON;
 
 static void look(void *context, size_t n, const bw_pd_fragment piece[])
@@ -225,7 +226,8 @@ static void cut(body *b, double x0, double y0, double x1, double y1)
   bw_check_ok(bw_solid_precrack(b->pd, from, to, NULL));
 }
 
-/* One strip that runs to and fro through the blocks of all ranks, eight times; then cut in the middle. */
+/* One strip that runs to and fro through the blocks of all ranks, eight times; then cut in the
+ * middle. */
 START_TEST(a_strip_that_winds_through_all_ranks)
 {
   body b = plate(40, 40, false);
@@ -238,8 +240,8 @@ START_TEST(a_strip_that_winds_through_all_ranks)
 }
 END_TEST
 
-/* Chords at all angles: pieces of every size; then on a plate that is closed around, with one cut from
- * edge to edge: pieces lie across the seam and none meets itself. */
+/* Chords at all angles: pieces of every size; then on a plate that is closed around, with one cut
+ * from edge to edge: pieces lie across the seam and none meets itself. */
 START_TEST(pieces_of_every_size)
 {
   for (int around = 0; around < 2; around++) {

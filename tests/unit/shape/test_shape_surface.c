@@ -167,9 +167,9 @@ static void release(cover *c)
 
 /* From one spacing to an eighth of it. Areas of whole patches are exact; an edge is cut by straight
  * lines over parts of a patch: second order, of which 1.9 is asked over three halvings, as the
- * error depends a little on where edges lie in the patches. At 0.2/8 it is bound by the sagitta of an eighth
- * of a patch along the edge, s^2/(8 R) with s = 0.025 sqrt(2)/8, R >= 0.3, times an edge of up to
- * 24 x 2 pi 0.3: 4e-4; the volume, by midpoints of curved patches, by h^2/R: 2e-3. */
+ * error depends a little on where edges lie in the patches. At 0.2/8 it is bound by the sagitta of
+ * an eighth of a patch along the edge, s^2/(8 R) with s = 0.025 sqrt(2)/8, R >= 0.3, times an edge
+ * of up to 24 x 2 pi 0.3: 4e-4; the volume, by midpoints of curved patches, by h^2/R: 2e-3. */
 START_TEST(areas_and_volumes_converge)
 {
   body all[BODIES];

@@ -1,7 +1,9 @@
-/* cubic_law.h -- springs with a cubic term: a law that is no part of Breakwater, made by its socket.
+/* cubic_law.h -- springs with a cubic term: a law that is no part of Breakwater, made by its
+ * socket.
  *
  * A bond of stretch s = (r - |xi|)/|xi| stores w = c |xi| (s^2/2 + beta s^4/4) per volume of both
- * ends, pulls with f = dw/dr = c (s + beta s^3), breaks for good at s > s0, and is steepest there. */
+ * ends, pulls with f = dw/dr = c (s + beta s^3), breaks for good at s > s0, and is steepest
+ * there. */
 #pragma once
 #define BW_PD_SPRING cubic_spring
 #include "bw_memory.h"

@@ -57,8 +57,9 @@ static void check_force(const bw_solid_config *c)
   bw_comm_destroy(&self);
 }
 
-/* A bar that is held at both ends, drawn by a strain of 1e-4 and bent: relaxation and the linear solve
- * agree to the strain, or in single precision to the residual times what bending multiplies it by. */
+/* A bar that is held at both ends, drawn by a strain of 1e-4 and bent: relaxation and the linear
+ * solve agree to the strain, or in single precision to the residual times what bending multiplies
+ * it by. */
 static void check_rest(const bw_solid_config *c)
 {
   pd_body body = pd_box(10, 4, 4);

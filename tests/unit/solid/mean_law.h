@@ -1,11 +1,13 @@
-/* mean_law.h -- a law of two passes whose particles remember: springs, and the mean stretch of a family.
+/* mean_law.h -- a law of two passes whose particles remember: springs, and the mean stretch of a
+ * family.
  *
  *   theta_h = 1/m_h sum_l s_hl Gamma dV_l,  m_h = sum_l Gamma dV_l   over the family
- * A particle stores psi = 1/2 K (1 - g a) theta^2 per volume, a the largest theta^2 there was so far,
- * besides its springs' c |xi| s^2/2. The derivative by the length of a bond has parts of both ends,
+ * A particle stores psi = 1/2 K (1 - g a) theta^2 per volume, a the largest theta^2 there was so
+ * far, besides its springs' c |xi| s^2/2. The derivative by a bond's length has parts of both ends,
  *   f_hl = c s + (p_h + p_l)/|xi|,   p_h = K (1 - g a_h) theta_h/m_h,
- * so that the second pass reads what the first has found at neighbours. While theta^2 grows, a = theta^2
- * and psi falls by 1/2 K g a da: a particle has dissipated K g a^2/4 per volume. No bond breaks. */
+ * so that the second pass reads what the first has found at neighbours. While theta^2 grows, a =
+ * theta^2 and psi falls by 1/2 K g a da: a particle has dissipated K g a^2/4 per volume. No bond
+ * breaks. */
 #pragma once
 #define BW_PD_SPRING mean_spring /* its steepest, for `bound` and `rows` */
 #include "bw_memory.h"
@@ -22,7 +24,8 @@ static mean_state *mean_of(const bw_pd_body *pd)
   return (mean_state *)pd->state;
 }
 
-/* By Cauchy's inequality m theta^2 <= sum s^2 Gamma dV: no more than springs K (1/m_h + 1/m_l)/|xi|^2. */
+/* By Cauchy's inequality m theta^2 <= sum s^2 Gamma dV: no more than springs K (1/m_h +
+ * 1/m_l)/|xi|^2. */
 static bw_pd_spring mean_spring(const bw_pd_body *pd, const bw_pd_walk *b, double r)
 {
   const mean_state *law = mean_of(pd);

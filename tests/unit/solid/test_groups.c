@@ -20,7 +20,8 @@ static void shake_plane(const double X0[3], double v[3])
   v[2] = 0;
 }
 
-/* Corrections, clouds, integrators, dampings, planes: what a mixed block has to do as the others. */
+/* Corrections, clouds, integrators, dampings, planes: what a mixed block has to do as the
+ * others. */
 enum { WAYS = 9 };
 static bw_solid_config way(int q)
 {
@@ -42,8 +43,8 @@ static bw_solid_config way(int q)
   return c;
 }
 
-/* Same material twice: numbers are the same, the order of products is not; 13 digits over 60 steps of
- * a body that breaks (1e-13 is 500 roundings of numbers near 1). */
+/* Same material twice: numbers are the same, the order of products is not; 13 digits over 60 steps
+ * of a body that breaks (1e-13 is 500 roundings of numbers near 1). */
 static void check_same(int q)
 {
   const bw_solid_config one = way(q), two = with_second(one, one.rho, one.E, one.G0);
@@ -110,8 +111,8 @@ static double energy_error(double factor, double momentum[3])
   return most;
 }
 
-/* Energy is kept to the order of Verlet: half the step, a quarter of the error (3.6 to 4.4: what the
- * next order adds at these steps). */
+/* Energy is kept to the order of Verlet: half the step, a quarter of the error (3.6 to 4.4: what
+ * the next order adds at these steps). */
 START_TEST(energy_and_momentum_are_kept_across_the_joint)
 {
   double p[3];

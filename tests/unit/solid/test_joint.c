@@ -67,10 +67,11 @@ START_TEST(a_piece_of_two_materials_has_its_centre_of_mass)
 }
 END_TEST
 
-/* A joint weaker than both sides: it parts there, nothing else breaks, and no less than its fracture
- * energy is paid: a bond goes at the end of the step in which it passes s0, so that with the lattice's
- * calibration and no surface across the joint (periodic sideways) G0 A is the least; a twentieth more
- * is what steps of a fiftieth of the limit add here, in which bonds are stretched by 3 % of s0. */
+/* A joint weaker than both sides: it parts there, nothing else breaks, and no less than its
+ * fracture energy is paid: a bond goes at the end of the step in which it passes s0, so that with
+ * the lattice's calibration and no surface across the joint (periodic sideways) G0 A is the least;
+ * a twentieth more is what steps of a fiftieth of the limit add here, in which bonds are stretched
+ * by 3 % of s0. */
 START_TEST(a_weak_joint_breaks_at_the_joint)
 {
   bw_solid_config c = two_halves(BW_PD_3D);
@@ -171,7 +172,8 @@ static double bond_energy(int32_t x, double A[6])
   return energy;
 }
 
-/* E is 1 : 5: a bond across has 2 5/6 of the softer one's stiffness, and moves 2 and 6 of density. */
+/* E is 1 : 5: a bond across has 2 5/6 of the softer one's stiffness, and moves 2 and 6 of
+ * density. */
 START_TEST(a_bond_across_takes_the_harmonic_mean)
 {
   double soft[6], across[6], stiff[6];

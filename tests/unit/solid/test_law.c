@@ -55,8 +55,9 @@ static void apart(const double X0[3], double u[3])
   u[0] = X0[0] > 0.5 ? A * 0.5 : 0;
 }
 
-/* r0 s'' = -2 c Gamma dV/rho (s + beta s^3), Gamma = 1: with s = A sin(phi) the quarter of a period is
- * the integral of 1/(w sqrt(1 + beta A^2 (1 + sin^2 phi)/2)), w the frequency of small oscillations. */
+/* r0 s'' = -2 c Gamma dV/rho (s + beta s^3), Gamma = 1: with s = A sin(phi) the quarter of a period
+ * is the integral of 1/(w sqrt(1 + beta A^2 (1 + sin^2 phi)/2)), w the frequency of small
+ * oscillations. */
 START_TEST(two_particles_swing_as_long_as_the_integral_says)
 {
   enum { N = 2000, POINTS = 64 };

@@ -1,5 +1,5 @@
-/* A law of two passes that remembers: its second pass reads what the first has found at neighbours, also
- * those of other ranks; what it remembers goes through a checkpoint.
+/* A law of two passes that remembers: its second pass reads what the first has found at neighbours,
+ * also those of other ranks; what it remembers goes through a checkpoint.
  * BUILD modules=solid_tools,checkpoint
  * TEST  ranks=1,2,3 */
 #include "bw_checkpoint.h"

@@ -2,8 +2,8 @@
  * TEST ranks=1,2,3 */
 #include "set_scene.h"
 
-/* Error of the energy over a bounce, relative, its root mean square over the time in contact, in steps of
- * `factor` of the stable one. */
+/* Error of the energy over a bounce, relative, its root mean square over the time in contact, in
+ * steps of `factor` of the stable one. */
 static double bounce(double factor, double height)
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(height), BW_PD_FREE, THROW);
@@ -40,9 +40,9 @@ static double bounces(double factor)
   return sqrt(sum / THROWS);
 }
 
-/* Verlet: half the step, a quarter of the error. Where two begin to touch the force has a kink, and how
- * far into a step that falls changes the factor of dt^2 from one contact to the next, by a factor of
- * two for one bounce; over eight throws a third of it is left either way. */
+/* Verlet: half the step, a quarter of the error. Where two begin to touch the force has a kink, and
+ * how far into a step that falls changes the factor of dt^2 from one contact to the next, by a
+ * factor of two for one bounce; over eight throws a third of it is left either way. */
 START_TEST(a_ball_bounces_off_a_turned_plate)
 {
   const double coarse = bounces(0.2), fine = bounces(0.1);
@@ -82,8 +82,8 @@ START_TEST(a_bounce_does_not_depend_on_ranks)
 }
 END_TEST
 
-/* A plate that is held gives no energy, and the ball comes back with its own. One that moves up does
- * work, which is booked: energy is that of the start and the work. */
+/* A plate that is held gives no energy, and the ball comes back with its own. One that moves up
+ * does work, which is booked: energy is that of the start and the work. */
 static void check_held(double rise)
 {
   scene s =
@@ -129,7 +129,8 @@ START_TEST(a_body_that_passes_far_away_costs_no_pairs)
 }
 END_TEST
 
-/* Two particles of two bodies: the force and the energy of the smaller reach and the harmonic mean. */
+/* Two particles of two bodies: the force and the energy of the smaller reach and the harmonic
+ * mean. */
 START_TEST(a_pair_takes_the_smaller_reach_and_the_harmonic_mean)
 {
   bw_solid_config c = pd_soft(BW_PD_3D), d = pd_soft(BW_PD_3D);

@@ -49,8 +49,8 @@ START_TEST(a_retired_ball_is_left_alone)
 }
 END_TEST
 
-/* Whatever takes the forces of one solid alone anew, with the same state: the next step has those of both,
- * once. What was left out or counted twice would be missing from the momentum. */
+/* Whatever takes the forces of one solid alone anew, with the same state: the next step has those
+ * of both, once. What was left out or counted twice would be missing from the momentum. */
 static void check_anew(void (*touch)(bw_solid *))
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);

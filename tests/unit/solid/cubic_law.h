@@ -1,9 +1,7 @@
-/* cubic_law.h -- springs with a cubic term: a law that is no part of Breakwater, made by its
- * socket.
+/* cubic_law.h -- springs with a cubic term: a law that is no part of Breakwater, by its socket.
  *
  * A bond of stretch s = (r - |xi|)/|xi| stores w = c |xi| (s^2/2 + beta s^4/4) per volume of both
- * ends, pulls with f = dw/dr = c (s + beta s^3), breaks for good at s > s0, and is steepest
- * there. */
+ * ends, pulls with f = dw/dr = c (s + beta s^3), and breaks for good at s > s0. */
 #pragma once
 #define BW_PD_SPRING cubic_spring
 #include "bw_memory.h"
@@ -12,7 +10,7 @@
 typedef struct {
   double beta; /* of the cubic term, 0 or more [-] */
   double s0;   /* critical stretch [-] */
-  double c;    /* micromodulus, from E and the horizon [M/(L^7 T^2)] */
+  double c;    /* micromodulus, from E and the horizon [M/(L^5 T^2)] */
 } cubic_state;
 
 static bw_pd_spring cubic_spring(const bw_pd_body *pd, const bw_pd_walk *b, double r)

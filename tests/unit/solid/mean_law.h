@@ -14,7 +14,7 @@
 #include "pd_springs.h"
 
 typedef struct {
-  double c, K, g;     /* [M/(L^7 T^2)], [M/(L T^2)], [-] */
+  double c, K, g;     /* [M/(L^5 T^2)], [M/(L T^2)], [-] */
   bw_real *p, *a, *m; /* storage: p is sent, a is saved, m is constant */
   bw_real *q;         /* storage: p of the tangent, sent by it */
 } mean_state;

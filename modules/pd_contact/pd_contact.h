@@ -71,6 +71,16 @@ double bw_pd_contact__wall_act(bw_pd_contact *c, bool force);
 void bw_pd_contact__place(const bw_pd_body *pd, size_t i, double X[3]);
 void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3]);
 bw_status bw_pd_contact__search(bw_pd_contact *c) BW_MUST_CHECK; /* Collective. */
+
+/* pd_contact_partners.c. Partners of all candidates one after the other; grows. Local. */
+typedef struct {
+  size_t n, room;   /* used, and how many there is room for */
+  int32_t *partner; /* (room); the caller's */
+} bw_pd_partners;
+bw_status bw_pd_contact__append(bw_pd_partners *list, int32_t partner) BW_MUST_CHECK;
+/* *busy (n_busy) <- candidates whose row start[q] .. start[q + 1] is not empty; the caller's. */
+bw_status bw_pd_contact__busy(size_t n, const size_t start[], size_t *n_busy,
+                              int32_t **busy) BW_MUST_CHECK;
 /* pd_contact_share.c: from the candidates in mine: sent, plan, and y, site, group, shift of own and
  * others. BW_EMEM. Collective. */
 bw_status bw_pd_contact__share(bw_pd_contact *c) BW_MUST_CHECK;

@@ -152,39 +152,18 @@ static bw_status share(bw_pd_contact_between *c)
   return st;
 }
 
-static bw_status append(bw_pd_contact_between *c, size_t *n, size_t *capacity, int32_t partner)
-{
-  if (*n == *capacity) {
-    int32_t *larger = NULL;
-    *capacity = 2 * *capacity + 1024;
-    BW_TRY(BW_ALLOCATE(&larger, *capacity));
-    if (*n > 0) memcpy(larger, c->pair, *n * sizeof *larger);
-    bw_release(&c->pair);
-    c->pair = larger;
-  }
-  c->pair[(*n)++] = partner;
-  return BW_OK;
-}
-
 /* Partners of row q in one cell. */
-static bw_status pairs_in_cell(bw_pd_contact_between *c, const bw_particles_cells *g, size_t q,
-                               const int32_t cell[3], size_t *n, size_t *capacity)
+static bw_status pairs_in_cell(const bw_pd_contact_between *c, const bw_particles_cells *g,
+                               size_t q, const int32_t cell[3], bw_pd_partners *found)
 {
   for (int32_t p = g->head[bw_particles_cells_bucket(g, cell)]; p >= 0; p = g->next[p]) {
     const double reach = c->law[c->kind[q] * c->n_kind + c->kind[p]].reach, far = reach + c->skin;
     double d[3];
     if (reach == 0 || !bw_particles_cells_holds(g, cell, p)) continue; /* of the same body */
     bw_particles_difference(c->period, c->y + 3 * q, c->y + 3 * (size_t)p, d);
-    if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far) BW_TRY(append(c, n, capacity, p));
+    if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)
+      BW_TRY(bw_pd_contact__append(found, p));
   }
-  return BW_OK;
-}
-
-static bw_status list_busy(bw_pd_contact_between *c)
-{
-  BW_TRY(BW_ALLOCATE(&c->busy, c->n_mine));
-  for (size_t q = 0; q < c->n_mine; q++)
-    if (c->pair_start[q] != c->pair_start[q + 1]) c->busy[c->n_busy++] = (int32_t)q;
   return BW_OK;
 }
 
@@ -192,19 +171,20 @@ static bw_status list_pairs(bw_pd_contact_between *c)
 {
   bw_particles_cells g = {0};
   int32_t cell[27][3];
-  size_t n = 0, capacity = 0;
+  bw_pd_partners found = {0};
   bw_status st = BW_ALLOCATE(&c->pair_start, c->n_mine + 1);
   if (c->reach > 0)
     BW_THEN(st, bw_particles_cells_create(c->n_mine + c->n_theirs, c->y, c->reach + c->skin,
                                           c->period, &g));
   for (size_t q = 0; q < c->n_mine && st == BW_OK; q++) {
     const int count = bw_particles_cells_around(&g, g.cell + 3 * q, cell);
-    c->pair_start[q] = n;
+    c->pair_start[q] = found.n;
     for (int k = 0; k < count; k++)
-      BW_THEN(st, pairs_in_cell(c, &g, q, cell[k], &n, &capacity));
+      BW_THEN(st, pairs_in_cell(c, &g, q, cell[k], &found));
   }
-  if (st == BW_OK) c->pair_start[c->n_mine] = n;
-  BW_THEN(st, list_busy(c));
+  if (st == BW_OK) c->pair_start[c->n_mine] = found.n;
+  c->pair = found.partner;
+  BW_THEN(st, bw_pd_contact__busy(c->n_mine, c->pair_start, &c->n_busy, &c->busy));
   bw_particles_cells_destroy(&g);
   return st;
 }

@@ -3,7 +3,7 @@
  * What every law of the solid stands on, and what the front (bw_solid.h) shows of it. Particles sit
  * on a uniform lattice, X0 = origin + axes.(site + 1/2) ds, site[3] integers, or, with `disorder`,
  * in a cloud around it (pd_cloud.c). The family of h holds the l with |xi| < horizon + ds/2 (POROUS
- * 3.30, ERRATA 2); every bond is kept from both ends, in blocks of the processor's vectors.
+ * 3.32, ERRATA 2); every bond is kept from both ends, in blocks of the processor's vectors.
  * Shapes   vectors row-major (n,3); own particles are 0 .. n-1 in lattice order, then copies of
  *          what other ranks own and periodic images up to n_extended.
  * Units    any consistent set: [M], [L], [T]. */

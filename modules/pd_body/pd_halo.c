@@ -194,12 +194,14 @@ static bw_status plan_halo(bw_pd_body *pd, const bw_particles_halo *halo, const 
   bw_pd_points *p = &pd->points;
   int32_t *home = NULL;
   int *owner = NULL;
+  /* The halo lists places in the order of the search, copies are numbered as they are stored. */
   bw_status st = BW_ALLOCATE(&home, 3 * halo->n);
   BW_THEN(st, BW_ALLOCATE(&owner, halo->n));
   for (size_t c = 0; c < halo->n && st == BW_OK; c++) {
     memcpy(home + 3 * c, halo->home + 3 * (size_t)order[c], 3 * sizeof *home);
     owner[c] = halo->owner[order[c]];
   }
+  /* Asking is collective: no rank may begin without the others. */
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
     const bw_particles_question question = {.n = halo->n,
@@ -211,6 +213,7 @@ static bw_status plan_halo(bw_pd_body *pd, const bw_particles_halo *halo, const 
     st = bw_particles_copies_create(pd->comm, pd->n, &question, 6 * sizeof(bw_real),
                                     &pd->halo.copies);
   }
+  /* What never changes is sent once; motion comes with every refresh. */
   if (st == BW_OK) {
     bw_particles_copies_values(pd->halo.copies, sizeof *p->id, p->id, p->id);
     bw_particles_copies_values(pd->halo.copies, sizeof *p->kind, p->kind, p->kind);
@@ -290,6 +293,7 @@ void bw_pd_body_refresh(bw_pd_body *pd, bool velocity)
       for (int k = 0; k < 3; k++)
         memcpy(pd->vs[k] + pd->bonds.run[r].place, pd->v[k] + pd->bonds.run[r].own,
                (size_t)pd->bonds.run[r].n * sizeof(bw_real));
+  /* One message for both: displacement, then velocity, a row per copy that others hold. */
   for (size_t q = 0; q < rows; q++) {
     const int32_t own = asked[q], place = pd->points.place[own];
     for (size_t k = 0; k < 3; k++)
@@ -298,6 +302,7 @@ void bw_pd_body_refresh(bw_pd_body *pd, bool velocity)
       reply[width * q + k] = pd->v[k - 3][own];
   }
   bw_particles_copies_out(c, width * sizeof(bw_real), reply, answer);
+  /* Copies have no row of their own in v: a sweep finds them at their places. */
   for (size_t q = 0; q < copies; q++) {
     const int32_t place = pd->points.place[pd->n + q];
     for (size_t k = 0; k < 3; k++)

@@ -15,7 +15,7 @@ extern "C" {
 /* Factor alpha of bonds whose families a surface has cut. */
 typedef enum {
   BW_PD_SURFACE_NONE,   /* 1 */
-  BW_PD_SURFACE_VOLUME, /* by the family's volume (POROUS 3.42-3.44, ERRATA 11) */
+  BW_PD_SURFACE_VOLUME, /* by the family's volume (POROUS 3.43, 3.44, ERRATA 11) */
   BW_PD_SURFACE_ENERGY, /* by the energy of a dilation (Madenci & Oterkus 2014, 4.2) */
   BW_PD_SURFACE_TENSOR  /* by direction: every family has the tensor of elasticity
                           (pd_bond_tensor.c) */

@@ -55,6 +55,7 @@ static bw_status join_own(joiner *j)
             j->cross[found] = (cross_bond){.own = (int32_t)h, .copy = link[q].neighbour};
           found++;
         } else if (pass == 0) {
+          /* The lower one stays: a root is its piece's first particle, in whatever order. */
           const int32_t a = root_of(j->parent, (int32_t)h),
                         b = root_of(j->parent, link[q].neighbour);
           j->parent[a > b ? a : b] = a > b ? b : a;

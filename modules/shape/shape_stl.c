@@ -97,6 +97,7 @@ static bw_status read_surface(const char *path, surface *s)
                  "%s: holds no triangle as text, and as a binary file its %ld bytes are not those "
                  "of %u triangles",
                  path, length, count);
+  /* Both forms can hold NaN, with which no point would be inside or outside. */
   for (size_t q = 0; st == BW_OK && q < 9 * s->n; q++)
     if (!isfinite(s->corner[q]))
       st = BW_FAIL(BW_EINPUT, "%s: triangle %zu has a corner that is not finite", path, q / 9);

@@ -174,6 +174,7 @@ bw_status bw_shape__check(int number, const bw_shape *s, int dims)
       BW_REQUIRE(isfinite(s->centre[d]), BW_EINPUT, "shape %d (%s): centre[%d] = %g is not finite",
                  number, row->name, d, s->centre[d]);
   }
+  /* A length that was left out is 0, and refused as such. */
   if (row->needs_radius)
     BW_REQUIRE(isfinite(s->radius) && s->radius > 0.0, BW_EINPUT,
                "shape %d (%s): radius = %g has to be positive and finite", number, row->name,

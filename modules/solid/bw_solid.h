@@ -9,7 +9,7 @@
  * ds and then less where neighbours nearer than 0.9 ds push each other apart (pd_cloud.c); the
  * same for the same site, seed and axes, whatever else there is. All particles keep the volume of
  * a cell; families and xi are those of the true places.
- * Family: |xi| < horizon + ds/2 (POROUS 3.30, ERRATA 2). A bond beyond its limit breaks for good,
+ * Family: |xi| < horizon + ds/2 (POROUS 3.32, ERRATA 2). A bond beyond its limit breaks for good,
  * checked at the end of every step when breakage is enabled: it holds during the whole step and is
  * gone from the force the next step starts with. Both ends decide alike, on any number of ranks.
  * 2D: site[2] = 0, one layer of `thickness`; X0[2] = origin[2], z components of V and A zero.
@@ -53,10 +53,10 @@ typedef struct {
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
   const bw_pd_law *law; /* borrowed: a row of bw_solid_laws, or one's own (pd_law.h); NULL
-                              (default): the first row, the bond law */
-  const void
-      *law_options; /* borrowed by create: what that law's header asks for; NULL (default) for
-                              bonds: the two named so below */
+                           (default): the first row, the bond law */
+  /* Borrowed by create: what that law's header asks for. NULL (default) for bonds, whose options
+   * are surface_correction and calibration below. */
+  const void *law_options;
   bw_pd_volume_fraction volume_fraction;       /* Gamma; default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* of the bond law; default volume */
   bw_pd_calibration calibration;               /* of the bond law; default none */
@@ -184,9 +184,8 @@ bw_pd_body *bw_solid_body(const bw_solid *solid);         /* for laws and tools 
 void bw_solid_get_reference(const bw_solid *solid, double X0[]); /* [L] */
 void bw_solid_get_position(const bw_solid *solid, double X[]);   /* [L] */
 void bw_solid_get_velocity(const bw_solid *solid, double V[]);   /* [L/T] */
-void bw_solid_get_acceleration(const bw_solid *solid,
-                               double A[]); /* [L/T^2] by the last evaluation;
-                                                                      0: does not move freely */
+/* [L/T^2], by the last evaluation; 0 of a particle that does not move freely. */
+void bw_solid_get_acceleration(const bw_solid *solid, double A[]);
 
 /* damage[n] <- the broken part of each family, weighted with Gamma (POROUS 3.28): 0 whole .. 1;
  * 0 of a particle without family. Local. */

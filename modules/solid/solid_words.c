@@ -3,7 +3,7 @@
 
 const bw_config_word bw_solid_correction_words[] = {
     {"none", BW_PD_SURFACE_NONE, NULL},
-    {"volume", BW_PD_SURFACE_VOLUME, "POROUS 3.42-3.44"},
+    {"volume", BW_PD_SURFACE_VOLUME, "POROUS 3.43, 3.44"},
     {"energy", BW_PD_SURFACE_ENERGY, "that of a dilation"},
     {"tensor", BW_PD_SURFACE_TENSOR, "every family has the elasticity asked for"},
     {NULL, 0, NULL}};

@@ -11,7 +11,7 @@
  *            reaction against the reference: 0.1 h of doubt about where the smeared wall is
  *            (Breugem 2012 has 0.2 to 0.4 best, by shape) moves the drag as 0.2 h/d of blockage
  *            and size do, 1.6 % at 15 cells; with errors of the grid 0.3 h/d: 2, 1 and 0.5 %.
- *            Three routes: probes within 3 % of the other two from 30 cells on, as was asked for.
+ *            Three routes: probes within 3 % of the other two from 30 cells on, a goal set before.
  *            Order with retraction: reported; what is left is what the reference is good for, 1e-3.
  *            Not retracted: at least half as much too high as 0.3 h would take off, 0.35 h/d.
  *            Probes: friction is 35 % of this drag (the reference's wall table); the parabola

@@ -14,7 +14,7 @@
  *            is another half percent), h = 12 and 24 ds (full: 48 too); started with a velocity in
  *            the shape of the first mode of Euler's beam; zeros of the velocity in that shape
  *            after a quarter and three quarters of a period. Limit: 2 w(24) - w(12), as the error
- * is of order one in delta/h (pd_bond.convergence). Tolerance  1 %, as asked; tensor: (delta/h)^2/4
+ * is of order one in delta/h (pd_bond.convergence). Tolerance  1 %, a goal; tensor: (delta/h)^2/4
  * = 0.4 % of bending (pd_bond.skin), the clamp's place to delta/2, (delta/2)/L 2 = 0.8 %: together
  * 1 % or a little more. The slender limit: shear and rotation shift it by (h/L)^2, 1e-5 at L = 400
  * h; the integration by less; 1e-4.

@@ -5,7 +5,7 @@
  * body stays within a bound for any number of steps. Reference  conservation of energy. Measured a
  * notched plate with grips that are ramped up to a speed, a traction at a side, gravity and pair
  * damping, until it has snapped; every 50 steps. A shaken square for 10^5 steps (full: 10^6).
- * Tolerance  0.1 % of the work done so far, as asked of the module: Verlet at a fifth of its
+ * Tolerance  0.1 % of the work done so far, the goal of the module: Verlet at a fifth of its
  *            limit swaps (w dt)^2/8 = 2 % of the energy of the shortest waves to and fro, which
  *            hold at most 5 % of it (most is in waves as long as the plate). Shaken square: (w
  *            dt)^2/8 at half of the limit, w dt <= 1: 12.5 % of the elastic energy at most at

@@ -13,8 +13,8 @@
  * Tolerance  against the sum: 4e-3, the overshoot of one step (energy goes with the square of
  *            the stretch, 2e-3 for the shortest bonds) and the fractions' quadrature;
  *            calibrated against G0 the same. Against G0, m < 5 along the lattice: lattice_bound
- *            with p = 2 and the own cell; at 45 degrees reported. m >= 5: 2 %, as asked of the
- *            module.
+ *            with p = 2 and the own cell; at 45 degrees reported. m >= 5: 2 %, the goal
+ *            of the module.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "bw_memory.h"

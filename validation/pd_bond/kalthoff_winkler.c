@@ -4,10 +4,10 @@
  *
  * Families as ADAPT's (PA-PDLAMMPS: partners within the horizon alone); quick: its coarse spacing
  * of 2 mm for the start, its finer one of 1 mm for path and speed.
- * Tolerances. Angle: 3 degrees, as the issue states it; ADAPT prints 68 and about 70 for the
- * experiment, and a path whose ends are off by one spacing each way over the 70 mm fitted is off by
- * 1.6 degrees. Start: 10 %, issue 4; ADAPT prints "about 24" for a grid of 2 mm that it refines to
- * 1 mm at 15.3e-6 s, and the two grids alone differ by 2e-6 s here. Speed: over 5.46e-6 s, three of
+ * Tolerances. Angle: 3 degrees; ADAPT prints 68 and about 70 for the experiment, and a path whose
+ * ends are off by one spacing each way over the 70 mm fitted is off by 1.6 degrees. Start: 10 %;
+ * ADAPT prints "about 24" for a grid of 2 mm that it refines to 1 mm at 15.3e-6 s, and the two
+ * grids alone differ by 2e-6 s here. Speed: over 5.46e-6 s, three of
  * ADAPT's windows, between two arrivals of the tip at a particle (bw_pd_crack_speed), in which it
  * makes 8 spacings or more; over one window, two to four spacings, it is reported beside ADAPT's
  * 1981 m/s. The limit is one-sided: the row is the excess over 0.75 x 2799 m/s, and has to be 0.

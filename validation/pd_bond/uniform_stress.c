@@ -9,7 +9,7 @@
  * Measured   mean of the collapsed stress tensor over the middle of the bar, at rest by dynamic
  *            relaxation. Beside it, without a claim, the middle of the free bar: its skin, two
  *            horizons thick, is softer or stiffer than the bulk, which carries the difference.
- * Tolerance  1 % in the bulk, as asked of the module; sigma_yy that of the lattice's anisotropy
+ * Tolerance  1 % in the bulk, the goal of the module; sigma_yy that of the lattice's anisotropy
  *            in addition: the sum over the family of xi_x^2 xi_y^2/|xi|^3 over that of
  *            xi_x^4/|xi|^3, written independently (lattice_sum.h), known before the run. The
  *            section's mean: the residual 1e-5 of the relaxation times 10, as errors of 24

@@ -4,8 +4,8 @@
  * "Right" is a lattice site with an open side (one of its 6 neighbours missing, 4 in 2D): it is
  * what the fluid touches through a face, one layer thick; the brute-force list here knows nothing
  * of sectors or bonds.
- * Tolerances. Precision and recall as asked of the method, 1 %.
- * Normals: 5 degrees as asked and half of it in the mean (absolute), on smooth parts: farther than
+ * Tolerances. Precision and recall: 1 %, the goal of the method.
+ * Normals: 5 degrees, a goal, and half of it in the mean (absolute), on smooth parts: farther than
  * two horizons (6 ds) from the edges of the body and of a crack that has opened; nearer ones, from
  * one family (3.5 ds) on, are reported.
  * Closure: sum A n.x is the volume (Gauss; a linear pressure then gives its true force). 6 % of the

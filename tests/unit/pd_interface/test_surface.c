@@ -116,7 +116,7 @@ START_TEST(clouds_have_normals_and_areas)
 }
 END_TEST
 
-/* Normals as asked of them: within 5 degrees, half of it in the mean. Area: 3 %; planes of all
+/* Normals, the goal: within 5 degrees, half of it in the mean. Area: 3 %; planes of all
  * directions have up to 2 % (half a cell at the rim of the ball of radius 3 of 20 % of the solid
  * seen), curvature adds none. */
 START_TEST(round_bodies_have_their_normals_and_areas)

@@ -116,13 +116,14 @@ static void remember(const bw_pd_body *pd, bw_pd_contact *c)
 static void positions(bw_pd_body *pd, bw_pd_contact *c)
 {
   /* Only particles that are in pairs, here or elsewhere, are looked at. */
-  for (size_t q = 0; q < c->n_sent; q++)
-    bw_pd_contact__position(pd, (size_t)c->sent[q], c->send + 3 * q);
-  for (size_t b = 0; b < c->n_busy; b++) {
-    const size_t q = (size_t)c->busy[b];
-    bw_pd_contact__position(pd, (size_t)c->mine[q], c->y + 3 * q);
+  for (size_t q = 0; q < c->found.n_sent; q++)
+    bw_pd_contact__position(pd, (size_t)c->found.sent[q], c->found.send + 3 * q);
+  for (size_t b = 0; b < c->found.n_busy; b++) {
+    const size_t q = (size_t)c->found.busy[b];
+    bw_pd_contact__position(pd, (size_t)c->found.mine[q], c->found.y + 3 * q);
   }
-  bw_exchange_forward(c->plan, 3 * sizeof(double), c->send, c->y + 3 * c->n_mine);
+  bw_exchange_forward(c->found.plan, 3 * sizeof(double), c->found.send,
+                      c->found.y + 3 * c->found.n_mine);
 }
 
 bw_status bw_pd_contact_update(bw_pd_contact *c)
@@ -226,19 +227,20 @@ static double other_contact(bw_pd_contact *c, bool force)
 {
   bw_pd_body *pd = c->pd;
   double energy = 0;
-  for (size_t b = 0; b < c->n_busy; b++) {
-    const size_t q = (size_t)c->busy[b];
+  for (size_t b = 0; b < c->found.n_busy; b++) {
+    const size_t q = (size_t)c->found.busy[b];
     double sum[3] = {0}, d[3];
     /* Both ends list the pair, each on its rank, and get exactly opposite forces. */
-    for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
-      bw_pd_pair pair = bw_pd_contact__pair(c, c->group[q], c->group[c->pair[p]]);
-      bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * (size_t)c->pair[p], d);
+    for (size_t p = c->found.pair_start[q]; p < c->found.pair_start[q + 1]; p++) {
+      bw_pd_pair pair = bw_pd_contact__pair(c, c->found.group[q], c->found.group[c->found.pair[p]]);
+      bw_pd_contact__difference(pd, c->found.y + 3 * q, c->found.y + 3 * (size_t)c->found.pair[p],
+                                d);
       energy += bw_pd_contact__repel(&pair, d, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], sum);
       c->closest = pair.closest;
     }
     for (int k = 0; force && k < 3; k++)
       for (int a = 0; a < 3; a++) /* back from lattice axes */
-        pd->load.extra[k][c->mine[q]] += (bw_real)(pd->config.axes[a][k] * sum[a]);
+        pd->load.extra[k][c->found.mine[q]] += (bw_real)(pd->config.axes[a][k] * sum[a]);
   }
   return energy;
 }

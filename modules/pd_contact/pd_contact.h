@@ -25,15 +25,8 @@ typedef struct {
   double closest; /* least r/reach met */
 } bw_pd_pair;
 
-struct bw_pd_contact {
-  bw_pd_body *pd;     /* borrowed */
-  double reach, skin; /* the largest r_c; of the search [L] */
-  double closest;     /* least distance of a pair over its reach, in the forces so far */
-  bw_pd_pair law[BW_PD_GROUPS][BW_PD_GROUPS]; /* owner's group, other's */
-  bool built;
-  int64_t revision;    /* of the body that the arrays are for */
-  bw_real *u_built[3]; /* (n) displacement at the last search */
-
+/* Candidates of this rank and those that others sent, and the pairs of the last search. */
+typedef struct {
   size_t n_mine, n_theirs, n_sent;
   int32_t *mine; /* (n_mine) own particles */
   int32_t *sent; /* (n_sent) own particle of each item of the plan */
@@ -46,12 +39,22 @@ struct bw_pd_contact {
   int32_t *pair;      /* index into y */
   size_t n_busy;
   int32_t *busy; /* (n_busy) those of mine that have pairs */
+} bw_pd_search;
+
+struct bw_pd_contact {
+  bw_pd_body *pd;     /* borrowed */
+  double reach, skin; /* the largest r_c; of the search [L] */
+  double closest;     /* least distance of a pair over its reach, in the forces so far */
+  bw_pd_pair law[BW_PD_GROUPS][BW_PD_GROUPS]; /* owner's group, other's */
+  bool built;                                 /* there is a search that holds */
+  int64_t revision;                           /* of the body that the arrays are for */
+  bw_real *u_built[3];                        /* (n) displacement at the last search */
+  bw_pd_search found;
 
   size_t n_near;
   bw_pd_near *near; /* (n_near) own particles near walls, at the last search */
   int64_t events;   /* of pd when `held` was found */
   bw_pd_link *link; /* (stencil) scratch */
-
   int n_wall;
   bw_pd_wall wall[BW_PD_WALLS];
   double wall_force[3]; /* on the walls, of this rank, at the last evaluation [M L/T^2] */

@@ -29,27 +29,27 @@ void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3])
 
 void bw_pd_contact__release(bw_pd_contact *c)
 {
-  bw_release(&c->mine);
-  bw_release(&c->sent);
-  bw_exchange_destroy(&c->plan);
-  bw_release(&c->send);
-  bw_release(&c->y);
-  bw_release(&c->site);
-  bw_release(&c->group);
-  bw_release(&c->shift);
-  bw_release(&c->pair_start);
-  bw_release(&c->pair);
-  bw_release(&c->busy);
-  c->n_mine = c->n_theirs = c->n_sent = c->n_busy = 0;
+  bw_release(&c->found.mine);
+  bw_release(&c->found.sent);
+  bw_exchange_destroy(&c->found.plan);
+  bw_release(&c->found.send);
+  bw_release(&c->found.y);
+  bw_release(&c->found.site);
+  bw_release(&c->found.group);
+  bw_release(&c->found.shift);
+  bw_release(&c->found.pair_start);
+  bw_release(&c->found.pair);
+  bw_release(&c->found.busy);
+  c->found.n_mine = c->found.n_theirs = c->found.n_sent = c->found.n_busy = 0;
 }
 
 /* Own particles that are not retired. */
 static bw_status candidates(const bw_pd_body *pd, bw_pd_contact *c)
 {
   /* Prescribed ones too: a grip pushes what meets it. */
-  BW_TRY(BW_ALLOCATE(&c->mine, pd->n));
+  BW_TRY(BW_ALLOCATE(&c->found.mine, pd->n));
   for (size_t i = 0; i < pd->n; i++)
-    if (!(pd->points.kind[i] & BW_PD_RETIRED)) c->mine[c->n_mine++] = (int32_t)i;
+    if (!(pd->points.kind[i] & BW_PD_RETIRED)) c->found.mine[c->found.n_mine++] = (int32_t)i;
   return BW_OK;
 }
 
@@ -63,8 +63,8 @@ typedef struct {
 static void displacement(const bw_pd_body *pd, const bw_pd_contact *c, size_t q, double u[3])
 {
   for (size_t k = 0; k < 3; k++) {
-    u[k] = c->y[3 * q + k] - pd->level->ds * c->site[3 * q + k];
-    if (c->shift != NULL) u[k] -= c->shift[3 * q + k];
+    u[k] = c->found.y[3 * q + k] - pd->level->ds * c->found.site[3 * q + k];
+    if (c->found.shift != NULL) u[k] -= c->found.shift[3 * q + k];
   }
 }
 
@@ -79,9 +79,9 @@ static void widen(const double u[3], double range[6])
 
 static bw_status make_cells(const bw_pd_body *pd, const bw_pd_contact *c, cells *g)
 {
-  const size_t n = c->n_mine + c->n_theirs;
+  const size_t n = c->found.n_mine + c->found.n_theirs;
   /* Edges of at least reach + skin: partners are in this cell or one next to it. */
-  BW_TRY(bw_particles_cells_create(n, c->y, c->reach + c->skin, pd->config.period, &g->in));
+  BW_TRY(bw_particles_cells_create(n, c->found.y, c->reach + c->skin, pd->config.period, &g->in));
   BW_TRY(BW_ALLOCATE(&g->moved, 6 * g->in.buckets));
   for (size_t b = 0; b < g->in.buckets; b++)
     for (size_t k = 0; k < 3; k++)
@@ -124,13 +124,14 @@ static bool same_family(const bw_pd_body *pd, const bw_pd_contact *c, size_t a, 
   for (size_t k = 0; k < 3; k++) {
     /* The nearest image of the site, as families are built. */
     const int32_t p = (int32_t)lround(pd->config.period[k] / pd->level->ds);
-    o[k] = c->site[3 * b + k] - c->site[3 * a + k];
+    o[k] = c->found.site[3 * b + k] - c->found.site[3 * a + k];
     if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
   }
   const int direction = bw_pd_body_direction(&pd->level->stencil, o);
   /* On a lattice a direction of the stencil is family; in a cloud the distance decides. */
   if (direction < 0 || pd->level->stencil.sure[direction]) return direction >= 0;
-  return bw_pd_body_apart(pd, direction, c->shift + 3 * a, c->shift + 3 * b).r0 < pd->level->reach;
+  return bw_pd_body_apart(pd, direction, c->found.shift + 3 * a, c->found.shift + 3 * b).r0 <
+         pd->level->reach;
 }
 
 /* Partners of candidate q in one cell are appended to the pairs. */
@@ -142,7 +143,7 @@ static bw_status pairs_in_cell(const bw_pd_body *pd, const bw_pd_contact *c, con
     double d[3];
     /* Other cells of the same bucket are told by their numbers. */
     if ((size_t)p == q || !bw_particles_cells_holds(&g->in, cell, p)) continue;
-    bw_pd_contact__difference(pd, c->y + 3 * q, c->y + 3 * p, d);
+    bw_pd_contact__difference(pd, c->found.y + 3 * q, c->found.y + 3 * p, d);
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
     /* Those are watched where their slots are, without a search. */
     if (same_family(pd, c, q, (size_t)p)) continue;
@@ -175,16 +176,17 @@ static bw_status list_pairs(const bw_pd_body *pd, bw_pd_contact *c)
   bw_pd_partners found = {0};
   /* Own candidates and those that others sent; pairs are listed for the own ones. */
   bw_status st = make_cells(pd, c, &g);
-  BW_THEN(st, BW_ALLOCATE(&c->pair_start, c->n_mine + 1));
+  BW_THEN(st, BW_ALLOCATE(&c->found.pair_start, c->found.n_mine + 1));
   const int32_t *quiet = NULL;
-  for (size_t q = 0; q < c->n_mine && st == BW_OK; q++) {
-    c->pair_start[q] = found.n;
+  for (size_t q = 0; q < c->found.n_mine && st == BW_OK; q++) {
+    c->found.pair_start[q] = found.n;
     st = pairs_of(pd, c, &g, q, &quiet, &found);
   }
-  if (st == BW_OK) c->pair_start[c->n_mine] = found.n;
-  c->pair = found.partner;
+  if (st == BW_OK) c->found.pair_start[c->found.n_mine] = found.n;
+  c->found.pair = found.partner;
   /* Steps go through the busy ones alone: most particles never meet anybody. */
-  BW_THEN(st, bw_pd_contact__busy(c->n_mine, c->pair_start, &c->n_busy, &c->busy));
+  BW_THEN(st, bw_pd_contact__busy(c->found.n_mine, c->found.pair_start, &c->found.n_busy,
+                                  &c->found.busy));
   bw_particles_cells_destroy(&g.in);
   bw_release(&g.moved);
   return st;

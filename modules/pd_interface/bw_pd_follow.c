@@ -11,7 +11,7 @@ bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *n
   /* POROUS 3.42: mean present distance to broken partners, sector by sector. */
   bw_pd_interface__locate(pi, h, now);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi);
-  return !pi->outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
+  return !pi->wall.outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
 }
 
 /* Is h surface whatever the gaps, or never, or does it depend on them? */
@@ -25,10 +25,10 @@ static void classify(bw_pd_interface *pi, size_t h)
   /* A sector that never held a partner stays empty; one that lost all may close again. */
   const bool always = bw_pd_interface__is_open(s, never, pi->config.n_empty);
   const bool possible = bw_pd_interface__is_open(s, not_held, pi->config.n_empty);
-  pi->surface[h] = always && !pi->outside[h];
-  pi->undecided[h] = possible && !always && !pi->outside[h];
+  pi->surface[h] = always && !pi->wall.outside[h];
+  pi->watch.undecided[h] = possible && !always && !pi->wall.outside[h];
   /* Its partners have changed: row, normal and line elements are made anew. */
-  pi->stale[h] = true;
+  pi->rows.stale[h] = true;
 }
 
 /* Particles whose bonds broke since the last look, and those that left a wall or met it again.
@@ -38,30 +38,30 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   bool changed = false;
   /* Those that lean on a wall: only their own displacement is read. */
-  for (size_t q = 0; q < pi->n_leaning; q++) {
-    const size_t h = (size_t)pi->leaning[q];
+  for (size_t q = 0; q < pi->wall.n_leaning; q++) {
+    const size_t h = (size_t)pi->wall.leaning[q];
     const bool off = bw_pd_interface__moved_off(pi, h, now);
-    if (off == pi->off[h]) continue;
-    pi->off[h] = off;
+    if (off == pi->wall.off[h]) continue;
+    pi->wall.off[h] = off;
     classify(pi, h);
     changed = true;
   }
   /* A bond broke somewhere on this rank: who has more broken ones than before? */
-  if (bw_solid_events(pi->pd) != pi->events) {
-    pi->events = bw_solid_events(pi->pd);
-    bw_solid_get_broken(pi->pd, pi->fresh);
+  if (bw_solid_events(pi->pd) != pi->watch.events) {
+    pi->watch.events = bw_solid_events(pi->pd);
+    bw_solid_get_broken(pi->pd, pi->watch.fresh);
     for (size_t h = 0; h < pi->n; h++) {
-      if (pi->fresh[h] == pi->broken[h]) continue;
-      pi->broken[h] = pi->fresh[h];
+      if (pi->watch.fresh[h] == pi->watch.broken[h]) continue;
+      pi->watch.broken[h] = pi->watch.fresh[h];
       classify(pi, h);
       changed = true;
     }
   }
   if (!changed) return false;
   /* The list of those whose state depends on gaps, for follow_gaps. */
-  pi->n_gap = 0;
+  pi->watch.n_gap = 0;
   for (size_t h = 0; h < pi->n; h++)
-    if (pi->undecided[h]) pi->gap[pi->n_gap++] = (int32_t)h;
+    if (pi->watch.undecided[h]) pi->watch.gap[pi->watch.n_gap++] = (int32_t)h;
   return true;
 }
 
@@ -69,8 +69,8 @@ static bool follow_changes(bw_pd_interface *pi, const bw_pd_motion *now)
 static bool follow_gaps(bw_pd_interface *pi, const bw_pd_motion *now)
 {
   bool changed = false;
-  for (size_t q = 0; q < pi->n_gap; q++) {
-    const size_t h = (size_t)pi->gap[q];
+  for (size_t q = 0; q < pi->watch.n_gap; q++) {
+    const size_t h = (size_t)pi->watch.gap[q];
     const bool before = pi->surface[h];
     /* The distance to broken partners is that of now. */
     bw_pd_interface__resolve(pi, h, false);
@@ -84,15 +84,15 @@ static bool follow_gaps(bw_pd_interface *pi, const bw_pd_motion *now)
  * start; when there is no memory the particle goes without a row and is resolved each time. */
 static bool make_room(bw_pd_interface *pi, size_t more)
 {
-  if (pi->pool_n + more <= pi->pool_room) return true;
+  if (pi->rows.pool_n + more <= pi->rows.pool_room) return true;
   /* Half as much again, so that a growing crack asks rarely. */
-  const size_t room = pi->pool_n + more + pi->pool_room / 2 + 1024;
+  const size_t room = pi->rows.pool_n + more + pi->rows.pool_room / 2 + 1024;
   bw_pd_interface__near *pool = NULL;
   if (BW_ALLOCATE(&pool, room) != BW_OK) return false;
-  if (pi->pool_n > 0) memcpy(pool, pi->pool, pi->pool_n * sizeof *pool);
-  bw_release(&pi->pool);
-  pi->pool = pool;
-  pi->pool_room = room;
+  if (pi->rows.pool_n > 0) memcpy(pool, pi->rows.pool, pi->rows.pool_n * sizeof *pool);
+  bw_release(&pi->rows.pool);
+  pi->rows.pool = pool;
+  pi->rows.pool_room = room;
   return true;
 }
 
@@ -102,36 +102,36 @@ static void write_row(bw_pd_interface *pi, size_t h)
   size_t count = 0;
   /* How many partners hold; a row that has become too short is written at the end of the pool. */
   for (int q = 0; q < pi->stencil.slots; q++)
-    count += pi->state[q] == BW_PD_INTERFACE__INTACT;
-  if (count > pi->row_room[h]) {
-    pi->row_room[h] = 0;
+    count += pi->seen.state[q] == BW_PD_INTERFACE__INTACT;
+  if (count > pi->rows.row_room[h]) {
+    pi->rows.row_room[h] = 0;
     if (!make_room(pi, count)) return;
-    pi->row[h] = pi->pool_n;
-    pi->row_room[h] = (uint16_t)count;
-    pi->pool_n += count;
+    pi->rows.row[h] = pi->rows.pool_n;
+    pi->rows.row_room[h] = (uint16_t)count;
+    pi->rows.pool_n += count;
   }
-  size_t at = pi->row[h];
-  pi->border[h] = false;
+  size_t at = pi->rows.row[h];
+  pi->fit.border[h] = false;
   for (int q = 0; q < pi->stencil.slots; q++) {
-    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
-    const bw_pd_interface__near near = pi->near[q];
+    if (pi->seen.state[q] != BW_PD_INTERFACE__INTACT) continue;
+    const bw_pd_interface__near near = pi->seen.near[q];
     /* Images and copies do not know h as a partner: change has to reach h from them. */
-    pi->border[h] = pi->border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n;
-    pi->pool[at++] = near;
+    pi->fit.border[h] = pi->fit.border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n;
+    pi->rows.pool[at++] = near;
   }
-  pi->row_n[h] = (uint16_t)count;
-  pi->stale[h] = false;
+  pi->rows.row_n[h] = (uint16_t)count;
+  pi->rows.stale[h] = false;
 }
 
 void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
 {
-  pi->n_list = 0;
+  pi->now.n_list = 0;
   for (size_t h = 0; h < pi->n; h++) {
     /* What settle_normals has to look at again. */
-    pi->changed[h] = pi->surface[h] && pi->stale[h];
+    pi->fit.changed[h] = pi->surface[h] && pi->rows.stale[h];
     if (!pi->surface[h]) continue;
     /* Only the stale ones are resolved; in most updates nobody is. */
-    if (pi->stale[h]) {
+    if (pi->rows.stale[h]) {
       uint32_t not_held, never;
       bw_pd_interface__resolve(pi, h, reference);
       bw_pd_interface__bare_sectors(pi, &not_held, &never);
@@ -140,8 +140,8 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
       write_row(pi, h);
     }
     /* The reference shape's own area, or a new crack face's (ERRATA 10). */
-    pi->area[pi->n_list] = pi->first[h] ? pi->area_first[h] : pi->area_new;
-    pi->list[pi->n_list++] = (int32_t)h;
+    pi->now.area[pi->now.n_list] = pi->first[h] ? pi->area_first[h] : pi->area_new;
+    pi->now.list[pi->now.n_list++] = (int32_t)h;
   }
 }
 
@@ -161,10 +161,10 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi)
     bw_pd_interface__lay_lines(pi, &now);
   }
   /* From here on every update: present places ... */
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row], place = (size_t)now.place[h];
+  for (size_t row = 0; row < pi->now.n_list; row++) {
+    const size_t h = (size_t)pi->now.list[row], place = (size_t)now.place[h];
     for (size_t d = 0; d < 3; d++)
-      pi->position[3 * row + d] = pi->X0[3 * h + d] + (double)now.u[d][place];
+      pi->now.position[3 * row + d] = pi->X0[3 * h + d] + (double)now.u[d][place];
   }
   /* ... and normals turned with the body. */
   bw_pd_interface__carry_normals(pi, &now);

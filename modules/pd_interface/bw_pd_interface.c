@@ -47,45 +47,45 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   const size_t n = pi->n, slots = (size_t)pi->stencil.slots;
   bw_status st = BW_ALLOCATE(&pi->surface, n);
   BW_THEN(st, BW_ALLOCATE(&pi->first, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->outside, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->leans, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->off, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->broken, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->fresh, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->undecided, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->gap, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->row, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->row_n, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->row_room, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->stale, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->leaning, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->wall.outside, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->wall.leans, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->wall.off, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->watch.broken, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->watch.fresh, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->watch.undecided, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->watch.gap, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->rows.row, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->rows.row_n, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->rows.row_room, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->rows.stale, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->wall.leaning, n));
   /* Surface lists with room for all particles. */
-  BW_THEN(st, BW_ALLOCATE(&pi->list, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.list, n));
   BW_THEN(st, BW_ALLOCATE(&pi->X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->first_normal, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->position, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->list_normal, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->area, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.position, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.list_normal, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.area, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->own_normal, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.own_normal, 3 * n));
   /* Normals of copies too: fits reach across ranks. */
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
-    BW_THEN(st, BW_ALLOCATE(&pi->told[pass], 3 * pi->n_extended));
-  BW_THEN(st, BW_ALLOCATE(&pi->changed, pi->n_extended));
-  BW_THEN(st, BW_ALLOCATE(&pi->touched, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->border, n));
-  BW_THEN(st, BW_ALLOCATE(&pi->borne, 3 * pi->n_extended));
+    BW_THEN(st, BW_ALLOCATE(&pi->fit.told[pass], 3 * pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.changed, pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.touched, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.border, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.borne, 3 * pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->anchor, 6 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->steps, 3 * n));
-  BW_THEN(st, BW_ALLOCATE(&pi->lines, n / ROWS + 1));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.lines, n / ROWS + 1));
   if (bw_solid_settings(pi->pd)->disorder > 0)
-    BW_THEN(st, BW_ALLOCATE(&pi->off_lattice, 9 * (n + ROWS)));
+    BW_THEN(st, BW_ALLOCATE(&pi->now.off_lattice, 9 * (n + ROWS)));
   /* Scratch of the particle that is resolved. */
-  BW_THEN(st, BW_ALLOCATE(&pi->link, slots));
-  BW_THEN(st, BW_ALLOCATE(&pi->state, slots));
-  BW_THEN(st, BW_ALLOCATE(&pi->near, slots));
-  BW_THEN(st, BW_ALLOCATE(&pi->place, 3 * slots));
+  BW_THEN(st, BW_ALLOCATE(&pi->seen.link, slots));
+  BW_THEN(st, BW_ALLOCATE(&pi->seen.state, slots));
+  BW_THEN(st, BW_ALLOCATE(&pi->seen.near, slots));
+  BW_THEN(st, BW_ALLOCATE(&pi->seen.place, 3 * slots));
   return st;
 }
 
@@ -101,11 +101,11 @@ static void place_walls(bw_pd_interface *pi)
         const double x = pi->X0[3 * h + (size_t)d];
         const double height = side ? c->upper[d] - x : x - c->lower[d];
         /* Ghost layers beyond the wall are never surface; who reaches over it leans on it. */
-        pi->outside[h] = pi->outside[h] || height < -tie;
-        pi->leans[h] = pi->leans[h] || height < reach + tie;
+        pi->wall.outside[h] = pi->wall.outside[h] || height < -tie;
+        pi->wall.leans[h] = pi->wall.leans[h] || height < reach + tie;
       }
-    pi->leans[h] = pi->leans[h] && !pi->outside[h];
-    if (pi->leans[h]) pi->leaning[pi->n_leaning++] = (int32_t)h;
+    pi->wall.leans[h] = pi->wall.leans[h] && !pi->wall.outside[h];
+    if (pi->wall.leans[h]) pi->wall.leaning[pi->wall.n_leaning++] = (int32_t)h;
   }
 }
 
@@ -122,18 +122,18 @@ static void measure_reference(bw_pd_interface *pi)
   for (size_t h = 0; h < pi->n; h++) {
     bw_pd_interface__resolve(pi, h, true);
     pi->first[h] = pi->surface[h] = bw_pd_interface__judge(pi, h, NULL);
-    if (!pi->outside[h]) total[0] += bw_pd_interface__open_area(pi);
+    if (!pi->wall.outside[h]) total[0] += bw_pd_interface__open_area(pi);
   }
   /* Normals 3.45 of that surface, then their fits where it is smooth. */
   bw_pd_interface__renew(pi, true);
   memcpy(pi->first_normal, pi->normal, 3 * pi->n * sizeof *pi->normal);
   bw_pd_interface__settle_normals(pi);
   /* Areas need the final normals: open sides projected on them. */
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row];
+  for (size_t row = 0; row < pi->now.n_list; row++) {
+    const size_t h = (size_t)pi->now.list[row];
     double n[3];
     bw_pd_interface__resolve(pi, h, true);
-    const double facing = bw_pd_interface__facing_area(pi, &pi->own_normal[3 * h]);
+    const double facing = bw_pd_interface__facing_area(pi, &pi->fit.own_normal[3 * h]);
     const bool known = bw_pd_interface__normal_of(pi, n); /* else a sheet open on both sides */
     pi->area_first[h] = known ? fmax(facing, least) : pi->area_new;
     total[1] += 1.0;
@@ -166,10 +166,10 @@ static bw_status establish(bw_pd_interface *pi)
   bw_solid_get_reference(pd, pi->X0);
   place_walls(pi);
   /* The reference shape first, as if nothing had broken ... */
-  memset(pi->stale, true, pi->n * sizeof *pi->stale);
+  memset(pi->rows.stale, true, pi->n * sizeof *pi->rows.stale);
   measure_reference(pi);
   /* ... then the present one, which may be that of a restart. */
-  memset(pi->stale, true, pi->n * sizeof *pi->stale);
+  memset(pi->rows.stale, true, pi->n * sizeof *pi->rows.stale);
   pi->fresh_start = true;
   return BW_OK;
 }
@@ -177,22 +177,46 @@ static bw_status establish(bw_pd_interface *pi)
 static void release_all(bw_pd_interface *p)
 {
   bw_pd_interface__stencil_release(&p->stencil);
-  void **array[] = {(void **)&p->surface,     (void **)&p->first,       (void **)&p->outside,
-                    (void **)&p->leans,       (void **)&p->broken,      (void **)&p->fresh,
-                    (void **)&p->undecided,   (void **)&p->gap,         (void **)&p->row,
-                    (void **)&p->row_n,       (void **)&p->row_room,    (void **)&p->stale,
-                    (void **)&p->near,        (void **)&p->lines,       (void **)&p->anchor,
-                    (void **)&p->pool,        (void **)&p->leaning,     (void **)&p->list,
-                    (void **)&p->X0,          (void **)&p->normal,      (void **)&p->first_normal,
-                    (void **)&p->position,    (void **)&p->steps,       (void **)&p->area,
-                    (void **)&p->list_normal, (void **)&p->link,        (void **)&p->state,
-                    (void **)&p->place,       (void **)&p->off,         (void **)&p->area_first,
-                    (void **)&p->own_normal,  (void **)&p->touched,     (void **)&p->border,
-                    (void **)&p->changed,     (void **)&p->off_lattice, (void **)&p->borne};
+  void **array[] = {(void **)&p->surface,
+                    (void **)&p->first,
+                    (void **)&p->wall.outside,
+                    (void **)&p->wall.leans,
+                    (void **)&p->watch.broken,
+                    (void **)&p->watch.fresh,
+                    (void **)&p->watch.undecided,
+                    (void **)&p->watch.gap,
+                    (void **)&p->rows.row,
+                    (void **)&p->rows.row_n,
+                    (void **)&p->rows.row_room,
+                    (void **)&p->rows.stale,
+                    (void **)&p->seen.near,
+                    (void **)&p->now.lines,
+                    (void **)&p->anchor,
+                    (void **)&p->rows.pool,
+                    (void **)&p->wall.leaning,
+                    (void **)&p->now.list,
+                    (void **)&p->X0,
+                    (void **)&p->normal,
+                    (void **)&p->first_normal,
+                    (void **)&p->now.position,
+                    (void **)&p->steps,
+                    (void **)&p->now.area,
+                    (void **)&p->now.list_normal,
+                    (void **)&p->seen.link,
+                    (void **)&p->seen.state,
+                    (void **)&p->seen.place,
+                    (void **)&p->wall.off,
+                    (void **)&p->area_first,
+                    (void **)&p->fit.own_normal,
+                    (void **)&p->fit.touched,
+                    (void **)&p->fit.border,
+                    (void **)&p->fit.changed,
+                    (void **)&p->now.off_lattice,
+                    (void **)&p->fit.borne};
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
-    bw_release(&p->told[pass]);
+    bw_release(&p->fit.told[pass]);
 }
 
 bw_status bw_pd_interface__rebuild(bw_pd_interface *pi)
@@ -231,11 +255,11 @@ void bw_pd_interface_destroy(bw_pd_interface **pi)
 
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi)
 {
-  return (bw_pd_surface){.n = pi->n_list,
-                         .particle = pi->list,
-                         .X = pi->position,
-                         .N = pi->list_normal,
-                         .A = pi->area};
+  return (bw_pd_surface){.n = pi->now.n_list,
+                         .particle = pi->now.list,
+                         .X = pi->now.position,
+                         .N = pi->now.list_normal,
+                         .A = pi->now.area};
 }
 
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi)

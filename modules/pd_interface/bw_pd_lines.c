@@ -31,8 +31,9 @@ static int32_t partner_at(const bw_pd_interface *pi, size_t h, int r, int steps)
   for (int d = 0; d < 3; d++)
     xi[d] = steps * s->ds * s->axes[r][d];
   const int q = bw_pd_interface__slot_of(s, xi);
-  const bool there = q >= 0 && pi->state[q] == BW_PD_INTERFACE__INTACT && pi->near[q].cross == 0;
-  return there ? pi->near[q].partner : -1;
+  const bool there =
+      q >= 0 && pi->seen.state[q] == BW_PD_INTERFACE__INTACT && pi->seen.near[q].cross == 0;
+  return there ? pi->seen.near[q].partner : -1;
 }
 
 void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
@@ -58,7 +59,7 @@ void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
 /* a_r of a block's rows in the reference shape. */
 static void at_rest(const bw_pd_interface *pi, size_t block, lanes a[3][3])
 {
-  const bw_pd_interface__lines *l = &pi->lines[block];
+  const bw_pd_interface__lines *l = &pi->now.lines[block];
   const bw_pd_interface__stencil *s = &pi->stencil;
   /* Whole steps of the lattice ... */
   for (int r = 0; r < 3; r++)
@@ -69,8 +70,8 @@ static void at_rest(const bw_pd_interface *pi, size_t block, lanes a[3][3])
         a[r][d][k] = step * l->steps[r][k];
     }
   /* ... and in a cloud what its particles differ from it. */
-  if (pi->off_lattice == NULL) return;
-  const double *more = &pi->off_lattice[9 * ROWS * block];
+  if (pi->now.off_lattice == NULL) return;
+  const double *more = &pi->now.off_lattice[9 * ROWS * block];
   for (int r = 0; r < 3; r++)
     for (int d = 0; d < 3; d++, more += ROWS)
       for (int k = 0; k < ROWS; k++)
@@ -130,7 +131,7 @@ static inline void dot(lanes a[3], lanes b[3], lanes out)
 static void present(const bw_pd_interface *pi, size_t block, const bw_pd_motion *now, lanes a[3][3],
                     lanes (*b)[3], lanes c[3][3], lanes det)
 {
-  const bw_pd_interface__lines *l = &pi->lines[block];
+  const bw_pd_interface__lines *l = &pi->now.lines[block];
   /* a_r = reference element + difference of displacements; b_r that of velocities. */
   at_rest(pi, block, a);
   add_between(l, now->u, a);
@@ -146,7 +147,7 @@ static void present(const bw_pd_interface *pi, size_t block, const bw_pd_motion 
 static void note_cloud(bw_pd_interface *pi, size_t row, size_t h)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
-  double *more = &pi->off_lattice[9 * ROWS * (row / ROWS) + row % ROWS];
+  double *more = &pi->now.off_lattice[9 * ROWS * (row / ROWS) + row % ROWS];
   for (size_t r = 0; r < 3; r++) {
     double to[3], from[3];
     bw_solid_get_place(pi->pd, (size_t)pi->anchor[6 * h + 2 * r], to);
@@ -159,33 +160,34 @@ static void note_cloud(bw_pd_interface *pi, size_t row, size_t h)
 
 void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_motion *now)
 {
-  const size_t blocks = (pi->n_list + ROWS - 1) / ROWS;
-  if (blocks > 0) memset(pi->lines, 0, blocks * sizeof *pi->lines);
-  if (pi->off_lattice != NULL) memset(pi->off_lattice, 0, 9 * ROWS * blocks * sizeof(double));
+  const size_t blocks = (pi->now.n_list + ROWS - 1) / ROWS;
+  if (blocks > 0) memset(pi->now.lines, 0, blocks * sizeof *pi->now.lines);
+  if (pi->now.off_lattice != NULL)
+    memset(pi->now.off_lattice, 0, 9 * ROWS * blocks * sizeof(double));
   /* Ends of the elements in storage order, eight rows of the list side by side. */
-  for (size_t row = 0; row < pi->n_list; row++) {
-    const size_t h = (size_t)pi->list[row], k = row % ROWS;
-    bw_pd_interface__lines *l = &pi->lines[row / ROWS];
-    if (k == 0) l->whole = row + ROWS <= pi->n_list;
+  for (size_t row = 0; row < pi->now.n_list; row++) {
+    const size_t h = (size_t)pi->now.list[row], k = row % ROWS;
+    bw_pd_interface__lines *l = &pi->now.lines[row / ROWS];
+    if (k == 0) l->whole = row + ROWS <= pi->now.n_list;
     for (size_t r = 0; r < 3; r++) {
       l->steps[r][k] = pi->steps[3 * h + r];
       l->whole = l->whole && l->steps[r][k] != 0;
       for (size_t end = 0; end < 2; end++)
         l->end[r][end][k] = now->place[pi->anchor[6 * h + 2 * r + end]];
     }
-    if (pi->off_lattice != NULL) note_cloud(pi, row, h);
+    if (pi->now.off_lattice != NULL) note_cloud(pi, row, h);
   }
   /* n0.a0 of each element: what stays while the body moves (Nanson). */
   for (size_t block = 0; block < blocks; block++) {
     lanes a[3][3], n[3] = {{0}};
-    for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+    for (size_t row = block * ROWS; row < pi->now.n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
-        n[d][row % ROWS] = pi->own_normal[3 * (size_t)pi->list[row] + d];
+        n[d][row % ROWS] = pi->fit.own_normal[3 * (size_t)pi->now.list[row] + d];
     /* Missing elements are completed in the reference shape as they will be in the present one. */
     at_rest(pi, block, a);
-    complete(&pi->lines[block], a, NULL);
+    complete(&pi->now.lines[block], a, NULL);
     for (int r = 0; r < 3; r++)
-      dot(n, a[r], pi->lines[block].hold[r]);
+      dot(n, a[r], pi->now.lines[block].hold[r]);
   }
 }
 
@@ -198,18 +200,19 @@ static void tell_block(const bw_pd_interface *pi, size_t block, lanes n[3])
   for (int k = 0; k < ROWS; k++)
     scale[k] = 1.0 / sqrt(squared[k]);
   /* The last block may be partly empty: its lanes are computed, not told. */
-  for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++) {
+  for (size_t row = block * ROWS; row < pi->now.n_list && row < (block + 1) * ROWS; row++) {
     const size_t k = row % ROWS;
     for (size_t d = 0; d < 3; d++)
-      pi->list_normal[3 * row + d] =
-          squared[k] > 0.0 ? n[d][k] * scale[k] : pi->own_normal[3 * pi->list[row] + (int)d];
+      pi->now.list_normal[3 * row + d] = squared[k] > 0.0
+                                             ? n[d][k] * scale[k]
+                                             : pi->fit.own_normal[3 * pi->now.list[row] + (int)d];
   }
 }
 
 void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_motion *now)
 {
-  for (size_t block = 0; block * ROWS < pi->n_list; block++) {
-    const bw_pd_interface__lines *l = &pi->lines[block];
+  for (size_t block = 0; block * ROWS < pi->now.n_list; block++) {
+    const bw_pd_interface__lines *l = &pi->now.lines[block];
     lanes a[3][3], c[3][3] = {{{0}}}, n[3] = {{0}}, det;
     present(pi, block, now, a, NULL, c, det);
     /* n ~ sum_r (n0.a0_r) c_r/det; only the sign of det matters, as n is made a unit vector. */
@@ -239,7 +242,7 @@ static void half_inverse(lanes a[3][3], lanes det)
 void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
 {
   const bw_pd_motion now = bw_solid_get_motion(pi->pd, true);
-  for (size_t block = 0; block * ROWS < pi->n_list; block++) {
+  for (size_t block = 0; block * ROWS < pi->now.n_list; block++) {
     lanes a[3][3], b[3][3] = {{{0}}}, c[3][3] = {{{0}}}, w[3] = {{0}}, half;
     present(pi, block, &now, a, b, c, half);
     /* spin = 1/2 sum_r c_r x a'_r/det. */
@@ -247,7 +250,7 @@ void bw_pd_interface_turn(bw_pd_interface *pi, double spin[])
       add_cross(c[r], b[r], w);
     half_inverse(a, half);
     /* half is 1/(2 det), or 0 where no rotation can be told. */
-    for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+    for (size_t row = block * ROWS; row < pi->now.n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         spin[3 * row + d] = half[row % ROWS] * w[d][row % ROWS];
   }
@@ -274,9 +277,9 @@ static void hand_over(const bw_pd_interface__lines *l, lanes a[3][3], lanes g[3]
 /* g_r on the ends of a block's elements. */
 static void add_forces(const bw_pd_interface *pi, size_t block, lanes g[3][3], double *force)
 {
-  for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+  for (size_t row = block * ROWS; row < pi->now.n_list && row < (block + 1) * ROWS; row++)
     for (size_t r = 0; r < 3; r++) {
-      const int32_t *end = &pi->anchor[6 * (size_t)pi->list[row] + 2 * r];
+      const int32_t *end = &pi->anchor[6 * (size_t)pi->now.list[row] + 2 * r];
       for (size_t d = 0; d < 3; d++) {
         force[3 * (size_t)end[0] + d] += g[r][d][row % ROWS];
         force[3 * (size_t)end[1] + d] -= g[r][d][row % ROWS];
@@ -287,12 +290,12 @@ static void add_forces(const bw_pd_interface *pi, size_t block, lanes g[3][3], d
 void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double force[])
 {
   const bw_pd_motion now = bw_solid_get_motion(pi->pd, false);
-  double *all = pi->borne;
+  double *all = pi->fit.borne;
   memset(all, 0, 3 * pi->n_extended * sizeof *all);
-  for (size_t block = 0; block * ROWS < pi->n_list; block++) {
+  for (size_t block = 0; block * ROWS < pi->now.n_list; block++) {
     lanes a[3][3], c[3][3] = {{{0}}}, g[3][3] = {{{0}}}, M[3] = {{0}}, half;
     /* Moments of eight rows, side by side. */
-    for (size_t row = block * ROWS; row < pi->n_list && row < (block + 1) * ROWS; row++)
+    for (size_t row = block * ROWS; row < pi->now.n_list && row < (block + 1) * ROWS; row++)
       for (size_t d = 0; d < 3; d++)
         M[d][row % ROWS] = moment[3 * row + d];
     present(pi, block, &now, a, NULL, c, half);
@@ -305,7 +308,7 @@ void bw_pd_interface_twist(bw_pd_interface *pi, const double moment[], double fo
         for (int k = 0; k < ROWS; k++)
           g[r][d][k] *= half[k];
     /* Missing elements have no ends to push. */
-    hand_over(&pi->lines[block], a, g);
+    hand_over(&pi->now.lines[block], a, g);
     add_forces(pi, block, g, all);
   }
   /* Ends on copies push their owners. */

@@ -93,9 +93,9 @@ static void partner_normal(const bw_pd_interface__near *near, const double all[]
 
 static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit_sums *sums)
 {
-  const bw_pd_interface__near *near = &pi->pool[pi->row[h]];
+  const bw_pd_interface__near *near = &pi->rows.pool[pi->rows.row[h]];
   const double *n = &all[3 * h];
-  const size_t count = pi->stale[h] ? 0 : pi->row_n[h];
+  const size_t count = pi->rows.stale[h] ? 0 : pi->rows.row_n[h];
   double t[2][3], other[3];
   tangents(n, t);
   *sums = (fit_sums){{{1.0}}, {{n[0], n[1], n[2]}}}; /* h itself */
@@ -146,7 +146,7 @@ static double solve_fit(fit_sums *sums, int dims, double value[3])
 static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
 {
   double *row = &rows[3 * h];
-  pi->changed[h] = pi->changed[h] || row[0] != n[0] || row[1] != n[1] || row[2] != n[2];
+  pi->fit.changed[h] = pi->fit.changed[h] || row[0] != n[0] || row[1] != n[1] || row[2] != n[2];
   memcpy(row, n, 3 * sizeof *row);
 }
 
@@ -155,17 +155,17 @@ static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
 static void spread_change(bw_pd_interface *pi)
 {
   /* Changes on other ranks reach h through its copies. */
-  bw_solid_fill_extended(pi->pd, sizeof *pi->changed, pi->changed, pi->changed);
-  memcpy(pi->touched, pi->changed, pi->n * sizeof *pi->touched);
+  bw_solid_fill_extended(pi->pd, sizeof *pi->fit.changed, pi->fit.changed, pi->fit.changed);
+  memcpy(pi->fit.touched, pi->fit.changed, pi->n * sizeof *pi->fit.touched);
   for (size_t h = 0; h < pi->n; h++) {
-    const bw_pd_interface__near *near = &pi->pool[pi->row[h]];
-    const size_t count = pi->changed[h] || pi->border[h] ? pi->row_n[h] : 0;
+    const bw_pd_interface__near *near = &pi->rows.pool[pi->rows.row[h]];
+    const size_t count = pi->fit.changed[h] || pi->fit.border[h] ? pi->rows.row_n[h] : 0;
     for (size_t q = 0; q < count; q++) {
       const int32_t l = near[q].partner;
       if (l < 0) continue;
-      if (pi->changed[l]) pi->touched[h] = true;
+      if (pi->fit.changed[l]) pi->fit.touched[h] = true;
       /* Own partners know h as theirs, so one direction is enough; copies and images do not. */
-      if (pi->changed[h] && (size_t)l < pi->n) pi->touched[l] = true;
+      if (pi->fit.changed[h] && (size_t)l < pi->n) pi->fit.touched[l] = true;
     }
   }
 }
@@ -183,7 +183,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
     double n[3];
     fit_sums sums;
     /* Nothing near it has changed: its fit is what it was. */
-    if (!pi->touched[h]) continue;
+    if (!pi->fit.touched[h]) continue;
     memcpy(n, there ? &pi->normal[3 * h] : none, sizeof n);
     if (there) sum_fit(pi, h, from, &sums);
     const double rms = there ? solve_fit(&sums, pi->stencil.dims, n) : INFINITY;
@@ -198,13 +198,14 @@ void bw_pd_interface__settle_normals(bw_pd_interface *pi)
   const double none[3] = {0.0, 0.0, 0.0};
   /* Pass 0: 3.45 of all surface particles, nothing elsewhere. */
   for (size_t h = 0; h < pi->n; h++)
-    put(pi, pi->told[0], h, pi->surface[h] ? &pi->normal[3 * h] : none);
+    put(pi, pi->fit.told[0], h, pi->surface[h] ? &pi->normal[3 * h] : none);
   /* Fit, fit of the fit with judgement, and again two fits of those that are smooth. */
   for (int pass = 0; pass < BW_PD_INTERFACE__PASSES; pass++)
-    fit_all(pi, pi->told[pass], pi->told[pass + 1], pass == 1);
+    fit_all(pi, pi->fit.told[pass], pi->fit.told[pass + 1], pass == 1);
   /* The last fit where there is one, else 3.45. */
   for (size_t h = 0; h < pi->n; h++) {
-    const double *n = &pi->told[BW_PD_INTERFACE__PASSES][3 * h];
-    memcpy(&pi->own_normal[3 * h], dot(n, n) > 0.0 ? n : &pi->told[0][3 * h], 3 * sizeof *n);
+    const double *n = &pi->fit.told[BW_PD_INTERFACE__PASSES][3 * h];
+    memcpy(&pi->fit.own_normal[3 * h], dot(n, n) > 0.0 ? n : &pi->fit.told[0][3 * h],
+           3 * sizeof *n);
   }
 }

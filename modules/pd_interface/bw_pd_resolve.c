@@ -34,28 +34,28 @@ static void fill_images(bw_pd_interface *pi, size_t h)
     double image[3], nothing[3];
     uint8_t cross, again;
     /* A bond across the wall that broke stays broken. */
-    if (pi->state[q] == BW_PD_INTERFACE__BROKEN) continue;
+    if (pi->seen.state[q] == BW_PD_INTERFACE__BROKEN) continue;
     if (!reflect(pi, X0, &s->xi[3 * q], image, &cross)) continue;
     /* A particle on the wall may be its own image. */
     const double still = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
     const bool itself = still < 0.25 * s->ds;
     const int m = itself ? -2 : bw_pd_interface__slot_of(s, image);
     const bool trapped = reflect(pi, X0, image, nothing, &again);
-    bw_pd_interface__near *near = &pi->near[q];
+    bw_pd_interface__near *near = &pi->seen.near[q];
     near->slot = (int16_t)q;
     near->cross = cross;
     /* Four cases: itself, a partner's image, the image of a
      * place where nobody is, no mirror at all. */
     if (itself) {
-      pi->state[q] = BW_PD_INTERFACE__INTACT;
+      pi->seen.state[q] = BW_PD_INTERFACE__INTACT;
       near->partner = (int32_t)h;
     } else if (m >= 0 && !trapped) {
-      pi->state[q] = pi->state[m];
-      near->partner = pi->near[m].partner;
+      pi->seen.state[q] = pi->seen.state[m];
+      near->partner = pi->seen.near[m].partner;
     } else if (m == -1 && !trapped) {
-      pi->state[q] = BW_PD_INTERFACE__ABSENT;
+      pi->seen.state[q] = BW_PD_INTERFACE__ABSENT;
     } else { /* no mirror on this lattice (or between two walls): the wall counts as solid */
-      pi->state[q] = BW_PD_INTERFACE__INTACT;
+      pi->seen.state[q] = BW_PD_INTERFACE__INTACT;
       near->partner = -1;
     }
   }
@@ -78,16 +78,16 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   /* Nobody is there, but for those that the solid lists. */
-  memset(pi->state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
-  const int family = bw_solid_links(pi->pd, h, pi->link);
+  memset(pi->seen.state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
+  const int family = bw_solid_links(pi->pd, h, pi->seen.link);
   for (int q = 0; q < family; q++) {
-    const bw_pd_link *l = &pi->link[q];
+    const bw_pd_link *l = &pi->seen.link[q];
     const bool intact = l->intact || reference;
-    pi->state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
-    pi->near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
+    pi->seen.state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
+    pi->seen.near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
   }
   /* A wall counts as solid until the particle has moved off it. */
-  if (pi->leans[h] && (reference || !pi->off[h])) fill_images(pi, h);
+  if (pi->wall.leans[h] && (reference || !pi->wall.off[h])) fill_images(pi, h);
 }
 
 /* Place of a partner relative to h: at rest, and what both moved since (images the other way). */
@@ -98,7 +98,7 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_motion *
   if (now == NULL || near->partner < 0) return;
   const size_t l = (size_t)near->partner;
   /* In a cloud partners are not where the stencil has them. */
-  if (pi->off_lattice != NULL) {
+  if (pi->now.off_lattice != NULL) {
     bw_solid_get_place(pi->pd, l, x);
     for (size_t d = 0; d < 3; d++)
       x[d] -= pi->X0[3 * h + d];
@@ -114,8 +114,8 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_motion *
 void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
   for (int q = 0; q < pi->stencil.slots; q++)
-    if (pi->state[q] != BW_PD_INTERFACE__ABSENT)
-      locate_one(pi, h, now, &pi->near[q], &pi->place[3 * q]);
+    if (pi->seen.state[q] != BW_PD_INTERFACE__ABSENT)
+      locate_one(pi, h, now, &pi->seen.near[q], &pi->seen.place[3 * q]);
 }
 
 void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never)
@@ -124,8 +124,8 @@ void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held
   uint32_t held = 0, known = 0;
   /* A direction on a border belongs to several sectors. */
   for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
-    if (pi->state[q] != BW_PD_INTERFACE__ABSENT) known |= s->sector_of[q];
+    if (pi->seen.state[q] == BW_PD_INTERFACE__INTACT) held |= s->sector_of[q];
+    if (pi->seen.state[q] != BW_PD_INTERFACE__ABSENT) known |= s->sector_of[q];
   }
   const uint32_t all = (1u << (unsigned)s->sectors) - 1u; /* at most 24 */
   *not_held = all & ~held;
@@ -140,8 +140,8 @@ uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
   bw_pd_interface__bare_sectors(pi, &empty, &never);
   /* Only sectors without an intact bond can be empty; their broken partners tell how far. */
   for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] != BW_PD_INTERFACE__BROKEN || (s->sector_of[q] & empty) == 0) continue;
-    const double *x = &pi->place[3 * q];
+    if (pi->seen.state[q] != BW_PD_INTERFACE__BROKEN || (s->sector_of[q] & empty) == 0) continue;
+    const double *x = &pi->seen.place[3 * q];
     const double distance = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     for (int k = 0; k < s->sectors; k++)
       if (s->sector_of[q] >> (unsigned)k & 1u) sum[k] += distance, broken[k] += 1.0;
@@ -157,7 +157,7 @@ bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3])
   double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
   /* POROUS 3.45: minus the centroid of what is there, in the reference shape. */
   for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+    if (pi->seen.state[q] != BW_PD_INTERFACE__INTACT) continue;
     /* POROUS 3.46. */
     for (int d = 0; d < 3; d++)
       mean[d] += s->fraction[q] * s->xi[3 * q + d];
@@ -183,7 +183,7 @@ static double face_projection(const bw_pd_interface *pi, const double e[3])
   double v[3] = {-c[0] * s->ds, -c[1] * s->ds, -c[2] * s->ds}; /* the particle itself, weight ds */
   /* Centroid, about the face, of the partners in the ball. */
   for (int q = 0; q < s->slots; q++) {
-    if (pi->state[q] != BW_PD_INTERFACE__INTACT) continue;
+    if (pi->seen.state[q] != BW_PD_INTERFACE__INTACT) continue;
     const double *xi = &s->xi[3 * q];
     const double x[3] = {xi[0] - c[0], xi[1] - c[1], xi[2] - c[2]};
     const double weight = radius - sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
@@ -206,7 +206,7 @@ static int open_sides(const bw_pd_interface *pi, double e[][3])
       for (int d = 0; d < 3; d++)
         xi[d] = side * s->ds * s->axes[r][d];
       const int q = bw_pd_interface__slot_of(s, xi);
-      if (q < 0 || pi->state[q] != BW_PD_INTERFACE__ABSENT) continue;
+      if (q < 0 || pi->seen.state[q] != BW_PD_INTERFACE__ABSENT) continue;
       for (int d = 0; d < 3; d++)
         e[open][d] = xi[d] / s->ds;
       open++;

@@ -49,6 +49,63 @@ typedef struct {
 
 enum { BW_PD_INTERFACE__PASSES = 4 };
 
+/* Walls that the body leans on. */
+typedef struct {
+  bool *outside;    /* (n) beyond a wall: never surface */
+  bool *leans;      /* (n) its family reaches beyond a wall */
+  bool *off;        /* (n) it leans no more: has moved from the wall */
+  int32_t *leaning; /* (n_leaning) those that lean */
+  size_t n_leaning;
+} bw_pd_interface__walls;
+
+/* What may make or end a surface. */
+typedef struct {
+  int64_t events;   /* of pd when `broken` was read */
+  uint16_t *broken; /* (n) broken bonds */
+  uint16_t *fresh;  /* (n) scratch: the same now */
+  bool *undecided;  /* (n) surface or not depends on gaps */
+  int32_t *gap;     /* (n_gap) those that are */
+  size_t n_gap;
+} bw_pd_interface__watch;
+
+/* Scratch, of the particle resolved last. */
+typedef struct {
+  bw_pd_link *link;            /* (slots) */
+  uint8_t *state;              /* (slots) enum below */
+  bw_pd_interface__near *near; /* (slots) who is there, where state is not ABSENT */
+  double *place;               /* (slots,3) relative to the particle */
+} bw_pd_interface__seen;
+
+/* Partners of surface particles, in rows. */
+typedef struct {
+  bw_pd_interface__near *pool; /* (pool_n of pool_room) */
+  size_t pool_n, pool_room;
+  size_t *row;                /* (n) where the row begins */
+  uint16_t *row_n, *row_room; /* (n) its length and how long it may get; room 0: no row */
+  bool *stale;                /* (n) the row has to be made anew */
+} bw_pd_interface__rows;
+
+/* The surface as it is now: a row per particle of the list. */
+typedef struct {
+  int32_t *list; /* (n_list) which particle */
+  size_t n_list;
+  double *position, *list_normal; /* (n_list,3) */
+  double *area;                   /* (n_list) */
+  bw_pd_interface__lines *lines;  /* (n_list / 8, rounded up) */
+  double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
+                          [L]; NULL: a lattice */
+} bw_pd_interface__shown;
+
+/* Normals of the reference shape as they are fitted. */
+typedef struct {
+  double *own_normal;                        /* (n,3) of the surface, 0 elsewhere */
+  double *told[BW_PD_INTERFACE__PASSES + 1]; /* (n_extended,3) the same by 3.45 and after each pass
+                                                of fits over it */
+  bool *changed;                             /* (n_extended) since they were settled last */
+  bool *touched, *border; /* (n) a partner changed; it has copies or images as partners */
+  double *borne;          /* (n_extended,3) scratch: forces that bear moments */
+} bw_pd_interface__fit;
+
 struct bw_pd_interface {
   bw_solid *pd; /* borrowed */
   bw_pd_interface_config config;
@@ -67,44 +124,13 @@ struct bw_pd_interface {
   double *first_normal; /* (n,3) the same before anything broke */
   int32_t *anchor;      /* (n,6) ends of three line elements: extended particles, or h twice */
   uint8_t *steps;       /* (n,3) lattice steps between them */
-
-  bool *outside;    /* (n) beyond a wall: never surface */
-  bool *leans;      /* (n) its family reaches beyond a wall */
-  bool *off;        /* (n) it leans no more: has moved from the wall */
-  int32_t *leaning; /* (n_leaning) those that lean */
-  size_t n_leaning;
-
-  int64_t events;   /* of pd when `broken` was read */
-  uint16_t *broken; /* (n) broken bonds */
-  uint16_t *fresh;  /* (n) scratch: the same now */
-  bool *undecided;  /* (n) surface or not depends on gaps */
-  int32_t *gap;     /* (n_gap) those that are */
-  size_t n_gap;
-
-  bw_pd_link *link;            /* (slots) scratch, of the particle resolved last, as are: */
-  uint8_t *state;              /* (slots) enum below */
-  bw_pd_interface__near *near; /* (slots) who is there, where state is not ABSENT */
-  double *place;               /* (slots,3) relative to the particle */
-
-  bw_pd_interface__near *pool; /* (pool_n of pool_room) partners of surface particles, in rows */
-  size_t pool_n, pool_room;
-  size_t *row;                /* (n) where the row begins */
-  uint16_t *row_n, *row_room; /* (n) its length and how long it may get; room 0: no row */
-  bool *stale;                /* (n) the row has to be made anew */
-
-  int32_t *list; /* (n_list) the surface, and its rows: (.,3) but area */
-  size_t n_list;
-  double *position, *list_normal, *area;
-  double *own_normal; /* (n,3) of the surface in the reference shape, 0 elsewhere */
-  double *told[BW_PD_INTERFACE__PASSES + 1]; /* (n_extended,3) the same by 3.45 and after each pass
-                                                of fits over it */
-  bool *changed;                             /* (n_extended) since they were settled last */
-  bool *touched, *border;        /* (n) a partner changed; it has copies or images as partners */
-  double *borne;                 /* (n_extended,3) scratch: forces that bear moments */
-  bw_pd_interface__lines *lines; /* (n_list / 8, rounded up) */
-  double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
-                          [L]; NULL: a lattice */
-  bool fresh_start;    /* nothing is known of the present shape yet */
+  bool fresh_start;     /* nothing is known of the present shape yet */
+  bw_pd_interface__walls wall;
+  bw_pd_interface__watch watch;
+  bw_pd_interface__seen seen;
+  bw_pd_interface__rows rows;
+  bw_pd_interface__shown now;
+  bw_pd_interface__fit fit;
 };
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };

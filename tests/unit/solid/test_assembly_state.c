@@ -1,13 +1,13 @@
 /* Sets of solids whose state is changed from outside: checkpoints, retiring, what is refused.
  * TEST ranks=1,2,3 */
-#include "set_scene.h"
+#include "assembly_scene.h"
 
 /* In the middle of a bounce both solids go on from a checkpoint, in a new set. */
 START_TEST(a_restart_in_a_bounce_goes_on)
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
   scene t = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.2 * bw_solid_set_dt(s.set);
+  const double dt = 0.2 * bw_solid_assembly_dt(s.set);
   int n = 0;
   while (book(&s).contact < 0.02 && n++ < 2000)
     steps(&s, 1, dt);
@@ -29,11 +29,11 @@ END_TEST
 START_TEST(a_retired_ball_is_left_alone)
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.2 * bw_solid_set_dt(s.set);
+  const double dt = 0.2 * bw_solid_assembly_dt(s.set);
   int n = 0;
   while (book(&s).contact < 0.02 && n++ < 2000)
     steps(&s, 1, dt);
-  ck_assert_int_gt(bw_solid_set_pairs(s.set), 0);
+  ck_assert_int_gt(bw_solid_assembly_pairs(s.set), 0);
   bool *gone = NULL;
   bw_check_ok(BW_ALLOCATE(&gone, bw_solid_count(s.ball)));
   for (size_t i = 0; i < bw_solid_count(s.ball); i++)
@@ -41,7 +41,7 @@ START_TEST(a_retired_ball_is_left_alone)
   bw_check_ok(bw_solid_retire(s.ball, gone));
   const double before = upward(&s);
   steps(&s, 20, dt);
-  ck_assert_int_eq(bw_solid_set_pairs(s.set), 0);
+  ck_assert_int_eq(bw_solid_assembly_pairs(s.set), 0);
   ck_assert_double_eq(book(&s).contact, 0);
   ck_assert_double_eq(upward(&s), before);
   bw_release(&gone);
@@ -54,7 +54,7 @@ END_TEST
 static void check_anew(void (*touch)(bw_solid *))
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.1 * bw_solid_set_dt(s.set);
+  const double dt = 0.1 * bw_solid_assembly_dt(s.set);
   int n = 0;
   while (book(&s).contact < 0.02 && n++ < 4000)
     steps(&s, 1, dt);
@@ -98,8 +98,8 @@ static void refused(bw_solid_config c, bw_solid_config d, const char *word)
 {
   pd_body one = pd_box(4, 4, 1);
   bw_solid *two[] = {pd_make(bw_check_world(), &c, &one), pd_make(bw_check_world(), &d, &one)};
-  bw_solid_set *set = NULL;
-  bw_check_status(bw_solid_set_create(2, two, &set), BW_EINPUT);
+  bw_solid_assembly *set = NULL;
+  bw_check_status(bw_solid_assembly_create(2, two, &set), BW_EINPUT);
   ck_assert_msg(strstr(bw_last_message(), word) != NULL, "%s", bw_last_message());
   ck_assert_ptr_null(set);
   for (int b = 0; b < 2; b++)
@@ -122,12 +122,12 @@ START_TEST(what_does_not_go_together_is_named)
   refused(c, d, "thickness");
   pd_body one = pd_box(4, 4, 1);
   bw_solid *s = pd_make(bw_check_world(), &c, &one);
-  bw_solid_set *set = NULL;
-  bw_check_status(bw_solid_set_create(2, (bw_solid *[]){s, s}, &set), BW_EINPUT);
-  bw_check_ok(bw_solid_set_create(1, &s, &set));
-  bw_check_status(bw_solid_set_step(set, 2 * bw_solid_dt_max(s)), BW_ECFL);
-  bw_check_ok(bw_solid_set_step(set, bw_solid_set_dt(set)));
-  bw_solid_set_destroy(&set);
+  bw_solid_assembly *set = NULL;
+  bw_check_status(bw_solid_assembly_create(2, (bw_solid *[]){s, s}, &set), BW_EINPUT);
+  bw_check_ok(bw_solid_assembly_create(1, &s, &set));
+  bw_check_status(bw_solid_assembly_step(set, 2 * bw_solid_dt_max(s)), BW_ECFL);
+  bw_check_ok(bw_solid_assembly_step(set, bw_solid_assembly_dt(set)));
+  bw_solid_assembly_destroy(&set);
   bw_solid_destroy(&s);
   pd_body_release(&one);
 }
@@ -137,4 +137,4 @@ static const bw_check_test tests[] = {BW_TEST(a_restart_in_a_bounce_goes_on),
                                       BW_TEST(a_retired_ball_is_left_alone),
                                       BW_TEST(forces_of_one_taken_alone_do_not_lose_the_others),
                                       BW_TEST(what_does_not_go_together_is_named)};
-BW_CHECK_MAIN("solid_set_state", tests)
+BW_CHECK_MAIN("solid_assembly_state", tests)

@@ -1,7 +1,7 @@
-/* set_scene.h -- a plate turned by 17 degrees and a ball of another spacing and material above it,
+/* assembly_scene.h -- a plate turned by 17 degrees and a ball of another spacing and material above it,
  * in a set: for the tests of contact between bodies. */
 #pragma once
-#include "bw_solid_set.h"
+#include "bw_solid_assembly.h"
 #include "pd_test.h"
 
 #include <string.h>
@@ -32,7 +32,7 @@ static inline pd_body ball_sites(int radius)
 /* A plate turned by 17 degrees and a ball of spacing 0.7 above it. */
 typedef struct {
   bw_solid *plate, *ball;
-  bw_solid_set *set;
+  bw_solid_assembly *set;
 } scene;
 
 static double speed[3];
@@ -81,7 +81,7 @@ static inline scene throw_ball(const bw_comm *comm, bw_solid_config plate, bw_so
   memset(flat.kind, kind, (size_t)flat.n);
   s.plate = pd_make(comm, &plate, &flat);
   s.ball = pd_make(comm, &ball, &round);
-  bw_check_ok(bw_solid_set_create(2, (bw_solid *[]){s.plate, s.ball}, &s.set));
+  bw_check_ok(bw_solid_assembly_create(2, (bw_solid *[]){s.plate, s.ball}, &s.set));
   memcpy(speed, (double[]){0.1 * v, 0.05 * v, -v}, sizeof speed);
   pd_set(s.ball, NULL, thrown);
   pd_body_release(&flat);
@@ -91,7 +91,7 @@ static inline scene throw_ball(const bw_comm *comm, bw_solid_config plate, bw_so
 
 static inline void scene_release(scene *s)
 {
-  bw_solid_set_destroy(&s->set);
+  bw_solid_assembly_destroy(&s->set);
   bw_solid_destroy(&s->plate);
   bw_solid_destroy(&s->ball);
 }
@@ -99,7 +99,7 @@ static inline void scene_release(scene *s)
 static inline bw_solid_ledger book(const scene *s)
 {
   bw_solid_ledger l = {0};
-  bw_check_ok(bw_solid_set_account(s->set, &l));
+  bw_check_ok(bw_solid_assembly_account(s->set, &l));
   return l;
 }
 
@@ -111,7 +111,7 @@ static inline double energy(const bw_solid_ledger *l)
 static inline void steps(const scene *s, int n, double dt)
 {
   for (int q = 0; q < n; q++)
-    bw_check_ok(bw_solid_set_step(s->set, dt));
+    bw_check_ok(bw_solid_assembly_step(s->set, dt));
 }
 
 /* Upward momentum of the ball. */

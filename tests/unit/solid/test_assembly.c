@@ -1,6 +1,6 @@
 /* Several solids in one space: contact between lattices of their own spacing, turn and material.
  * TEST ranks=1,2,3 */
-#include "set_scene.h"
+#include "assembly_scene.h"
 
 /* Error of the energy over a bounce, relative, its root mean square over the time in contact, in
  * steps of `factor` of the stable one. */
@@ -8,7 +8,7 @@ static double bounce(double factor, double height)
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(height), BW_PD_FREE, THROW);
   const bw_solid_ledger start = book(&s);
-  const double dt = factor * bw_solid_set_dt(s.set);
+  const double dt = factor * bw_solid_assembly_dt(s.set);
   double error2 = 0, most = 0, touching = 0;
   for (int q = 0; q < (int)lround(FLIGHT / dt); q++) {
     steps(&s, 1, dt);
@@ -61,13 +61,13 @@ START_TEST(a_bounce_does_not_depend_on_ranks)
   ball.contact = true;
   scene many = throw_ball(bw_check_world(), plate, ball, BW_PD_FREE, THROW);
   scene one = throw_ball(self, plate, ball, BW_PD_FREE, THROW);
-  ck_assert_double_eq(bw_solid_set_dt(many.set), bw_solid_set_dt(one.set));
-  const double dt = 0.4 * bw_solid_set_dt(one.set);
+  ck_assert_double_eq(bw_solid_assembly_dt(many.set), bw_solid_assembly_dt(one.set));
+  const double dt = 0.4 * bw_solid_assembly_dt(one.set);
   for (int q = 0; q < 6; q++) {
     steps(&many, (int)(FLIGHT / 6 / dt), dt);
     steps(&one, (int)(FLIGHT / 6 / dt), dt);
     const bw_solid_ledger a = book(&many), b = book(&one);
-    ck_assert_int_eq(bw_solid_set_pairs(many.set), bw_solid_set_pairs(one.set));
+    ck_assert_int_eq(bw_solid_assembly_pairs(many.set), bw_solid_assembly_pairs(one.set));
     bw_check_near(a.kinetic, b.kinetic, 1e-12 + 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.contact, b.contact, 1e-12 + 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.damping, b.damping, 1e-12 + 1e3 * BW_REAL_EPSILON);
@@ -94,7 +94,7 @@ static void check_held(double rise)
     V[3 * i + 2] = rise;
   bw_solid_set_prescribed(s.plate, V);
   const bw_solid_ledger start = book(&s);
-  const double dt = 0.1 * bw_solid_set_dt(s.set);
+  const double dt = 0.1 * bw_solid_assembly_dt(s.set);
   steps(&s, (int)lround(FLIGHT / dt), dt);
   const bw_solid_ledger end = book(&s);
   ck_assert_double_gt(upward(&s), -0.2 * start.momentum[2]);
@@ -119,10 +119,10 @@ START_TEST(a_body_that_passes_far_away_costs_no_pairs)
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(9), BW_PD_FREE, THROW);
   speed[0] = 1, speed[2] = 0;
   pd_set(s.ball, NULL, thrown);
-  ck_assert_int_eq(bw_solid_set_pairs(s.set), 0);
+  ck_assert_int_eq(bw_solid_assembly_pairs(s.set), 0);
   for (int q = 0; q < 40; q++) {
-    steps(&s, 1, 0.8 * bw_solid_set_dt(s.set));
-    ck_assert_int_eq(bw_solid_set_pairs(s.set), 0);
+    steps(&s, 1, 0.8 * bw_solid_assembly_dt(s.set));
+    ck_assert_int_eq(bw_solid_assembly_pairs(s.set), 0);
   }
   ck_assert(isinf(book(&s).closest));
   scene_release(&s);
@@ -140,10 +140,10 @@ START_TEST(a_pair_takes_the_smaller_reach_and_the_harmonic_mean)
     c.origin[k] = -0.25, d.origin[k] = -0.4;
   d.origin[1] += 0.4;
   bw_solid *a = pd_make(bw_check_world(), &c, &one), *b = pd_make(bw_check_world(), &d, &one);
-  bw_solid_set *set = NULL;
-  bw_check_ok(bw_solid_set_create(2, (bw_solid *[]){a, b}, &set));
+  bw_solid_assembly *set = NULL;
+  bw_check_ok(bw_solid_assembly_create(2, (bw_solid *[]){a, b}, &set));
   bw_solid_ledger l;
-  bw_check_ok(bw_solid_set_account(set, &l));
+  bw_check_ok(bw_solid_assembly_account(set, &l));
   double A[3], B[3];
   pd_gather(a, bw_solid_get_acceleration, A);
   pd_gather(b, bw_solid_get_acceleration, B);
@@ -154,8 +154,8 @@ START_TEST(a_pair_takes_the_smaller_reach_and_the_harmonic_mean)
   bw_check_near(l.contact / (k * (0.5 * log(0.5 / 0.4) - 0.1)), 1, e);
   bw_check_near(l.closest, 0.8, e);
   const double w2 = k * (1 / (2 * 0.125) + 1 / (5 * 0.512)) / 0.5;
-  bw_check_near(bw_solid_set_dt(set) * sqrt(w2), 1, 1e-12); /* no bonds */
-  bw_solid_set_destroy(&set);
+  bw_check_near(bw_solid_assembly_dt(set) * sqrt(w2), 1, 1e-12); /* no bonds */
+  bw_solid_assembly_destroy(&set);
   bw_solid_destroy(&a);
   bw_solid_destroy(&b);
   pd_body_release(&one);
@@ -181,8 +181,8 @@ START_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact)
     right.site[3 * q] += 9;
   bw_solid *one = pd_make(bw_check_world(), &c, &both);
   bw_solid *two[] = {pd_make(bw_check_world(), &c, &left), pd_make(bw_check_world(), &c, &right)};
-  bw_solid_set *set = NULL;
-  bw_check_ok(bw_solid_set_create(2, two, &set));
+  bw_solid_assembly *set = NULL;
+  bw_check_ok(bw_solid_assembly_create(2, two, &set));
   const double dt = 0.1 * bw_solid_dt_max(one);
   pd_set(one, NULL, towards);
   pd_set(two[0], NULL, towards);
@@ -191,10 +191,10 @@ START_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact)
   for (int q = 0; q < 24; q++) {
     for (int n = 0; n < (int)(1 / dt); n++) {
       pd_steps(one, 1, dt);
-      bw_check_ok(bw_solid_set_step(set, dt));
+      bw_check_ok(bw_solid_assembly_step(set, dt));
     }
     bw_solid_ledger l;
-    bw_check_ok(bw_solid_set_account(set, &l));
+    bw_check_ok(bw_solid_assembly_account(set, &l));
     most = fmax(most, l.contact);
     bw_check_near(l.contact, ledger_of(one).contact, 1e3 * BW_REAL_EPSILON);
   }
@@ -206,7 +206,7 @@ START_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact)
       for (int k = 0; k < 3; k++)
         bw_check_near(Y[3 * q + k], X[3 * (q / 4 * 8 + q % 4 + 4 * b) + k], 1e4 * BW_REAL_EPSILON);
   }
-  bw_solid_set_destroy(&set);
+  bw_solid_assembly_destroy(&set);
   bw_solid_destroy(&one);
   for (int b = 0; b < 2; b++)
     bw_solid_destroy(&two[b]);
@@ -230,11 +230,11 @@ START_TEST(discs_that_break_keep_their_book)
   pd_body left = pd_box(6, 6, 1), right = pd_box(7, 7, 1);
   scene s = {.plate = pd_make(bw_check_world(), &c, &left),
              .ball = pd_make(bw_check_world(), &d, &right)};
-  bw_check_ok(bw_solid_set_create(2, (bw_solid *[]){s.plate, s.ball}, &s.set));
+  bw_check_ok(bw_solid_assembly_create(2, (bw_solid *[]){s.plate, s.ball}, &s.set));
   memcpy(speed, (double[]){-0.4, 0, 0}, sizeof speed);
   pd_set(s.ball, NULL, thrown);
   const bw_solid_ledger start = book(&s);
-  const double dt = 0.1 * bw_solid_set_dt(s.set);
+  const double dt = 0.1 * bw_solid_assembly_dt(s.set);
   steps(&s, (int)(8 / dt), dt);
   const bw_solid_ledger end = book(&s);
   ck_assert_int_gt(end.broken, 0);
@@ -256,4 +256,4 @@ static const bw_check_test tests[] = {BW_TEST(a_ball_bounces_off_a_turned_plate)
                                       BW_TEST(a_pair_takes_the_smaller_reach_and_the_harmonic_mean),
                                       BW_TEST(two_bodies_on_one_lattice_bounce_as_one_with_contact),
                                       BW_TEST(discs_that_break_keep_their_book)};
-BW_CHECK_MAIN("solid_set", tests)
+BW_CHECK_MAIN("solid_assembly", tests)

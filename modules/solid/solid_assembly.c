@@ -5,33 +5,34 @@
  * the next step begins with the forces of all. */
 #include "bw_memory.h"
 #include "bw_pd_contact_between.h"
-#include "bw_solid_set.h"
+#include "bw_solid_assembly.h"
 #include "solid_internal.h"
 
 #include <math.h>
 
-struct bw_solid_set {
+struct bw_solid_assembly {
   int n;
   bw_solid **solid;   /* (n) borrowed */
   int64_t *evaluated; /* (n) of each when the contact between was added last; -1: never */
   bw_pd_contact_between *between; /* NULL: half built */
 };
 
-static const bw_comm *comm_of(const bw_solid_set *set)
+static const bw_comm *comm_of(const bw_solid_assembly *set)
 {
   return set->solid[0]->body->comm;
 }
 
 static bw_status check(int n, bw_solid *const solid[])
 {
-  BW_REQUIRE(n >= 1 && solid != NULL, BW_EINPUT, "solid_set: %d solids; at least 1", n);
+  BW_REQUIRE(n >= 1 && solid != NULL, BW_EINPUT, "solid_assembly: %d solids; at least 1", n);
   for (int q = 0; q < n; q++)
     BW_REQUIRE(solid[q]->config.integrator == BW_SOLID_VERLET, BW_EINPUT,
-               "solid_set: solid %d has integrator = rk3; in a set use verlet", q);
+               "solid_assembly: solid %d has integrator = rk3; in an assembly use verlet", q);
   return BW_OK;
 }
 
-static bw_status allocate(int n, bw_solid *const solid[], bw_solid_set *set, bw_pd_body ***body)
+static bw_status allocate(int n, bw_solid *const solid[], bw_solid_assembly *set,
+                          bw_pd_body ***body)
 {
   BW_TRY(BW_ALLOCATE(&set->solid, (size_t)n));
   BW_TRY(BW_ALLOCATE(&set->evaluated, (size_t)n));
@@ -46,7 +47,7 @@ static bw_status allocate(int n, bw_solid *const solid[], bw_solid_set *set, bw_
 }
 
 /* Solids may touch from the start, not pierce each other. */
-static bw_status check_room(bw_solid_set *set)
+static bw_status check_room(bw_solid_assembly *set)
 {
   BW_TRY(bw_pd_contact_between_update(set->between));
   (void)bw_pd_contact_between_energy(set->between); /* looks at all pairs */
@@ -54,15 +55,15 @@ static bw_status check_room(bw_solid_set *set)
   bw_comm_min(comm_of(set), 1, &closest);
   BW_REQUIRE(
       closest >= BW_SOLID_TOO_CLOSE, BW_EINPUT,
-      "solid_set: particles of two solids are %g of the smaller spacing apart, less than %g: "
+      "solid_assembly: particles of two solids are %g of the smaller spacing apart, less than %g: "
       "the solids pierce each other; move one",
       closest, BW_SOLID_TOO_CLOSE);
   return BW_OK;
 }
 
-bw_status bw_solid_set_create(int n, bw_solid *const solid[], bw_solid_set **out)
+bw_status bw_solid_assembly_create(int n, bw_solid *const solid[], bw_solid_assembly **out)
 {
-  bw_solid_set *set = NULL;
+  bw_solid_assembly *set = NULL;
   bw_pd_body **body = NULL;
   *out = NULL;
   BW_TRY(check(n, solid)); /* the same on all ranks */
@@ -72,14 +73,14 @@ bw_status bw_solid_set_create(int n, bw_solid *const solid[], bw_solid_set **out
   BW_THEN(st, bw_pd_contact_between_create(n, body, &set->between));
   BW_THEN(st, check_room(set));
   bw_release(&body);
-  if (st != BW_OK) bw_solid_set_destroy(&set);
+  if (st != BW_OK) bw_solid_assembly_destroy(&set);
   *out = set;
   return st;
 }
 
-void bw_solid_set_destroy(bw_solid_set **set_)
+void bw_solid_assembly_destroy(bw_solid_assembly **set_)
 {
-  bw_solid_set *set = *set_;
+  bw_solid_assembly *set = *set_;
   if (set == NULL) return;
   bw_pd_contact_between_destroy(&set->between);
   bw_release(&set->solid);
@@ -88,7 +89,7 @@ void bw_solid_set_destroy(bw_solid_set **set_)
 }
 
 /* The forces between solids on top of those of each, which are new. Collective. */
-static bw_status add_between(bw_solid_set *set)
+static bw_status add_between(bw_solid_assembly *set)
 {
   /* Agreed: a search fails on all ranks or on none. */
   BW_TRY(bw_pd_contact_between_update(set->between));
@@ -103,7 +104,7 @@ static bw_status add_between(bw_solid_set *set)
 
 /* Forces of all solids and between them. Everybody evaluates, also where one has failed: the
  * exchanges are collective. */
-static bw_status evaluate_all(bw_solid_set *set, bool check_bonds)
+static bw_status evaluate_all(bw_solid_assembly *set, bool check_bonds)
 {
   bw_status st = BW_OK;
   for (int q = 0; q < set->n; q++) {
@@ -116,7 +117,7 @@ static bw_status evaluate_all(bw_solid_set *set, bool check_bonds)
 
 /* Do all solids hold the forces of the present motion, those between them too? A restart gives
  * them. */
-static bool is_current(const bw_solid_set *set)
+static bool is_current(const bw_solid_assembly *set)
 {
   for (int q = 0; q < set->n; q++) {
     const bw_solid *s = set->solid[q];
@@ -126,25 +127,25 @@ static bool is_current(const bw_solid_set *set)
   return true;
 }
 
-static bw_status make_current(bw_solid_set *set)
+static bw_status make_current(bw_solid_assembly *set)
 {
   if (is_current(set)) return BW_OK;
   return bw_comm_agree(comm_of(set), evaluate_all(set, false));
 }
 
-static bw_status check_step(const bw_solid_set *set, double dt)
+static bw_status check_step(const bw_solid_assembly *set, double dt)
 {
   for (int q = 0; q < set->n; q++) {
     const double limit = bw_solid_dt_max(set->solid[q]);
     BW_REQUIRE(dt > 0 && dt <= limit * (1 + 1e-12), BW_ECFL,
-               "solid_set: dt = %g must be positive and at most %g of solid %d; take smaller "
+               "solid_assembly: dt = %g must be positive and at most %g of solid %d; take smaller "
                "sub-steps",
                dt, limit, q);
   }
   return BW_OK;
 }
 
-bw_status bw_solid_set_step(bw_solid_set *set, double dt)
+bw_status bw_solid_assembly_step(bw_solid_assembly *set, double dt)
 {
   bw_status st = BW_OK;
   BW_TRY(check_step(set, dt));
@@ -175,7 +176,7 @@ static double rate2(double dt)
   return 1 / (dt * dt);
 }
 
-double bw_solid_set_dt(const bw_solid_set *set)
+double bw_solid_assembly_dt(const bw_solid_assembly *set)
 {
   double within = 0;
   for (int q = 0; q < set->n; q++)
@@ -205,7 +206,7 @@ static void add_ledger(bw_solid_ledger *sum, const bw_solid_ledger *l)
   sum->broken += l->broken;
 }
 
-bw_status bw_solid_set_account(bw_solid_set *set, bw_solid_ledger *out)
+bw_status bw_solid_assembly_account(bw_solid_assembly *set, bw_solid_ledger *out)
 {
   bw_solid_ledger sum = {.closest = INFINITY};
   BW_TRY(make_current(set));
@@ -226,7 +227,7 @@ bw_status bw_solid_set_account(bw_solid_set *set, bw_solid_ledger *out)
   return BW_OK;
 }
 
-int64_t bw_solid_set_pairs(const bw_solid_set *set)
+int64_t bw_solid_assembly_pairs(const bw_solid_assembly *set)
 {
   int64_t pairs = (int64_t)bw_pd_contact_between_pairs(set->between);
   bw_comm_sum_int(comm_of(set), 1, &pairs);

@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
   double length[3], stretch; /* [L]; of y by tanh [-], 0: uniform */
   int cells[3];              /* cells[2] = 1: two dimensions */
-  char faces[256];           /* path of a file with the faces in y; empty: none */
+  char faces[1024];          /* path of a file with the faces in y; empty: none */
 } box_domain;
 typedef struct {
   double viscosity; /* kinematic [L^2/T] */

@@ -12,7 +12,7 @@ static const bw_config_field domain_fields[] = {
       "cells in x, y and z; one cell in z: two dimensions"),
     V(box_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
       "strength of the stretching in y by tanh, thin cells at both sides; 0: uniform"),
-    V(box_domain, faces, BW_OPTIONAL, BW_ANY, "",
+    V(box_domain, faces, BW_OPTIONAL, BW_FILE, "",
       "path of a text file with the faces in y, from 0 to length[1]"),
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {

@@ -8,8 +8,8 @@
 typedef struct {
   double length[3]; /* box [h]; length[1] is 1 */
   int cells[3];
-  double stretch;  /* of y by tanh [-]; 0: uniform               default 0 */
-  char faces[256]; /* path of a file with the faces in y; empty: none */
+  double stretch;   /* of y by tanh [-]; 0: uniform               default 0 */
+  char faces[1024]; /* path of a file with the faces in y; empty: none */
 } channel_domain;
 typedef struct {
   double reynolds;     /* U_b h/nu [-] */

@@ -29,14 +29,14 @@ typedef struct {
 } porous_random;
 /* A medium from voxels. */
 typedef struct {
-  char file[256];  /* NRRD or MetaImage */
+  char file[1024]; /* NRRD or MetaImage */
   double solid[2]; /* smallest and largest value of a solid voxel */
   double voxel;    /* its edge [m]; NaN: as the file says */
 } porous_image;
 /* A medium from a closed surface. */
 typedef struct {
-  char file[256]; /* STL */
-  double scale;   /* a unit of length of the file [m]                     default 1 */
+  char file[1024]; /* STL */
+  double scale;    /* a unit of length of the file [m]                     default 1 */
 } porous_surface;
 /* The medium: a box with pores on a lattice, or one of random, image and surface. */
 typedef struct {

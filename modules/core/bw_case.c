@@ -27,6 +27,9 @@ const char *bw_commit(void)
 static void release(bw_case **run)
 {
   if (*run == NULL) return;
+  bw_core__case_leave(*run);
+  if ((*run)->files != NULL) bw_release(&(*run)->files->list);
+  bw_release(&(*run)->files);
   bw_release(&(*run)->overrides);
   bw_release(&(*run)->out);
   bw_log_destroy(&(*run)->log);
@@ -109,6 +112,7 @@ bw_log *bw_case_log(const bw_case *run)
 
 bw_status bw_case_path(const bw_case *run, const char *name, char **path)
 {
+  bw_core__case_note(run, name);
   return bw_path_join(run->out, name, path);
 }
 

@@ -26,6 +26,13 @@ static bw_status take_restart(bw_case *run, const char *value)
   return BW_OK;
 }
 
+static bw_status take_overwrite(bw_case *run, const char *value)
+{
+  (void)value;
+  run->args.overwrite = true;
+  return BW_OK;
+}
+
 static bw_status take_check(bw_case *run, const char *value)
 {
   (void)value;
@@ -62,6 +69,7 @@ static const struct option {
     {"--set", "KEY.PATH=VALUE", take_set, "replace or add a value of the case file; repeatable"},
     {"--out", "DIR", take_out, "folder of the results"},
     {"--restart", "FILE", take_restart, "go on from a checkpoint"},
+    {"--overwrite", NULL, take_overwrite, "replace the results of the same case in that folder"},
     {"--check", NULL, take_check, "read and check everything, print the sizes, run nothing"},
     {"--quiet", NULL, take_quiet, "only warnings and errors"},
     {"--help", NULL, take_help, "this text, with all keys of the case file"},
@@ -141,6 +149,8 @@ bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
   run->args.overrides = run->overrides;
   /* Help and version need no case file. */
   if (run->args.stop) return BW_OK;
+  BW_REQUIRE(!run->args.overwrite || run->args.restart == NULL, BW_EUSAGE,
+             "--overwrite begins anew and --restart goes on: give one of them");
   BW_REQUIRE(run->args.yaml != NULL, BW_EUSAGE,
              "no case file is given: %s CASE.yaml [options]; --help lists them", run->about->name);
   if (run->out == NULL) BW_TRY(default_folder(run));

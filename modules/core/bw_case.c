@@ -4,6 +4,7 @@
 #include "bw_real.h"
 #include "case_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* Given by the build to this file alone, so that a commit compiles one file anew. */
@@ -91,6 +92,7 @@ bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_cas
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&run, 1)));
   run->about = about;
   run->args.comm = comm;
+  run->args.stop_after = HUGE_VAL;
   /* The clock starts before the case file is read: set-up counts. */
   run->wall_start = bw_wall_time();
   const bw_status st = begin(run, argc, argv, config);

@@ -198,6 +198,11 @@ START_TEST(results_are_not_overwritten)
                  "holds results of another case than plate");
   expect_refusal(&about, WORDS(yaml, "--out", folder, "--overwrite", "--restart", checkpoint),
                  BW_EUSAGE, "give one of them");
+  static const char *const times[] = {"",     "soon", "-1", "inf", "1e3", "2x",
+                                      "0x1h", "2h30", ".",  "h",   "nan", "1 h"};
+  for (size_t q = 0; q < sizeof times / sizeof *times; q++)
+    expect_refusal(&about, WORDS(yaml, "--stop-after", times[q]), BW_EUSAGE,
+                   "write a time such as");
   expect_refusal(&other_case, WORDS(yaml, "--out", folder, "--restart", checkpoint), BW_EINPUT,
                  "holds results of another case than plate");
   bw_check_ok(
@@ -302,11 +307,90 @@ START_TEST(one_run_at_a_time)
 }
 END_TEST
 
+/* The wall-clock time of --stop-after, without waiting for it; and what a run returns then. */
+START_TEST(stopping_before_the_end)
+{
+  static const struct {
+    const char *text;
+    double seconds;
+  } times[] = {{"0", 0.0}, {"90", 90.0}, {"1.5m", 90.0}, {"2h30m", 9000.0}, {"1d1s", 86401.0}};
+  const bw_comm *comm = bw_check_world();
+  char yaml[200], folder[200], *text = NULL, *record = NULL;
+  config c;
+  bw_case *run = NULL;
+  case_file(yaml);
+  in_base("stopped", folder);
+  for (size_t q = 0; q < sizeof times / sizeof *times; q++) {
+    bw_check_ok(
+        begin(&about, WORDS(yaml, "--check", "--quiet", "--stop-after", times[q].text), &c, &run));
+    ck_assert_double_eq(bw_case_args_of(run)->stop_after, times[q].seconds);
+    bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  }
+  bw_check_ok(begin(&about, WORDS(yaml, "--check", "--quiet"), &c, &run));
+  ck_assert(!bw_case_stopping(run));
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet", "--stop-after=0"), &c, &run));
+  ck_assert(bw_case_stopping(run));
+  bw_check_ok(bw_case_path(run, "run.yaml", &record));
+  const bw_status st = bw_case_unfinished(run, "checkpoint.h5");
+  ck_assert_int_eq(st, BW_EUNFINISHED);
+  ck_assert_int_eq(st, 75);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "stopped/checkpoint.h5"));
+  bw_check_status(bw_case_end(comm, &run, st), BW_EUNFINISHED);
+  bw_check_ok(bw_file_read_text(comm, record, NULL, &text));
+  ck_assert_ptr_nonnull(strstr(text, "  exit_code: 75\n  status: \"unfinished\"\n"));
+  bw_release(&text);
+  bw_release(&record);
+}
+END_TEST
+
+static void close_rows(bw_history **h, int64_t expected)
+{
+  if (bw_comm_rank(bw_check_world()) == 0) ck_assert_int_eq(bw_history_rows(*h), expected);
+  bw_check_ok(bw_history_close(bw_check_world(), h));
+}
+
+/* Rows are counted where the checkpoint lies in the folder of the results, and not elsewhere. */
+START_TEST(histories_go_on_in_their_folder)
+{
+  static const char *const columns[] = {"time[s]", "x[-]"};
+  const bw_comm *comm = bw_check_world();
+  char yaml[200], folder[200], other[200], checkpoint[220];
+  config c;
+  bw_case *run = NULL;
+  bw_history *h = NULL;
+  case_file(yaml);
+  in_base("history", folder);
+  in_base("history-2", other);
+  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.h5", folder);
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
+  bw_check_ok(bw_case_history(run, 2, columns, 5.0, 5, &h)); /* new: 5.0 and 5 are not looked at */
+  for (int q = 0; q < 3; q++)
+    bw_history_append(h, (const double[]){q, 0.0});
+  close_rows(&h, 3);
+  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  const char *const here[] = {yaml, "--out", folder, "--quiet", "--restart", checkpoint, NULL};
+  bw_check_ok(begin(&about, here, &c, &run));
+  bw_check_status(bw_case_history(run, 2, columns, 2.0, 4, &h), BW_EINPUT);
+  bw_check_ok(bw_case_history(run, 2, columns, 1.0, 2, &h));
+  close_rows(&h, 2);
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  const char *const there[] = {yaml, "--out", other, "--quiet", "--restart", checkpoint, NULL};
+  bw_check_ok(begin(&about, there, &c, &run));
+  bw_check_ok(bw_case_history(run, 2, columns, 1.0, 2, &h));
+  close_rows(&h, 0);
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+}
+END_TEST
+
 static const bw_check_test tests[] = {BW_TEST(command_line_errors_have_hints),
                                       BW_TEST(check_help_and_version_touch_nothing),
                                       BW_TEST(default_folders),
                                       BW_TEST(the_record),
                                       BW_TEST(results_are_not_overwritten),
                                       BW_TEST(overwriting_removes_own_files_alone),
-                                      BW_TEST(one_run_at_a_time)};
+                                      BW_TEST(one_run_at_a_time),
+                                      BW_TEST(stopping_before_the_end),
+                                      BW_TEST(histories_go_on_in_their_folder)};
 BW_CHECK_MAIN("core.case", tests)

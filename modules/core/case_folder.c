@@ -258,7 +258,13 @@ static bw_status keep_old_record(const bw_case *run, const bw_comm *self)
 /* Rank 0 looks, locks and makes room. */
 static bw_status take(bw_case *run, const bw_comm *self)
 {
+  enum { LONGEST_NAME = 48 }; /* of a file that a case writes, with room to spare */
   char *lock = NULL;
+  BW_REQUIRE(
+      strlen(run->out) + 1 + LONGEST_NAME <= BW_PATH_LONGEST, BW_EINPUT,
+      "--out %.40s...: the name of the folder has %zu bytes, %d at most: give a shorter one, or "
+      "start nearer to it",
+      run->out, strlen(run->out), BW_PATH_LONGEST - 1 - LONGEST_NAME);
   BW_TRY(bw_path_join(run->out, lock_name, &lock));
   /* Refusals first, so that nothing of somebody else's is touched. */
   bw_status st = check_unlocked(run, lock);

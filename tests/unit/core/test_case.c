@@ -212,6 +212,12 @@ START_TEST(results_are_not_overwritten)
   bw_release(&checkpoint);
   bw_release(&kept);
 
+  char longest[300];
+  memset(longest, 'a', sizeof longest);
+  longest[187] = '\0';
+  expect_refusal(&about, WORDS(yaml, "--out", longest), BW_EINPUT, "has 187 bytes, 186 at most");
+  ck_assert(!bw_path_exists(comm, longest));
+
   in_base("in_the_way", folder);
   bw_check_ok(bw_file_write_text(comm, folder, "a file"));
   expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EIO, "in the way");

@@ -195,6 +195,25 @@ START_TEST(folders_are_made_with_parents)
 }
 END_TEST
 
+/* Refused in our words before Open MPI's file layer would abort; the longest that is allowed works. */
+START_TEST(paths_that_are_too_long)
+{
+  const bw_comm *comm = bw_check_world();
+  char path[400];
+  bw_file *file = NULL;
+  in_own_folder("", path);
+  while (strlen(path) < BW_PATH_LONGEST)
+    strcat(path, "a");
+  bw_check_ok(bw_file_create(comm, path, &file));
+  bw_check_ok(bw_file_close(&file));
+  ck_assert(bw_path_exists(comm, path));
+  strcat(path, "a");
+  bw_check_status(bw_file_create(comm, path, &file), BW_EIO);
+  ck_assert_ptr_null(file);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "has 236 bytes, 235 at most"));
+}
+END_TEST
+
 /* A signal at one rank stops all, in the same call. */
 START_TEST(a_signal_to_one_rank_reaches_all)
 {
@@ -248,6 +267,7 @@ static const bw_check_test tests[] = {BW_TEST(ranks_write_their_bytes),
                                       BW_TEST(a_short_write_is_an_error),
                                       BW_TEST(missing_bytes_are_noticed_at_the_end),
                                       BW_TEST(folders_are_made_with_parents),
+                                      BW_TEST(paths_that_are_too_long),
                                       BW_TEST(a_signal_to_one_rank_reaches_all),
                                       BW_TEST(a_second_signal_ends_at_once)};
 BW_CHECK_MAIN("core.file", tests)

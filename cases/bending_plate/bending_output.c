@@ -171,7 +171,8 @@ bw_status bending_checkpoint(bending_run *p)
   const double progress[] = {(double)p->step, (double)bw_history_rows(p->history)};
   char *path = NULL;
   bw_checkpoint *ck = NULL;
-  bw_status st = bw_case_path(p->run, "checkpoint-last.h5", &path);
+  bw_status st = bw_history_sync(p->flow.comm, p->history);
+  BW_THEN(st, bw_case_path(p->run, "checkpoint-last.h5", &path));
   BW_THEN(st, bw_checkpoint_create(p->flow.comm, path, &ck));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", 2, progress));
   BW_THEN(st, bw_coupler_save(p->flow.coupler, ck));

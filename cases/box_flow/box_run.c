@@ -122,7 +122,8 @@ bw_status box_checkpoint(box_run *b)
   char *path = NULL;
   bw_checkpoint *ck = NULL;
   list_fields(b, field);
-  bw_status st = bw_case_path(b->run, "checkpoint.h5", &path);
+  bw_status st = bw_history_sync(bw_grid_comm(b->grid), b->history);
+  BW_THEN(st, bw_case_path(b->run, "checkpoint.h5", &path));
   BW_THEN(st, bw_checkpoint_create(bw_grid_comm(b->grid), path, &ck));
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "box_flow"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", NUMBERS, numbers));

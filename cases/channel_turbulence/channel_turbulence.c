@@ -23,10 +23,11 @@ static bw_status save_statistics(channel_flow *f, const bw_case *run)
   return st;
 }
 
-static bw_status save(channel_flow *f, const bw_case *run, const bw_history *history)
+static bw_status save(channel_flow *f, const bw_case *run, bw_history *history)
 {
   char *path = NULL;
-  bw_status st = bw_case_path(run, "checkpoint.h5", &path);
+  bw_status st = bw_history_sync(bw_grid_comm(f->grid), history);
+  BW_THEN(st, bw_case_path(run, "checkpoint.h5", &path));
   f->rows = bw_history_rows(history);
   /* The checkpoint first: what was paid for is on disk before a table may fail. */
   BW_THEN(st, channel_save(f, path));

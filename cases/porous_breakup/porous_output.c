@@ -137,7 +137,8 @@ bw_status porous_checkpoint(porous_run *p, const char *name, bool kept)
   progress_of(p, progress);
   char *path = NULL;
   bw_checkpoint *ck = NULL;
-  bw_status st = bw_case_path(p->run, name, &path);
+  bw_status st = bw_history_sync(p->comm, p->history);
+  BW_THEN(st, bw_case_path(p->run, name, &path));
   BW_THEN(st, bw_checkpoint_create(p->comm, path, &ck));
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "porous_breakup"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", N_PROGRESS,

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct bw_history {
   int n;
@@ -180,7 +181,7 @@ void bw_history_append(bw_history *h, const double values[])
   if (h == NULL || h->out == NULL) return;
   /* The end of a phase may also be the time of a sample; a restarted run samples the state it
    * begins with, which the old file may hold already. */
-  if (values[0] == h->last) return;
+  if (values[0] == h->last || h->reason != 0) return;
   h->last = values[0];
   bool ok = true;
   for (int q = 0; q < h->n; q++) {
@@ -193,8 +194,25 @@ void bw_history_append(bw_history *h, const double values[])
   ok = fputc('\n', h->out) != EOF && ok;
   /* A killed run keeps all rows but the one being written. */
   ok = fflush(h->out) == 0 && ok;
-  if (!ok && h->reason == 0) h->reason = errno != 0 ? errno : EIO;
-  h->rows++;
+  /* What is left of a row without its end is dropped when the run goes on. */
+  if (!ok) h->reason = errno != 0 ? errno : EIO;
+  h->rows += ok;
+}
+
+static bw_status write_failed(const bw_history *h)
+{
+  return BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
+}
+
+bw_status bw_history_sync(const bw_comm *comm, bw_history *h)
+{
+  bw_status st = BW_OK;
+  if (h != NULL && h->out != NULL) {
+    /* EINVAL: a pipe or a device, which has no disk behind it. */
+    if (h->reason == 0 && fsync(fileno(h->out)) != 0 && errno != EINVAL) h->reason = errno;
+    if (h->reason != 0) st = write_failed(h);
+  }
+  return bw_comm_agree(comm, st);
 }
 
 int64_t bw_history_rows(const bw_history *h)
@@ -211,7 +229,7 @@ bw_status bw_history_close(const bw_comm *comm, bw_history **history)
     /* What failed in between shows here at the latest: rows are written without a status. */
     if (fclose(h->out) != 0 && h->reason == 0) h->reason = errno;
     if (h->reason != 0)
-      st = BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
+      st = write_failed(h);
     else if (h->infinite >= 0)
       st = BW_FAIL(BW_EDIVERGED, "%s: column %d is infinite at %.15g, the first time", h->path,
                    h->infinite + 1, h->when);

@@ -26,8 +26,13 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
 /* One row: values[n] of rank 0, values[0] being the time; other ranks' are not looked at. A row of
  * the time of the row before, also of the last one that a restart has kept, is that row again and
  * is not repeated. Errors of writing, and a number that is infinite, are remembered and returned by
- * close. Local. */
+ * close; behind a row that failed none is written. Local. */
 void bw_history_append(bw_history *history, const double values[]);
+
+/* Before a checkpoint that counts the rows: all of them on the disk, so that a power failure does
+ * not leave the checkpoint with fewer. BW_EIO when one could not be written: a checkpoint would
+ * lose it. NULL is fine. Collective. */
+bw_status bw_history_sync(const bw_comm *comm, bw_history *history) BW_MUST_CHECK;
 
 /* Rows in the file (those kept included). Meaningful on rank 0, 0 elsewhere. Local. */
 int64_t bw_history_rows(const bw_history *history);

@@ -3,6 +3,7 @@
 #include "bw_folder.h"
 #include "bw_memory.h"
 #include "case_internal.h"
+#include "core_internal.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -209,6 +210,18 @@ void bw_core__case_note(const bw_case *run, const char *name)
   bw_release(&path);
 }
 
+/* A file that a run has written, and what is left of one that it was writing when it was killed. */
+static bw_status remove_result(const char *file)
+{
+  char *part = NULL;
+  BW_TRY(bw_core__part_path(file, &part));
+  unlink(part);
+  bw_release(&part);
+  BW_REQUIRE(unlink(file) == 0 || errno == ENOENT, BW_EIO, "cannot remove %s: %s", file,
+             strerror(errno));
+  return BW_OK;
+}
+
 /* The list of the runs before; with --overwrite what is on it is removed, and nothing else. */
 static bw_status take_list(bw_case *run, const bw_comm *self)
 {
@@ -222,8 +235,7 @@ static bw_status take_list(bw_case *run, const bw_comm *self)
       char *file = NULL;
       *end = '\0';
       BW_THEN(st, bw_path_join(run->out, line, &file));
-      if (file != NULL && strchr(line, '/') == NULL && unlink(file) != 0 && errno != ENOENT)
-        st = BW_FAIL(BW_EIO, "cannot remove %s: %s", file, strerror(errno));
+      if (file != NULL && strchr(line, '/') == NULL) st = remove_result(file);
       bw_release(&file);
     }
     bw_release(&run->files->list);

@@ -7,8 +7,10 @@
 #include "bw_memory.h"
 #include "bw_timer.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 
 /* A log into memory. */
 typedef struct {
@@ -437,6 +439,34 @@ START_TEST(rows_that_cannot_be)
 }
 END_TEST
 
+/* A disk that is full: no row is counted that is not there, no checkpoint may be written that counts
+ * one, and nothing is written behind the row that was cut. */
+START_TEST(a_full_disk)
+{
+  const bw_comm *comm = bw_check_world();
+  bw_history *h = open_history(NAN);
+  rows(h, 0, 1, 1.0);
+  bw_check_ok(bw_history_sync(comm, h));
+  struct rlimit before, low;
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  getrlimit(RLIMIT_FSIZE, &before);
+  low = before;
+  low.rlim_cur = sizeof HEADER + 10; /* into the third row */
+  setrlimit(RLIMIT_FSIZE, &low);
+  rows(h, 2, 2, 1.0 / 3.0);
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  rows(h, 3, 3, 1.0); /* there is room again */
+  ck_assert_int_eq(bw_history_rows(h), speaks() ? 2 : 0);
+  bw_check_status(bw_history_sync(comm, h), BW_EIO);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), history_path));
+  bw_check_status(bw_history_close(comm, &h), BW_EIO);
+  h = open_history_of(0.1, 2);
+  bw_check_ok(bw_history_close(comm, &h));
+  expect_history(HEADER "0,0\n0.1,1\n");
+}
+END_TEST
+
 static const bw_check_test tests[] = {BW_TEST(rank_zero_speaks),
                                       BW_TEST(plain_progress),
                                       BW_TEST(terminal_progress),
@@ -446,5 +476,6 @@ static const bw_check_test tests[] = {BW_TEST(rank_zero_speaks),
                                       BW_TEST(history_goes_on_without_duplicates),
                                       BW_TEST(damaged_histories_are_refused),
                                       BW_TEST(rows_that_cannot_be),
+                                      BW_TEST(a_full_disk),
                                       BW_TEST(history_refusals)};
 BW_CHECK_MAIN("core.run", tests)

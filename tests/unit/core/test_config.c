@@ -3,13 +3,11 @@
 #include "bw_check.h"
 #include "bw_config.h"
 #include "bw_file.h"
-#include "bw_folder.h"
 #include "bw_memory.h"
 
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct {
   double nu, rho;
@@ -280,106 +278,6 @@ START_TEST(wrong_types_and_ranges)
 }
 END_TEST
 
-/* No product of numbers that are accepted leaves what a double holds, and no count what an int
- * holds. */
-START_TEST(sizes_that_cannot_be_meant)
-{
-  EXPECT("fluid:\n  nu: 1e-300\n", "fluid.nu = 1e-300: too small; 0, or in size at least 1e-50");
-  EXPECT("fluid:\n  nu: 1e300\n", "fluid.nu = 1e300: too large; in size at most 1e+50");
-  EXPECT("courant_limit: -1e51\n", "courant_limit = -1e51: too large");
-  EXPECT("courant_limit: 1e-400\n", "courant_limit = 1e-400: too small");
-  EXPECT("steps: 3000000000\n", "steps = 3000000000: too large; in size at most 2147483647");
-  EXPECT("steps: 1e300\n", "steps = 1e300: too large");
-  config c = defaults();
-  bw_check_ok(load(good, 2,
-                   (const char *const[]){"courant_limit=-0.000e5", "shapes.0.x=[1e-50, -1e50, 0]"},
-                   &c));
-  ck_assert_double_eq(c.courant_limit, 0.0);
-  ck_assert_double_eq(c.shapes[0].x[1], -1e50);
-}
-END_TEST
-
-/* The text of a file with bytes that no editor shows, `bytes` long. */
-static void expect_bytes(const char *bytes, size_t n, const char *piece)
-{
-  char path[64];
-  config c = defaults();
-  snprintf(path, sizeof path, "test_core_bytes_np%d.yaml", bw_comm_size(bw_check_world()));
-  if (bw_comm_rank(bw_check_world()) == 0) {
-    FILE *out = fopen(path, "wb");
-    ck_assert_ptr_nonnull(out);
-    ck_assert_uint_eq(fwrite(bytes, 1, n, out), n);
-    ck_assert_int_eq(fclose(out), 0);
-  }
-  bw_comm_barrier(bw_check_world());
-  const bw_status st = bw_config_load(bw_check_world(), path, fields, 0, NULL, sizeof c, &c);
-  ck_assert_int_eq(st, BW_EINPUT);
-  ck_assert_msg(strstr(bw_last_message(), piece) != NULL, "'%s' not in: %s", piece,
-                bw_last_message());
-}
-#define EXPECT_BYTES(text, piece) expect_bytes(text, sizeof(text) - 1, piece)
-
-START_TEST(encodings)
-{
-  EXPECT_BYTES("name: tube\nsteps: 1\n\0cfl: 0.1\n", ".yaml:3: a byte of 0");
-  EXPECT_BYTES("name: tube\nsteps: 1 # M\xfcller\n",
-               ".yaml:2: the byte 0xfc is not UTF-8: save it as UTF-8");
-  EXPECT_BYTES("\xff\xfen\0a\0", ".yaml:1: the file is UTF-16: save it as UTF-8");
-  EXPECT_BYTES("\xfe\xff\0n\0a", "UTF-16");
-  EXPECT_BYTES("a\nb\0", ".yaml:2: a byte of 0");
-  EXPECT_BYTES("a: 1\n\n# \xc0\xaf\n", ".yaml:3: the byte 0xc0");
-  EXPECT_BYTES("# \xe2\x82", "0xe2"); /* cut inside a letter */
-  EXPECT_BYTES("a: 1\nb: \x01\n", ".yaml:2: not YAML: control characters");
-  config c = defaults();
-  bw_check_ok(load("\xef\xbb\xbfname: M\xc3\xbcller # \xe2\x82\xac \xf0\x9f\x8c\x8a\nsteps: "
-                   "1\nfluid: {nu: 1, n: [1, 1, 1]}\n"
-                   "shapes: [{radius: 1}]\n",
-                   0, NULL, &c));
-  ck_assert_str_eq(c.name, "M\xc3\xbcller");
-  EXPECT_SET("name=M\xfcller", "--set name=M", "0xfc is not UTF-8");
-}
-END_TEST
-
-/* Files that a case names. */
-typedef struct {
-  char image[1024];
-} files;
-static const bw_config_field file_fields[] = {
-    BW_CONFIG_VALUE(files, image, BW_OPTIONAL, BW_FILE, "", "voxels"), BW_CONFIG_END};
-
-static void expect_file(const char *yaml, const char *set, const char *expected)
-{
-  files f = {""};
-  const char *const sets[] = {set};
-  bw_check_ok(bw_config_load(bw_check_world(), yaml, file_fields, set != NULL, sets, sizeof f, &f));
-  ck_assert_str_eq(f.image, expected);
-}
-
-START_TEST(files_are_looked_for_beside_the_case)
-{
-  const bw_comm *comm = bw_check_world();
-  char here[512], beside[1024], below[1024], yaml[128], folder[64];
-  ck_assert_ptr_nonnull(getcwd(here, sizeof here));
-  snprintf(folder, sizeof folder, "test_core_files_np%d", bw_comm_size(comm));
-  snprintf(yaml, sizeof yaml, "%s/case.yaml", folder);
-  snprintf(beside, sizeof beside, "%s/%s/a.nrrd", here, folder);
-  snprintf(below, sizeof below, "%s/test_core_b.nrrd", here);
-  bw_check_ok(bw_folder_make(comm, folder));
-  bw_check_ok(bw_file_write_text(comm, yaml, "image: a.nrrd\n"));
-  bw_check_ok(bw_file_write_text(comm, "test_core_b.nrrd", "here"));
-  /* Neither there: it is reported where it was looked for first. */
-  expect_file(yaml, NULL, beside);
-  bw_check_ok(bw_file_write_text(comm, beside, "voxels"));
-  expect_file(yaml, NULL, beside);
-  /* What is typed is where the user stands; a path from the root stays. */
-  expect_file(yaml, "image=test_core_b.nrrd", below);
-  expect_file(yaml, "image=/no/such", "/no/such");
-  expect_file(yaml, "image=", "");
-  bw_check_ok(bw_file_write_text(comm, yaml, "image: test_core_b.nrrd\n"));
-  expect_file(yaml, NULL, below);
-}
-END_TEST
-
 START_TEST(missing_values_are_named)
 {
   EXPECT("name: a\nsteps: 1\nfluid:\n  nu: 1\n",
@@ -483,9 +381,6 @@ static const bw_check_test tests[] = {BW_TEST(values_and_defaults),
                                       BW_TEST(wrong_overrides_name_themselves),
                                       BW_TEST(unknown_keys_get_a_suggestion),
                                       BW_TEST(wrong_types_and_ranges),
-                                      BW_TEST(sizes_that_cannot_be_meant),
-                                      BW_TEST(encodings),
-                                      BW_TEST(files_are_looked_for_beside_the_case),
                                       BW_TEST(missing_values_are_named),
                                       BW_TEST(broken_files),
                                       BW_TEST(all_problems_are_listed),

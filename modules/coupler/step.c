@@ -9,7 +9,8 @@ static double substeps(const bw_coupler *c, double dt)
 {
   /* The squares of their frequencies add: a particle held by its bonds and pressed on all sides. */
   const double rate = hypot(1.0 / bw_solid_dt_max(c->solid), 1.0 / bw_solid_dt_contact(c->solid));
-  return fmax(1.0, ceil(dt * rate / c->config.solid_safety));
+  const double n = ceil(dt * rate / c->config.solid_safety);
+  return n < 1.0 ? 1.0 : n; /* fmax would hide NaN */
 }
 
 int bw_coupler_substeps(const bw_coupler *c, double dt)

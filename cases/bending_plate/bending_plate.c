@@ -60,6 +60,9 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
   if (args->restart != NULL) BW_TRY(bending_restart(p, args->restart));
   /* A history that goes on is cut at the time of the checkpoint. */
   BW_TRY(bending_open_history(p));
+  /* A run that was killed behind its checkpoint has not drawn the picture that was due. */
+  const int every = p->config->output.picture_every;
+  if (args->restart != NULL && every > 0 && p->step % every == 0) BW_TRY(bending_picture(p));
   bw_stop_install();
   BW_TRY(advance(p, &stopped));
   /* The last state, whatever the intervals were. */

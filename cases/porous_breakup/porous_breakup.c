@@ -95,6 +95,21 @@ static bw_status unfinished(const porous_run *p)
   return bw_case_unfinished(p->run, name);
 }
 
+/* The picture and the table that were due when the checkpoint was written, once more: a run that was
+ * killed behind the checkpoint does not have them. */
+static bw_status draw_again(porous_run *p)
+{
+  const int every = p->config->output.picture_every;
+  const bool at_end = p->step == 0 && p->phase > PHASE_FLOW; /* of the phase before */
+  if (!at_end && (every == 0 || p->step == 0 || p->step % every != 0)) return BW_OK;
+  BW_TRY(porous_picture(p));
+  if (!at_end || p->phase - 1 == PHASE_FLOW) return BW_OK;
+  p->phase--;
+  const bw_status st = porous_stress_csv(p);
+  p->phase++;
+  return st;
+}
+
 static bw_status run_case(porous_run *p)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
@@ -103,6 +118,7 @@ static bw_status run_case(porous_run *p)
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(porous_restart(p, args->restart));
   BW_TRY(porous_open_history(p));
+  if (args->restart != NULL) BW_TRY(draw_again(p));
   /* The first good state, for a divergence in the first steps. */
   bw_status st = porous_keep(p);
   bw_stop_install();

@@ -276,6 +276,13 @@ static bw_status check(const specimen_config *c)
   BW_REQUIRE(c->follow.fit_from < c->follow.fit_to, BW_EINPUT,
              "follow.fit_from = %g has to be below follow.fit_to = %g", c->follow.fit_from,
              c->follow.fit_to);
+  /* The tip of a notch in this plate, to a spacing; sections are laid across the crack from there. */
+  const double edge[2] = {c->shape.length, c->shape.height};
+  const double ds = c->shape.length / c->shape.particles;
+  for (int d = 0; d < 2; d++)
+    BW_REQUIRE(c->follow.from[d] >= -ds && c->follow.from[d] <= edge[d] + ds, BW_EINPUT,
+               "follow.from[%d] = %g is outside the plate, 0 to %g m (millimetres for metres?)", d,
+               c->follow.from[d], edge[d]);
   const double steps = ceil(c->time.end / c->time.step - 1e-9);
   BW_REQUIRE(steps <= (double)BW_MOST_STEPS, BW_EINPUT,
              "time.end = %g takes %.3g steps of time.step = %g, more than the %g that anybody can "

@@ -38,7 +38,7 @@ static inline bw_status begin(const bw_case_about *of, const char *const words[]
                               bw_case **run)
 {
   char *argv[16] = {(char *)"program"};
-  char copy[16][256];
+  static char copy[16][256]; /* a command line lives as long as the program */
   int argc = 1;
   for (; words[argc - 1] != NULL; argc++) {
     snprintf(copy[argc], sizeof copy[argc], "%s", words[argc - 1]);

@@ -18,6 +18,7 @@ endif()
 add_library(bw_flags INTERFACE)
 target_compile_options(bw_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wno-psabi # vectors are returned by inline functions alone: no interface depends on how
   -fno-math-errno -fno-trapping-math -fopenmp-simd -fno-common
   $<$<BOOL:${BW_WERROR}>:-Werror> $<$<BOOL:${BW_NATIVE}>:-march=native>
   $<$<CONFIG:Release>:-O3> $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>

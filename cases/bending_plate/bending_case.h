@@ -32,13 +32,17 @@ typedef struct {
   bw_case *run;               /* borrowed */
   bending_flow flow;
   bw_history *history;
-  int64_t step; /* steps done */
+  int64_t step;         /* steps done */
+  int64_t end, release; /* of the whole run; until the plate is let go */
+  int64_t rows;         /* of history.csv, when the checkpoint was written */
 } bending_run;
 
 /* Sizes, dimensionless groups, the step against its limits. Collective. */
-void bending_describe(bending_run *p);
-/* Creates history.csv, or goes on with it from restart_time [s] (NaN: anew). Collective. */
-bw_status bending_open_history(bending_run *p, double restart_time) BW_MUST_CHECK;
+bw_status bending_describe(bending_run *p) BW_MUST_CHECK;
+/* The steps of the run from its times; refused where nobody can wait for them. Local. */
+bw_status bending_count_steps(bending_run *p) BW_MUST_CHECK;
+/* Creates history.csv, or goes on with it from the checkpoint that was read. Collective. */
+bw_status bending_open_history(bending_run *p) BW_MUST_CHECK;
 /* Measures the last step, to m, and writes a row of history.csv. Collective. */
 bw_status bending_sample(bending_run *p, bending_measure *m) BW_MUST_CHECK;
 /* Adds the present state to fluid.pvd and plate.pvd. Collective. */

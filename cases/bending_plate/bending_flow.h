@@ -112,8 +112,13 @@ static inline bw_status bending_check(const bending_config *c)
              c->plate.particles_across, ds, c->plate.height);
   BW_REQUIRE(
       ds < 1.5 * h, BW_EINPUT,
-      "plate.particles_across = %d: the spacing %g leaves holes in a grid of %g; at least %d",
-      c->plate.particles_across, ds, h, (int)ceil(c->plate.thickness / h));
+      "plate.particles_across = %d: the spacing %g leaves holes in a grid of %g; at least %.0f",
+      c->plate.particles_across, ds, h, ceil(c->plate.thickness / h));
+  /* Finer ones cost without end and carry nothing that the fluid could see. */
+  BW_REQUIRE(h <= 100.0 * ds, BW_EINPUT,
+             "plate.thickness = %g with plate.particles_across = %d: the spacing %g is %.3g of the "
+             "grid's, %g; at least 0.01",
+             c->plate.thickness, c->plate.particles_across, ds, ds / h, h);
   BW_REQUIRE(c->plate.height < c->channel.height &&
                  c->plate.front + c->plate.thickness < c->channel.length,
              BW_EINPUT, "plate.height = %g, plate.front = %g: the plate leaves the channel",

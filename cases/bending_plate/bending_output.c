@@ -1,11 +1,43 @@
 /* What the bending plate writes: log, history.csv, VTK files, checkpoints. */
 #include "bending_case.h"
 #include "bw_checkpoint.h"
+#include "bw_number.h"
 #include "bw_vtk.h"
 
 #include <stdio.h>
 
-void bending_describe(bending_run *p)
+/* Whole steps: times that are multiples of the step are met in spite of rounding. */
+static bw_status steps_until(const char *key, double time, double step, int64_t *steps)
+{
+  const double count = ceil(time / step - 1e-9);
+  BW_REQUIRE(bw_to_int64(count, steps) && *steps <= BW_MOST_STEPS, BW_EINPUT,
+             "time.%s = %g takes %.3g steps of time.step = %g, more than the %g that anybody can "
+             "wait for; take a larger step",
+             key, time, count, step, (double)BW_MOST_STEPS);
+  return BW_OK;
+}
+
+bw_status bending_count_steps(bending_run *p)
+{
+  const bending_time *time = &p->config->time;
+  BW_TRY(steps_until("end", time->end, time->step, &p->end));
+  return steps_until("release", time->release, time->step, &p->release);
+}
+
+/* What the stream does to the plate has to be more than rounding does. */
+static bw_status check_strain(const bending_config *c, double h)
+{
+  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
+  const double U = c->fluid.bulk_velocity;
+  const double stress = c->fluid.density * U * (U + c->fluid.viscosity / h);
+  BW_REQUIRE(stress / c->plate.young_modulus >= least, BW_EINPUT,
+             "physics.plate.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g "
+             "Pa, strains it by %.3g, which rounding hides; at least %g",
+             c->plate.young_modulus, stress, stress / c->plate.young_modulus, least);
+  return BW_OK;
+}
+
+bw_status bending_describe(bending_run *p)
 {
   const bending_config *c = &p->flow.config;
   const double U = c->fluid.bulk_velocity, rho = c->fluid.density, H = c->plate.height;
@@ -18,9 +50,12 @@ void bending_describe(bending_run *p)
               U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
               c->plate.density / rho);
   const double dt = p->config->time.step;
+  BW_TRY(bw_coupler_check_substeps(p->flow.coupler, dt));
+  BW_TRY(check_strain(c, p->flow.h));
   bw_log_info(log, "time step  %g s; solid %d sub-steps (limit %.3g s); %.0f steps, H/U_b = %g s",
               dt, bw_coupler_substeps(p->flow.coupler, dt), bw_solid_dt_max(p->flow.solid),
               p->config->time.end / dt, H / U);
+  return BW_OK;
 }
 
 static const char *const columns[] = {"time[s]",
@@ -40,14 +75,10 @@ static const char *const columns[] = {"time[s]",
                                       "slip_rms_over_U_b[-]",
                                       "probes_blocked[-]"};
 
-bw_status bending_open_history(bending_run *p, double restart_time)
+bw_status bending_open_history(bending_run *p)
 {
-  char *path = NULL;
-  bw_status st = bw_case_path(p->run, "history.csv", &path);
-  BW_THEN(st, bw_history_create(p->flow.comm, path, sizeof columns / sizeof *columns, columns,
-                                restart_time, &p->history));
-  bw_release(&path);
-  return st;
+  return bw_case_history(p->run, sizeof columns / sizeof *columns, columns,
+                         bw_ns_channel_time(p->flow.fluid), p->rows, &p->history);
 }
 
 bw_status bending_sample(bending_run *p, bending_measure *m)
@@ -137,12 +168,13 @@ bw_status bending_picture(bending_run *p)
 
 bw_status bending_checkpoint(bending_run *p)
 {
-  const double step = (double)p->step;
+  const double progress[] = {(double)p->step, (double)bw_history_rows(p->history)};
   char *path = NULL;
   bw_checkpoint *ck = NULL;
-  bw_status st = bw_case_path(p->run, "checkpoint-last.h5", &path);
+  bw_status st = bw_history_sync(p->flow.comm, p->history);
+  BW_THEN(st, bw_case_path(p->run, "checkpoint-last.h5", &path));
   BW_THEN(st, bw_checkpoint_create(p->flow.comm, path, &ck));
-  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/step", 1, &step));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", 2, progress));
   BW_THEN(st, bw_coupler_save(p->flow.coupler, ck));
   if (st == BW_OK) st = bw_checkpoint_close(&ck);
   bw_checkpoint_abandon(&ck);
@@ -152,14 +184,16 @@ bw_status bending_checkpoint(bending_run *p)
 
 bw_status bending_restart(bending_run *p, const char *path)
 {
-  double step = 0.0;
+  double progress[2] = {0.0, 0.0};
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_open(p->flow.comm, path, &ck));
-  bw_status st = bw_checkpoint_get_numbers(ck, "case/step", 1, &step);
+  bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", 2, progress);
   /* Fluid, solid and load as they were saved. */
   BW_THEN(st, bw_coupler_load(p->flow.coupler, ck));
   BW_THEN(st, bw_checkpoint_close(&ck));
   bw_checkpoint_abandon(&ck);
-  p->step = (int64_t)step;
-  return st;
+  if (st != BW_OK) return st;
+  BW_REQUIRE(bw_to_int64(progress[0], &p->step) && bw_to_int64(progress[1], &p->rows), BW_EINPUT,
+             "%s: 'case/progress' holds numbers that no run has", path);
+  return BW_OK;
 }

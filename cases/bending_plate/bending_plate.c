@@ -10,58 +10,66 @@ static bw_status after_step(bending_run *p, bending_measure *m)
 {
   const bending_output *out = &p->config->output;
   if (p->step % out->sample_every == 0) BW_TRY(bending_sample(p, m));
-  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(bending_picture(p));
-  /* 0 leaves pictures and checkpoints to the end of the run. */
+  /* 0 leaves checkpoints and pictures to the end of the run. The checkpoint first: what was paid for
+   * is on disk before a picture may fail. */
   if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
     BW_TRY(bending_checkpoint(p));
+  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(bending_picture(p));
   return BW_OK;
 }
 
-static bw_status advance(bending_run *p)
+/* *stopped: the run was asked to end early. */
+static bw_status advance(bending_run *p, bool *stopped)
 {
   const bending_time *time = &p->config->time;
-  /* Whole steps: times that are multiples of the step are met in spite of rounding. */
-  const int64_t end = (int64_t)ceil(time->end / time->step - 1e-9);
-  const int64_t release = (int64_t)ceil(time->release / time->step - 1e-9);
   bending_measure m = {.slip = NAN};
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
-  about.step_start = p->step, about.step_end = end;
+  about.step_start = p->step, about.step_end = p->end;
   about.time_start = (double)p->step * time->step, about.time_end = time->end;
   bw_status st =
       bw_comm_agree(p->flow.comm, bw_progress_create(bw_case_log(p->run), &about, &line));
-  while (st == BW_OK && p->step < end && !bw_stop_requested(p->flow.comm)) {
+  while (st == BW_OK && p->step < p->end && !*stopped) {
+    const int64_t next = p->step + 1;
     /* The plate is held while the flow starts, then let go. */
-    bw_coupler_hold_solid(p->flow.coupler, p->step < release);
+    bw_coupler_hold_solid(p->flow.coupler, p->step < p->release);
     /* Probes are read only in steps that are measured. */
-    bw_coupler_watch(p->flow.coupler, (p->step + 1) % p->config->output.sample_every == 0);
+    bw_coupler_watch(p->flow.coupler, next % p->config->output.sample_every == 0 || next == p->end);
     st = bw_coupler_step(p->flow.coupler, time->step);
     p->step += st == BW_OK;
     BW_THEN(st, after_step(p, &m));
     bw_progress_update(line, p->step, bw_ns_channel_time(p->flow.fluid),
                        "tip %.4f heights, force %.4g N/m", m.tip[0] / p->flow.config.plate.height,
                        m.box[0]);
+    *stopped = p->step < p->end && bw_case_stopping(p->run);
   }
   bw_progress_finish(&line);
+  /* The last state is always a row, whatever the interval is; one that is there is not repeated. */
+  if (!*stopped) BW_THEN(st, bending_sample(p, &m));
   return st;
 }
 
 static bw_status run_case(bending_run *p, const bw_comm *comm)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
+  bool stopped = false;
+  BW_TRY(bending_count_steps(p));
   BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
-  bending_describe(p);
+  BW_TRY(bending_describe(p));
   /* --check ends here: everything was built, nothing was run. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(bending_restart(p, args->restart));
-  const double time = bw_ns_channel_time(p->flow.fluid);
   /* A history that goes on is cut at the time of the checkpoint. */
-  BW_TRY(bending_open_history(p, args->restart != NULL ? time : NAN));
+  BW_TRY(bending_open_history(p));
+  /* A run that was killed behind its checkpoint has not drawn the picture that was due. */
+  const int every = p->config->output.picture_every;
+  if (args->restart != NULL && every > 0 && p->step % every == 0) BW_TRY(bending_picture(p));
   bw_stop_install();
-  BW_TRY(advance(p));
+  BW_TRY(advance(p, &stopped));
   /* The last state, whatever the intervals were. */
-  BW_TRY(bending_picture(p));
   BW_TRY(bending_checkpoint(p));
+  if (stopped) return bw_case_unfinished(p->run, "checkpoint-last.h5");
+  BW_TRY(bending_picture(p));
   return bw_timer_report(bw_coupler_timer(p->flow.coupler), comm, bw_case_log(p->run));
 }
 

@@ -1,8 +1,8 @@
 /* box_case.h -- flow in a box: what the sources of the case share.
  *
  * Any consistent units; p is over the density. Time advances in equal intervals (between samples);
- * the steps within one are chosen from the field alone or fixed, so that what follows a checkpoint
- * (between intervals) does not depend on whether it was read. */
+ * the steps within one are chosen from field and time alone or fixed, so that what follows a
+ * checkpoint (between two steps) does not depend on whether it was read. */
 #pragma once
 #include "bw_case.h"
 #include "bw_history.h"
@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
   double length[3], stretch; /* [L]; of y by tanh [-], 0: uniform */
   int cells[3];              /* cells[2] = 1: two dimensions */
-  char faces[256];           /* path of a file with the faces in y; empty: none */
+  char faces[1024];          /* path of a file with the faces in y; empty: none */
 } box_domain;
 typedef struct {
   double viscosity; /* kinematic [L^2/T] */
@@ -80,21 +80,24 @@ typedef struct {
   bw_history *history;
   int64_t intervals, steps; /* done */
   double dt;                /* the last step */
+  int64_t rows;             /* of history.csv, when the checkpoint was written */
+  bool stopped;             /* asked to end early */
 } box_run;
 
 /* box_run.c. All collective. */
 bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
                      const bw_ns_channel_config *fluid) BW_MUST_CHECK;
-void box_destroy(box_run *b);                                      /* half-built objects, too */
-int64_t box_intervals(const box_config *c);                        /* of the whole run */
-bw_status box_start_field(box_run *b) BW_MUST_CHECK;               /* what `start` describes */
-bw_status box_advance(box_run *b) BW_MUST_CHECK;                   /* one interval */
+void box_destroy(box_run *b);                        /* half-built objects, too */
+int64_t box_intervals(const box_config *c);          /* of the whole run */
+bw_status box_start_field(box_run *b) BW_MUST_CHECK; /* what `start` describes */
+/* One interval; less of it when the run is asked to stop. */
+bw_status box_advance(box_run *b) BW_MUST_CHECK;
 bw_status box_restart(box_run *b, const char *path) BW_MUST_CHECK; /* goes on from a file */
 bw_status box_checkpoint(box_run *b) BW_MUST_CHECK;                /* checkpoint.h5 */
 
 /* box_output.c. All collective. */
 void box_describe(box_run *b); /* sizes, sides, steps, to the log */
-/* Creates history.csv, or goes on with it from restart_time [T] (NaN: anew). */
-bw_status box_open_history(box_run *b, double restart_time) BW_MUST_CHECK;
+/* Creates history.csv, or goes on with it from the checkpoint that was read. */
+bw_status box_open_history(box_run *b) BW_MUST_CHECK;
 void box_sample(box_run *b);                     /* a row of it */
 bw_status box_picture(box_run *b) BW_MUST_CHECK; /* adds the present fields to fluid.pvd */

@@ -1,6 +1,8 @@
 /* The keys of box_flow.yaml, their defaults, and every contradiction between them. */
 #include "box_case.h"
 
+#include "bw_number.h"
+
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -12,7 +14,7 @@ static const bw_config_field domain_fields[] = {
       "cells in x, y and z; one cell in z: two dimensions"),
     V(box_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
       "strength of the stretching in y by tanh, thin cells at both sides; 0: uniform"),
-    V(box_domain, faces, BW_OPTIONAL, BW_ANY, "",
+    V(box_domain, faces, BW_OPTIONAL, BW_FILE, "",
       "path of a text file with the faces in y, from 0 to length[1]"),
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {
@@ -147,6 +149,13 @@ static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_n
   BW_REQUIRE(!planar || q->velocity[2] == 0.0, BW_EINPUT,
              "sides.%s.%s.velocity: %g along z, but domain.cells has one cell there; give 0", dn,
              sn, q->velocity[2]);
+  /* Along the axis; through the lower side it has to be positive to come in. */
+  const double speed = laminar ? q->bulk_velocity : q->velocity[d];
+  BW_REQUIRE(q->kind != BW_SIDE_INFLOW || (s == 0 ? speed > 0.0 : speed < 0.0), BW_EINPUT,
+             "sides.%s.%s: nothing comes in through this inflow, %s is %g along %s; give a %s one "
+             "(fluid leaves through an outflow)",
+             dn, sn, laminar ? "bulk_velocity" : "velocity", speed, dn,
+             s == 0 ? "positive" : "negative");
   /* What is given makes sense; whether it fits the other sides the solver says. */
   *side = (bw_ns_side){.kind = (bw_ns_side_kind)q->kind,
                        .profile = (bw_ns_profile)q->profile,
@@ -183,10 +192,18 @@ static bw_status sides_resolve(const box_config *c, bw_grid_config *grid,
   return BW_OK;
 }
 
-/* Is a a whole number of times b? */
-static bool divides(double a, double b)
+static bw_status times_divide(const char *whole_key, double whole, const char *part_key,
+                              double part)
 {
-  return fabs(a / b - round(a / b)) < 1e-9 * fmax(1.0, a / b) && a / b > 0.5;
+  int64_t times = 0;
+  BW_REQUIRE(
+      whole / part <= (double)BW_MOST_STEPS, BW_EINPUT,
+      "%s is %g, %.3g times %s, %g: more than the %g that anybody can wait for; take a larger "
+      "%s",
+      whole_key, whole, whole / part, part_key, part, (double)BW_MOST_STEPS, part_key);
+  BW_REQUIRE(bw_divides(whole, part, &times), BW_EINPUT, "%s is %g, no whole number of %s, %g",
+             whole_key, whole, part_key, part);
+  return BW_OK;
 }
 
 static bw_status times_check(const box_config *c)
@@ -197,17 +214,17 @@ static bw_status times_check(const box_config *c)
              "time.step is %g and time.limit_share is %g; give one of them", t->step,
              t->limit_share);
   /* Intervals have to divide each other, as the steps end on samples. */
-  BW_REQUIRE(divides(t->end, o->sample_every), BW_EINPUT,
-             "time.end is %g, no whole number of output.sample_every, %g", t->end, o->sample_every);
-  BW_REQUIRE(isnan(t->step) || divides(o->sample_every, t->step), BW_EINPUT,
-             "output.sample_every is %g, no whole number of time.step, %g", o->sample_every,
-             t->step);
-  BW_REQUIRE(o->picture_every == 0.0 || divides(o->picture_every, o->sample_every), BW_EINPUT,
-             "output.picture_every is %g, no whole number of output.sample_every, %g",
-             o->picture_every, o->sample_every);
-  BW_REQUIRE(o->checkpoint_every == 0.0 || divides(o->checkpoint_every, o->sample_every), BW_EINPUT,
-             "output.checkpoint_every is %g, no whole number of output.sample_every, %g",
-             o->checkpoint_every, o->sample_every);
+  BW_TRY(times_divide("time.end", t->end, "output.sample_every", o->sample_every));
+  if (!isnan(t->step)) {
+    BW_TRY(times_divide("output.sample_every", o->sample_every, "time.step", t->step));
+    BW_TRY(times_divide("time.end", t->end, "time.step", t->step));
+  }
+  if (o->picture_every != 0.0)
+    BW_TRY(times_divide("output.picture_every", o->picture_every, "output.sample_every",
+                        o->sample_every));
+  if (o->checkpoint_every != 0.0)
+    BW_TRY(times_divide("output.checkpoint_every", o->checkpoint_every, "output.sample_every",
+                        o->sample_every));
   return BW_OK;
 }
 

@@ -5,45 +5,55 @@
  * Run:   mpirun -n 2 build/bin/box_flow cases/box_flow/box_flow.yaml --out out/cavity
  * BUILD modules=ns_channel,vtk,checkpoint */
 #include "box_case.h"
+#include "bw_number.h"
 #include "bw_stop.h"
-
-#include <math.h>
 
 /* Is it time for what happens `every` so often (0: at the end only)? */
 static bool due(const box_run *b, double every, bool last)
 {
-  if (every == 0.0) return last;
-  return last || b->intervals % llround(every / b->config->output.sample_every) == 0;
+  int64_t times = 0;
+  /* Checked with the other times: it divides. */
+  if (every == 0.0 || !bw_divides(every, b->config->output.sample_every, &times)) return last;
+  return last || b->intervals % times == 0;
+}
+
+/* Not stopped on the way through one? */
+static bool between_intervals(const box_run *b)
+{
+  return bw_ns_channel_time(b->fluid) == (double)b->intervals * b->config->output.sample_every;
 }
 
 static bw_status after_interval(box_run *b, bool last)
 {
   box_sample(b);
-  if (due(b, b->config->output.picture_every, last)) BW_TRY(box_picture(b));
+  /* The checkpoint first: what was paid for is on disk before a picture may fail. */
   if (due(b, b->config->output.checkpoint_every, last)) BW_TRY(box_checkpoint(b));
+  if (due(b, b->config->output.picture_every, last)) BW_TRY(box_picture(b));
   return BW_OK;
 }
 
 static bw_status run_to_end(box_run *b)
 {
-  const bw_comm *comm = bw_grid_comm(b->grid);
   const int64_t end = box_intervals(b->config);
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_unit = "T", about.step_start = b->steps;
   about.time_start = bw_ns_channel_time(b->fluid), about.time_end = b->config->time.end;
-  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(b->run), &about, &line));
-  for (bool stop = false; st == BW_OK && !stop && b->intervals < end;) {
-    /* Samples, pictures and checkpoints happen between
-     * intervals only, so a restart repeats every step. */
+  bw_status st = bw_comm_agree(bw_case_args_of(b->run)->comm,
+                               bw_progress_create(bw_case_log(b->run), &about, &line));
+  while (st == BW_OK && !b->stopped && b->intervals < end) {
     st = box_advance(b);
-    stop = st == BW_OK && bw_stop_requested(comm);
-    BW_THEN(st, after_interval(b, stop || b->intervals == end));
+    if (st == BW_OK && !b->stopped) {
+      st = after_interval(b, b->intervals == end);
+      b->stopped = b->intervals < end && bw_case_stopping(b->run);
+    }
     bw_progress_update(line, b->steps, bw_ns_channel_time(b->fluid), "dt %.3g", b->dt);
-    if (stop) bw_log_warn(bw_case_log(b->run), "asked to stop: go on with --restart checkpoint.h5");
   }
   bw_progress_finish(&line);
-  return st;
+  if (st != BW_OK || !b->stopped) return st;
+  /* No row: the history of a run that was stopped is that of one that was not. */
+  BW_TRY(box_checkpoint(b));
+  return bw_case_unfinished(b->run, "checkpoint.h5");
 }
 
 static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
@@ -59,10 +69,13 @@ static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
   /* --check ends here: built, described, not run. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(box_restart(b, args->restart));
-  BW_TRY(box_open_history(b, args->restart != NULL ? bw_ns_channel_time(b->fluid) : (double)NAN));
+  BW_TRY(box_open_history(b));
   /* The first row is the start itself; a restart has it already. */
   if (args->restart == NULL) {
     box_sample(b);
+    BW_TRY(box_picture(b));
+  } else if (between_intervals(b) && due(b, config->output.picture_every, false)) {
+    /* Again: a run that was killed after the checkpoint may not have drawn it. */
     BW_TRY(box_picture(b));
   }
   bw_stop_install();

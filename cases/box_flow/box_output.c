@@ -83,7 +83,7 @@ static int side_columns(const box_run *b, side_column column[COLUMNS - FIXED])
   return n;
 }
 
-bw_status box_open_history(box_run *b, double restart_time)
+bw_status box_open_history(box_run *b)
 {
   static const char *const fixed[FIXED] = {
       "time[T]",       "bulk_velocity[L/T]", "kinetic_energy[L5/T2]",
@@ -104,12 +104,8 @@ bw_status box_open_history(box_run *b, double restart_time)
                axis[c->component]);
     names[FIXED + q] = text[q];
   }
-  char *path = NULL;
-  bw_status st = bw_case_path(b->run, "history.csv", &path);
-  BW_THEN(st, bw_history_create(bw_grid_comm(b->grid), path, FIXED + n, names, restart_time,
-                                &b->history));
-  bw_release(&path);
-  return st;
+  return bw_case_history(b->run, FIXED + n, names, bw_ns_channel_time(b->fluid), b->rows,
+                         &b->history);
 }
 
 void box_sample(box_run *b)

@@ -2,6 +2,7 @@
 #include "box_case.h"
 #include "bw_checkpoint.h"
 #include "bw_memory.h"
+#include "bw_number.h"
 
 #include <math.h>
 
@@ -30,7 +31,10 @@ void box_destroy(box_run *b)
 
 int64_t box_intervals(const box_config *c)
 {
-  return llround(c->time.end / c->output.sample_every);
+  int64_t intervals = 0;
+  /* Checked with the other times. */
+  (void)bw_divides(c->time.end, c->output.sample_every, &intervals);
+  return intervals;
 }
 
 /* The uniform velocity and vortices u_theta = swirl s exp((1 - s^2)/2), s = r/radius. */
@@ -56,20 +60,37 @@ bw_status box_start_field(box_run *b)
   return bw_ns_channel_set_velocity(b->fluid, start_velocity, &start, 0.0);
 }
 
+/* As few steps as the limit allows, of equal length over what is left of the interval. At least one:
+ * at rest an implicit viscous term sets no limit. */
+static bw_status steps_left(const box_run *b, double span, int64_t *left)
+{
+  const box_time *time = &b->config->time;
+  const double now = bw_ns_channel_time(b->fluid);
+  const double longest =
+      isnan(time->step) ? time->limit_share * bw_ns_channel_dt_max(b->fluid) : time->step;
+  const double count = fmax(1.0, ceil(span / longest * (1.0 - 1e-12)));
+  /* A flow that has become so fast has diverged, whatever its numbers are. */
+  BW_REQUIRE(
+      bw_to_int64(count, left) && *left <= BW_MOST_STEPS && now + span / count > now, BW_EDIVERGED,
+      "at t = %g the largest stable step is %.3g: %.3g steps to the next row of history.csv; "
+      "the velocities are too large for the cells",
+      now, longest, count);
+  return BW_OK;
+}
+
 /* The last step of an interval ends on its end to the last bit. */
 bw_status box_advance(box_run *b)
 {
-  const box_time *time = &b->config->time;
   const double end = (double)(b->intervals + 1) * b->config->output.sample_every;
-  for (int64_t left = 1; left > 0; left--, b->steps++) {
+  for (int64_t left = 2; left > 1;) {
     const double span = end - bw_ns_channel_time(b->fluid);
-    const double longest =
-        isnan(time->step) ? time->limit_share * bw_ns_channel_dt_max(b->fluid) : time->step;
-    /* at least one: at rest an implicit viscous term sets no limit */
-    /* As few steps as the limit allows, of equal length over what is left. */
-    left = (int64_t)fmax(1.0, ceil(span / longest * (1.0 - 1e-12)));
+    BW_TRY(steps_left(b, span, &left));
     b->dt = span / (double)left;
     BW_TRY(bw_ns_channel_step(b->fluid, b->dt));
+    b->steps++;
+    /* What is left follows from field and time, so that a checkpoint may be written here. */
+    b->stopped = left > 1 && bw_case_stopping(b->run);
+    if (b->stopped) return BW_OK;
   }
   b->intervals++;
   /* Exactly the end: rounding does not add up over intervals. */
@@ -78,7 +99,7 @@ bw_status box_advance(box_run *b)
 }
 
 /* ---- checkpoints ---- */
-enum { FIELDS = 4, NUMBERS = 5 };
+enum { FIELDS = 4, NUMBERS = 7 };
 static const char *const field_name[FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 static void list_fields(const box_run *b, bw_real *field[FIELDS])
@@ -90,14 +111,19 @@ static void list_fields(const box_run *b, bw_real *field[FIELDS])
 
 bw_status box_checkpoint(box_run *b)
 {
-  const double numbers[NUMBERS] = {(double)b->intervals, (double)b->steps,
-                                   b->config->output.sample_every, bw_ns_channel_gradient(b->fluid),
-                                   b->dt};
+  const double numbers[NUMBERS] = {(double)b->intervals,
+                                   (double)b->steps,
+                                   b->config->output.sample_every,
+                                   bw_ns_channel_gradient(b->fluid),
+                                   b->dt,
+                                   bw_ns_channel_time(b->fluid),
+                                   (double)bw_history_rows(b->history)};
   bw_real *field[FIELDS];
   char *path = NULL;
   bw_checkpoint *ck = NULL;
   list_fields(b, field);
-  bw_status st = bw_case_path(b->run, "checkpoint.h5", &path);
+  bw_status st = bw_history_sync(bw_grid_comm(b->grid), b->history);
+  BW_THEN(st, bw_case_path(b->run, "checkpoint.h5", &path));
   BW_THEN(st, bw_checkpoint_create(bw_grid_comm(b->grid), path, &ck));
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "box_flow"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", NUMBERS, numbers));
@@ -130,9 +156,12 @@ bw_status box_restart(box_run *b, const char *path)
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
   /* Fields are read; numbers and halos complete the state. */
-  b->intervals = (int64_t)numbers[0], b->steps = (int64_t)numbers[1], b->dt = numbers[4];
+  BW_REQUIRE(bw_to_int64(numbers[0], &b->intervals) && bw_to_int64(numbers[1], &b->steps) &&
+                 bw_to_int64(numbers[6], &b->rows),
+             BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
+  b->dt = numbers[4];
   bw_ns_channel_set_gradient(b->fluid, numbers[3]);
-  bw_ns_channel_set_time(b->fluid, numbers[0] * numbers[2]);
+  bw_ns_channel_set_time(b->fluid, numbers[5]);
   bw_ns_channel_refresh(b->fluid);
   return BW_OK;
 }

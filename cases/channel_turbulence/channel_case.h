@@ -8,8 +8,8 @@
 typedef struct {
   double length[3]; /* box [h]; length[1] is 1 */
   int cells[3];
-  double stretch;  /* of y by tanh [-]; 0: uniform               default 0 */
-  char faces[256]; /* path of a file with the faces in y; empty: none */
+  double stretch;   /* of y by tanh [-]; 0: uniform               default 0 */
+  char faces[1024]; /* path of a file with the faces in y; empty: none */
 } channel_domain;
 typedef struct {
   double reynolds;     /* U_b h/nu [-] */
@@ -39,8 +39,8 @@ channel_config channel_config_of(const channel_case *c);
 
 /* channel_output.c: sizes and times of what will run. Local. */
 void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log);
-/* Creates history.csv, or goes on with it from restart_time [h/U_b] (NaN: anew). Collective. */
-bw_status channel_open_history(const bw_comm *comm, const bw_case *run, double restart_time,
+/* Creates history.csv, or goes on with it from the checkpoint that was read. Collective. */
+bw_status channel_open_history(const channel_flow *f, const bw_case *run,
                                bw_history **out) BW_MUST_CHECK;
 /* A row of history.csv; returns Re_tau of the present wall shear. Collective. */
 double channel_record(channel_flow *f, bw_history *history);

@@ -10,7 +10,7 @@ static const bw_config_field domain_fields[] = {
     V(channel_domain, cells, BW_REQUIRED, BW_AT_LEAST(8), "", "cells in x, y and z"),
     V(channel_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
       "strength s of y_j = (1 + tanh(s (2j/n - 1))/tanh s)/2; 0: uniform"),
-    V(channel_domain, faces, BW_OPTIONAL, BW_ANY, "",
+    V(channel_domain, faces, BW_OPTIONAL, BW_FILE, "",
       "path of a text file with the faces in y, from 0 to 1"),
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {

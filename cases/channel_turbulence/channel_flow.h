@@ -2,13 +2,15 @@
  * time, checkpoints. The case and validation/ns_channel/channel_turbulence.c run this same code.
  *
  * Units: h (full height) and U_b (bulk velocity, held constant), so nu = 1/Re_b. Time advances in
- * equal intervals; the steps within one are chosen from the field alone, so that what follows a
- * checkpoint (between intervals) does not depend on whether it was read. */
+ * equal intervals; the steps within one are chosen from field and time alone, so that what follows a
+ * checkpoint (between two steps) does not depend on whether it was read. */
 #pragma once
+#include "bw_case.h"
 #include "bw_checkpoint.h"
 #include "bw_memory.h"
 #include "bw_ns_correlations.h"
 #include "bw_ns_statistics.h"
+#include "bw_number.h"
 
 #include <limits.h>
 #include <math.h>
@@ -38,6 +40,11 @@ typedef struct {
   int64_t intervals;   /* done */
   int64_t steps;       /* done */
   double dt, gradient; /* of the last interval: the step, the mean of -dp/dx */
+  double impulse;      /* of the gradient, over what is done of the interval going on ... */
+  int64_t part;        /* ... and its steps so far */
+  const bw_case *run;  /* borrowed: asked whether to stop; NULL: never */
+  bool stopped;        /* on the way through an interval */
+  int64_t rows;        /* of history.csv when the checkpoint is written, or was */
 } channel_flow;
 
 static inline void channel_destroy(channel_flow *f)
@@ -179,27 +186,44 @@ static inline bool channel_sampling(const channel_flow *f)
   return (double)f->intervals * f->config->interval > f->config->spin_up * (1.0 + 1e-12);
 }
 
+/* Steps to the end of the interval, as large as the present field allows. */
+static inline bw_status channel_steps_left(const channel_flow *f, double span, int64_t *left)
+{
+  const double longest = f->config->courant_share * bw_ns_channel_dt_max(f->fluid);
+  const double now = bw_ns_channel_time(f->fluid), count = ceil(span / longest);
+  BW_REQUIRE(bw_to_int64(count, left) && *left >= 1 && *left <= BW_MOST_STEPS &&
+                 now + span / count > now,
+             BW_EDIVERGED,
+             "at t = %g the largest stable step is %.3g: %.3g steps to the next sample; the "
+             "velocities are too large for the cells",
+             now, longest, count);
+  return BW_OK;
+}
+
 /* One interval, in steps that divide what is left of it evenly, as large as the present field
- * allows; a sample at its end once the flow is spun up. */
+ * allows; a sample at its end once the flow is spun up. Less of it (f->stopped) when the run is
+ * asked to stop. */
 static inline bw_status channel_advance(channel_flow *f)
 {
   const channel_config *q = f->config;
   const double end = (double)(f->intervals + 1) * q->interval;
-  double impulse = 0.0;
-  int64_t n = 0;
   /* The number of steps left is chosen anew after each, as the field changes. */
-  for (int64_t left = 1; left > 0; left--, n++) {
+  for (int64_t left = 2; left > 1;) {
     const double span = end - bw_ns_channel_time(f->fluid);
-    left = (int64_t)ceil(span / (q->courant_share * bw_ns_channel_dt_max(f->fluid)));
+    BW_TRY(channel_steps_left(f, span, &left));
     const double dt = span / (double)left;
     BW_TRY(bw_ns_channel_step(f->fluid, dt));
     /* Mean gradient of the interval, for Re_tau. */
-    impulse += dt * bw_ns_channel_gradient(f->fluid); /* that of the last sub-step */
+    f->impulse += dt * bw_ns_channel_gradient(f->fluid); /* that of the last sub-step */
+    f->part++;
+    f->stopped = left > 1 && f->run != NULL && bw_case_stopping(f->run);
+    if (f->stopped) return BW_OK;
   }
-  f->dt = q->interval / (double)n;
-  f->gradient = impulse / q->interval;
-  f->steps += n;
+  f->dt = q->interval / (double)f->part;
+  f->gradient = f->impulse / q->interval;
+  f->steps += f->part;
   f->intervals++;
+  f->impulse = 0.0, f->part = 0;
   /* Exactly the end, so that a restart has the same times. */
   bw_ns_channel_set_time(f->fluid, end);
   /* Only what has forgotten the start is sampled. */
@@ -210,7 +234,7 @@ static inline bw_status channel_advance(channel_flow *f)
   return BW_OK;
 }
 
-enum { CHANNEL_PROGRESS = 4 };
+enum { CHANNEL_PROGRESS = 8 };
 static const char *const channel_field_name[4] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 /* Fields, sums and progress to a file. Collective. */
@@ -218,8 +242,14 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
 {
   bw_real *const *u = bw_ns_channel_velocity(f->fluid);
   const bw_real *field[4] = {u[0], u[1], u[2], bw_ns_channel_pressure(f->fluid)};
-  const double progress[CHANNEL_PROGRESS] = {(double)f->intervals, (double)f->steps,
-                                             f->config->interval, bw_ns_channel_gradient(f->fluid)};
+  const double progress[CHANNEL_PROGRESS] = {(double)f->intervals,
+                                             (double)f->steps,
+                                             f->config->interval,
+                                             bw_ns_channel_gradient(f->fluid),
+                                             bw_ns_channel_time(f->fluid),
+                                             f->impulse,
+                                             (double)f->part,
+                                             (double)f->rows};
   bw_checkpoint *ck = NULL;
   bw_ns_statistics_get_state(f->statistics, f->state);
   bw_status st = bw_checkpoint_create(bw_grid_comm(f->grid), path, &ck);
@@ -253,7 +283,11 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   if (st == BW_OK && fabs(progress[2] / f->config->interval - 1.0) > 1e-12)
     st = BW_FAIL(BW_EINPUT, "%s was written with samples every %g h/U_b, not %g", path, progress[2],
                  f->config->interval);
-  if (st == BW_OK) f->intervals = (int64_t)progress[0];
+  const bool whole = st == BW_OK && bw_to_int64(progress[0], &f->intervals) &&
+                     bw_to_int64(progress[1], &f->steps) && bw_to_int64(progress[6], &f->part) &&
+                     bw_to_int64(progress[7], &f->rows);
+  if (st == BW_OK && !whole)
+    st = BW_FAIL(BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
   if (st == BW_OK && channel_sampling(f)) { /* else nothing was sampled yet */
     st = bw_checkpoint_get_numbers(ck, "statistics",
                                    (int)bw_ns_statistics_state_size(f->statistics), f->state);
@@ -271,9 +305,9 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
   /* Numbers and halos complete the state. */
-  f->steps = (int64_t)progress[1];
+  f->impulse = progress[5];
   bw_ns_channel_set_gradient(f->fluid, progress[3]);
-  bw_ns_channel_set_time(f->fluid, progress[0] * progress[2]);
+  bw_ns_channel_set_time(f->fluid, progress[4]);
   bw_ns_channel_refresh(f->fluid);
   return BW_OK;
 }

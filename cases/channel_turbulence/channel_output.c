@@ -17,18 +17,13 @@ void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log)
               c->time.interval);
 }
 
-bw_status channel_open_history(const bw_comm *comm, const bw_case *run, double restart_time,
-                               bw_history **out)
+bw_status channel_open_history(const channel_flow *f, const bw_case *run, bw_history **out)
 {
   static const char *const names[] = {
       "time[h/U_b]", "Re_tau_gradient[-]",     "Re_tau_wall[-]", "bulk_velocity[U_b]",
       "dt[h/U_b]",   "kinetic_energy[U_b2/2]", "samples[-]"};
-  char *path = NULL;
-  bw_status st = bw_case_path(run, "history.csv", &path);
-  BW_THEN(st,
-          bw_history_create(comm, path, sizeof names / sizeof *names, names, restart_time, out));
-  bw_release(&path);
-  return st;
+  return bw_case_history(run, sizeof names / sizeof *names, names, bw_ns_channel_time(f->fluid),
+                         f->rows, out);
 }
 
 double channel_record(channel_flow *f, bw_history *history)

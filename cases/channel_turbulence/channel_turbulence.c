@@ -23,10 +23,13 @@ static bw_status save_statistics(channel_flow *f, const bw_case *run)
   return st;
 }
 
-static bw_status save(channel_flow *f, const bw_case *run)
+static bw_status save(channel_flow *f, const bw_case *run, bw_history *history)
 {
   char *path = NULL;
-  bw_status st = bw_case_path(run, "checkpoint.h5", &path);
+  bw_status st = bw_history_sync(bw_grid_comm(f->grid), history);
+  BW_THEN(st, bw_case_path(run, "checkpoint.h5", &path));
+  f->rows = bw_history_rows(history);
+  /* The checkpoint first: what was paid for is on disk before a table may fail. */
   BW_THEN(st, channel_save(f, path));
   BW_THEN(st, save_statistics(f, run));
   bw_release(&path);
@@ -36,29 +39,44 @@ static bw_status save(channel_flow *f, const bw_case *run)
 static bw_status run_to_end(channel_flow *f, const channel_case *c, const bw_case *run,
                             bw_history *history)
 {
-  const bw_comm *comm = bw_grid_comm(f->grid);
   const double interval = c->time.interval;
-  const int64_t end = llround((c->time.spin_up + c->time.statistics) / interval);
-  const int64_t every = (int64_t)fmax(1.0, round(c->output.checkpoint_every / interval));
+  int64_t end = 0, every = 0;
+  (void)bw_divides(c->time.spin_up + c->time.statistics, interval, &end); /* checked before */
+  /* So rare that it is never due: at the end. */
+  if (!bw_to_int64(fmax(1.0, c->output.checkpoint_every / interval), &every)) every = end;
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_unit = "h/U_b", about.step_start = f->steps;
   about.time_start = (double)f->intervals * interval, about.time_end = (double)end * interval;
-  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(run), &about, &line));
-  for (bool stop = false; st == BW_OK && !stop && f->intervals < end;) {
-    /* One interval; everything else happens between two. */
+  bw_status st = bw_comm_agree(bw_case_args_of(run)->comm,
+                               bw_progress_create(bw_case_log(run), &about, &line));
+  while (st == BW_OK && !f->stopped && f->intervals < end) {
+    /* One interval; everything but a stop happens between two. */
     st = channel_advance(f);
-    if (st != BW_OK) break;
+    if (st != BW_OK || f->stopped) break;
     const double re_tau = channel_record(f, history);
     bw_progress_update(line, f->steps, bw_ns_channel_time(f->fluid), "Re_tau %.1f, %ld samples",
                        re_tau, bw_ns_statistics_samples(f->statistics));
-    stop = bw_stop_requested(comm);
-    /* Also when asked to stop: nothing of the run is lost. */
-    if (stop || f->intervals % every == 0 || f->intervals == end) st = save(f, run);
-    if (stop) bw_log_warn(bw_case_log(run), "asked to stop: continue with --restart checkpoint.h5");
+    if (f->intervals % every == 0 || f->intervals == end) st = save(f, run, history);
+    f->stopped = f->intervals < end && bw_case_stopping(run);
   }
   bw_progress_finish(&line);
-  return st;
+  if (st != BW_OK || !f->stopped) return st;
+  /* Nothing of the run is lost. */
+  BW_TRY(save(f, run, history));
+  return bw_case_unfinished(run, "checkpoint.h5");
+}
+
+/* Whole intervals, as many as anybody can wait for. */
+static bw_status check_times(const channel_case *c)
+{
+  const double total = c->time.spin_up + c->time.statistics;
+  int64_t n = 0;
+  BW_REQUIRE(bw_divides(total, c->time.interval, &n), BW_EINPUT,
+             "time.spin_up + time.statistics is %g, %.6g times time.interval, %g; make it a whole "
+             "number of intervals, from 1 to %g",
+             total, total / c->time.interval, c->time.interval, (double)BW_MOST_STEPS);
+  return BW_OK;
 }
 
 static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
@@ -67,15 +85,16 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   const bw_case_args *args = bw_case_args_of(run);
   const channel_config config = channel_config_of(c);
   bw_history *history = NULL;
-  channel_flow f;
-  bw_status st = channel_create(comm, &config, &f);
+  channel_flow f = {0};
+  bw_status st = check_times(c);
+  BW_THEN(st, channel_create(comm, &config, &f));
   if (st == BW_OK) channel_describe(&f, c, bw_case_log(run));
   /* --check has built and described everything, and ends. */
   if (st == BW_OK && !args->check) {
     bw_stop_install();
     st = args->restart != NULL ? channel_load(&f, args->restart) : channel_start(&f);
-    const double from = args->restart != NULL ? bw_ns_channel_time(f.fluid) : (double)NAN;
-    BW_THEN(st, channel_open_history(comm, run, from, &history));
+    f.run = run;
+    BW_THEN(st, channel_open_history(&f, run, &history));
     BW_THEN(st, run_to_end(&f, c, run, history));
     const bw_status closed = bw_history_close(comm, &history);
     BW_THEN(st, closed);

@@ -1,6 +1,7 @@
 /* The keys of cylinder_drag.yaml, and what the case writes. */
 #include "cylinder_case.h"
 
+#include "bw_number.h"
 #include "bw_vtk.h"
 #include <stdio.h>
 
@@ -13,9 +14,9 @@ static const bw_config_field cylinder_fields[] = {
     V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE(0), "-", "Reynolds number Re_d = U_b d/nu"),
     V(cylinder_config, blockage, BW_OPTIONAL, BW_FROM_TO(0.02, 0.8), "-",
       "diameter over the channel's height"),
-    V(cylinder_config, upstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d",
+    V(cylinder_config, upstream, BW_OPTIONAL, BW_FROM_TO(1.5, 1000), "d",
       "distance of the cylinder's centre from the inflow"),
-    V(cylinder_config, downstream, BW_OPTIONAL, BW_AT_LEAST(1.5), "d",
+    V(cylinder_config, downstream, BW_OPTIONAL, BW_FROM_TO(1.5, 1000), "d",
       "distance of the outflow from the cylinder's centre"),
     V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "",
       "cells per diameter"),
@@ -47,8 +48,14 @@ cylinder_case cylinder_case_default(void)
                          {.steady = 1.0e-5, .latest = 60.0, .interval = 0.5}};
 }
 
-void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log)
+bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log)
 {
+  const double steps = c->until.latest / f->flow.dt;
+  BW_REQUIRE(
+      steps <= (double)BW_MOST_STEPS, BW_EINPUT,
+      "until.latest = %g takes %.3g steps of %.3g (cylinder.reynolds = %g), more than the %g "
+      "that anybody can wait for",
+      c->until.latest, steps, f->flow.dt, c->cylinder.reynolds, (double)BW_MOST_STEPS);
   const bw_grid_view *g = bw_grid_look(f->flow.grid);
   const double cells = (double)g->n[0] * g->n[1];
   /* 20 ns per cell and sub-step: measured, one core, this case */
@@ -56,20 +63,17 @@ void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *l
               "Re_d = %g, blockage %g, %d x %d cells, retraction %.2f h, dt = %.3g d/U_b\n"
               "fields %.1f MB; at most %.0f steps, about %.0f s",
               c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1], f->config.retraction,
-              f->flow.dt, 8.0 * (double)g->size * sizeof(bw_real) / 1.0e6,
-              c->until.latest / f->flow.dt, c->until.latest / f->flow.dt * cells * 3.0 * 20.0e-9);
+              f->flow.dt, 8.0 * (double)g->size * sizeof(bw_real) / 1.0e6, steps,
+              steps * cells * 3.0 * 20.0e-9);
+  return BW_OK;
 }
 
-bw_status cylinder_open_history(const bw_comm *comm, const bw_case *run, bw_history **out)
+bw_status cylinder_open_history(const bw_case *run, bw_history **out)
 {
   static const char *const names[] = {"time[d/U_b]",           "Cd_reaction[-]",
                                       "Cd_control_volume[-]",  "Cd_probe_linear[-]",
                                       "Cd_probe_quadratic[-]", "slip[U_b]"};
-  char *path = NULL;
-  bw_status st = bw_case_path(run, "history.csv", &path);
-  BW_THEN(st, bw_history_create(comm, path, sizeof names / sizeof *names, names, NAN, out));
-  bw_release(&path);
-  return st;
+  return bw_case_history(run, sizeof names / sizeof *names, names, NAN, -1, out);
 }
 
 void cylinder_sample(bw_history *history, double t, const cylinder_drag *d)

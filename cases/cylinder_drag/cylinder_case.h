@@ -20,12 +20,12 @@ typedef struct {
 extern const bw_config_field cylinder_case_fields[]; /* its keys */
 cylinder_case cylinder_case_default(void);           /* reynolds is NaN: required */
 
-/* The sizes, the groups and an estimate of the time, as lines of the log. */
-void cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log);
+/* The sizes, the groups and an estimate of the time, as lines of the log. Refused where nobody can wait for the steps. */
+bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c,
+                            bw_log *log) BW_MUST_CHECK;
 
 /* Creates history.csv. Collective. */
-bw_status cylinder_open_history(const bw_comm *comm, const bw_case *run,
-                                bw_history **out) BW_MUST_CHECK;
+bw_status cylinder_open_history(const bw_case *run, bw_history **out) BW_MUST_CHECK;
 /* A row of it: time [d/U_b] and what was measured. Local. */
 void cylinder_sample(bw_history *history, double t, const cylinder_drag *d);
 

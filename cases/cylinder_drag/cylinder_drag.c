@@ -5,26 +5,47 @@
 #include "bw_stop.h"
 #include "cylinder_case.h"
 
+/* Steps until `end`, at least one; fewer when the run is asked to stop. */
+static bw_status interval(cylinder_flow *f, const bw_case *run, double end, bool *stopped,
+                          int64_t *steps)
+{
+  /* Half a step to spare against rounding. */
+  const double nearly = end - 0.5 * f->flow.dt;
+  do {
+    BW_TRY(body_flow_step(&f->flow));
+    ++*steps;
+    *stopped = bw_ns_channel_time(f->flow.fluid) < nearly && bw_case_stopping(run);
+  } while (bw_ns_channel_time(f->flow.fluid) < nearly && !*stopped);
+  return BW_OK;
+}
+
 /* Until the drag is steady, the time is over or somebody asks to stop. */
 static bw_status advance(cylinder_flow *f, const cylinder_case *c, const bw_case *run,
-                         bw_history *history)
+                         bw_history *history, bool *stopped)
 {
-  const bw_comm *comm = bw_grid_comm(f->flow.grid);
   bw_progress *line = NULL;
   bw_progress_config about = bw_progress_config_default();
   about.time_end = c->until.latest, about.time_unit = "d/U_b";
-  bw_status st = bw_comm_agree(comm, bw_progress_create(bw_case_log(run), &about, &line));
+  bw_status st = bw_comm_agree(bw_case_args_of(run)->comm,
+                               bw_progress_create(bw_case_log(run), &about, &line));
   double t = 0.0, last = HUGE_VAL;
-  for (bool steady = false; st == BW_OK && !steady && t < c->until.latest;) {
-    /* A sample per interval; steady is when two of them agree. */
-    st = cylinder_advance(f, c->until.interval);
-    if (st != BW_OK || bw_stop_requested(comm)) break;
+  int64_t steps = 0;
+  for (bool steady = false; st == BW_OK && !steady && !*stopped && t < c->until.latest;) {
+    /* A sample per interval, the last one shorter where it would go beyond the end; steady is when
+     * two of them agree. */
+    const double span = fmin(c->until.interval, c->until.latest - t);
+    /* Whole steps of what is left, so that the run ends when it is to end. */
+    if (span < c->until.interval) f->flow.dt = span / ceil(span / f->flow.dt - 1e-9);
+    st = interval(f, run, t + span, stopped, &steps);
+    if (st != BW_OK) break;
     const cylinder_drag d = cylinder_measure(f);
     t = bw_ns_channel_time(f->flow.fluid);
     cylinder_sample(history, t, &d);
-    steady = fabs(d.reaction - last) < c->until.steady * c->until.interval * fabs(d.reaction);
+    steady = fabs(d.reaction - last) < c->until.steady * span * fabs(d.reaction);
     last = d.reaction;
-    bw_progress_update(line, (int64_t)lround(t / f->flow.dt), t, "Cd %.4f", d.reaction);
+    bw_progress_update(line, steps, t, "Cd %.4f", d.reaction);
+    if (t > c->until.latest - 0.5 * f->flow.dt) break; /* the end, to half a step */
+    *stopped = *stopped || (!steady && bw_case_stopping(run));
   }
   bw_progress_finish(&line);
   return st;
@@ -47,19 +68,21 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
   const bw_case_args *args = bw_case_args_of(run);
   bw_history *history = NULL;
   cylinder_flow f;
+  bool stopped = false;
   BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
              "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = cylinder_create(comm, &c->cylinder, &f);
-  if (st == BW_OK) cylinder_describe(&f, c, bw_case_log(run));
+  BW_THEN(st, cylinder_describe(&f, c, bw_case_log(run)));
   /* --check has built and described everything, and ends. */
   if (st == BW_OK && !args->check) {
     bw_stop_install();
-    st = cylinder_open_history(comm, run, &history);
-    BW_THEN(st, advance(&f, c, run, history));
+    st = cylinder_open_history(run, &history);
+    BW_THEN(st, advance(&f, c, run, history, &stopped));
     BW_THEN(st, cylinder_write(&f, run));
     if (st == BW_OK) report(&f, bw_case_log(run));
     const bw_status closed = bw_history_close(comm, &history);
     BW_THEN(st, closed);
+    if (st == BW_OK && stopped) st = bw_case_unfinished(run, NULL);
   }
   cylinder_destroy(&f);
   return st;

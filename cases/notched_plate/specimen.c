@@ -1,6 +1,7 @@
 /* A plate under load: its sites, its material, its loads, a step. */
 #include "specimen.h"
 #include "bw_memory.h"
+#include "bw_number.h"
 #include <math.h>
 #include <string.h>
 
@@ -265,6 +266,27 @@ static void open_limits(specimen_config *c)
   if (isnan(c->follow.fit_to)) c->follow.fit_to = HUGE_VAL;
 }
 
+/* Particles have 32-bit numbers, and sites are looked through one by one. */
+static bw_status check_count(const specimen_shape *s, bool solid)
+{
+  const double ds = s->length / s->particles;
+  const double rows = round(s->height / ds), layers = solid ? round(s->thickness / ds) : 1.0;
+  const double n = s->particles * rows * layers;
+  BW_REQUIRE(
+      n <= (double)INT32_MAX, BW_EINPUT,
+      "shape.particles = %d over shape.length = %g make a spacing of %.3g and a plate of %d x "
+      "%.0f x %.0f particles, %.3g in all; at most %d",
+      s->particles, s->length, ds, s->particles, rows, layers, n, INT32_MAX);
+  /* A turned lattice is looked through far beyond the plate. */
+  static const double scanned = 2e10; /* sites of some nanoseconds each: a minute */
+  const double over = s->lattice_angle == 0.0 ? 0.0 : s->particles + rows;
+  BW_REQUIRE((s->particles + 2.0 * over) * (rows + 2.0 * over) * layers <= scanned, BW_EINPUT,
+             "shape.lattice_angle = %g: %d x %.0f particles are too many for a turned lattice",
+             s->lattice_angle, s->particles, rows);
+  BW_REQUIRE(rows >= 1.0, BW_EINPUT, "shape.height = %g is less than a spacing, %g", s->height, ds);
+  return BW_OK;
+}
+
 static bw_status check(const specimen_config *c)
 {
   for (int d = 0; d < 2; d++)
@@ -274,7 +296,19 @@ static bw_status check(const specimen_config *c)
   BW_REQUIRE(c->follow.fit_from < c->follow.fit_to, BW_EINPUT,
              "follow.fit_from = %g has to be below follow.fit_to = %g", c->follow.fit_from,
              c->follow.fit_to);
-  return BW_OK;
+  /* The tip of a notch in this plate, to a spacing; sections are laid across the crack from there. */
+  const double edge[2] = {c->shape.length, c->shape.height};
+  const double ds = c->shape.length / c->shape.particles;
+  for (int d = 0; d < 2; d++)
+    BW_REQUIRE(c->follow.from[d] >= -ds && c->follow.from[d] <= edge[d] + ds, BW_EINPUT,
+               "follow.from[%d] = %g is outside the plate, 0 to %g m (millimetres for metres?)", d,
+               c->follow.from[d], edge[d]);
+  const double steps = ceil(c->time.end / c->time.step - 1e-9);
+  BW_REQUIRE(steps <= (double)BW_MOST_STEPS, BW_EINPUT,
+             "time.end = %g takes %.3g steps of time.step = %g, more than the %g that anybody can "
+             "wait for; take a larger step",
+             c->time.end, steps, c->time.step, (double)BW_MOST_STEPS);
+  return check_count(&c->shape, c->solid.geometry == BW_PD_3D);
 }
 
 bw_status specimen_create(const bw_comm *comm, const specimen_config *config, specimen *p)

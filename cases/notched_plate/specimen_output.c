@@ -26,13 +26,9 @@ static const char *const columns[COLUMNS] = {
     "time[s]",    "tip_x[m]",   "tip_y[m]",    "reach[m]",    "speed[m/s]", "broken_bonds[-]",
     "kinetic[J]", "elastic[J]", "fracture[J]", "external[J]", "residual[J]"};
 
-bw_status specimen_open_history(const specimen *p, const bw_case *run, bw_history **out)
+bw_status specimen_open_history(const bw_case *run, bw_history **out)
 {
-  char *path = NULL;
-  bw_status st = bw_case_path(run, "history.csv", &path);
-  BW_THEN(st, bw_history_create(p->comm, path, COLUMNS, columns, NAN, out));
-  bw_release(&path);
-  return st;
+  return bw_case_history(run, COLUMNS, columns, NAN, -1, out);
 }
 
 bw_status specimen_sample(specimen *p, bw_history *history)

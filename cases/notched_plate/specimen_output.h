@@ -8,8 +8,7 @@
 bw_status specimen_describe(const specimen *p, bw_log *log) BW_MUST_CHECK;
 
 /* Creates history.csv. Collective. */
-bw_status specimen_open_history(const specimen *p, const bw_case *run,
-                                bw_history **out) BW_MUST_CHECK;
+bw_status specimen_open_history(const bw_case *run, bw_history **out) BW_MUST_CHECK;
 /* A row of it. Collective. */
 bw_status specimen_sample(specimen *p, bw_history *history) BW_MUST_CHECK;
 /* Adds the present particles to damage.pvd. Collective. */

@@ -16,7 +16,44 @@ static bw_status check_combinations(const porous_config *q)
   BW_REQUIRE(q->medium.front + q->medium.length < d->length[0], BW_EINPUT,
              "medium.front + medium.length = %g m reaches the outflow at domain.length[0] = %g m",
              q->medium.front + q->medium.length, d->length[0]);
+  /* Softer than this even the stream's own pressure would squeeze the solid to nothing. */
+  static const double softest = 1e-3;
+  const double U = q->fluid.bulk_velocity;
+  const double groups = q->solid.young_modulus / (q->fluid.density * U * U);
+  BW_REQUIRE(
+      groups >= softest, BW_EINPUT,
+      "solid.young_modulus = %g Pa is %.3g of the stream's dynamic pressure rho U_b^2 = %g Pa; "
+      "at least %g",
+      q->solid.young_modulus, groups, q->fluid.density * U * U, softest);
   return BW_OK;
+}
+
+/* The medium's length as built: planes of sites across the stream. Where medium.length is whole
+ * spacings it is that. Collective. */
+static void measure_length(porous_run *p, int64_t n, const int32_t site[])
+{
+  const porous_medium *m = &p->config->medium;
+  const double ds = p->config->domain.length[1] / p->config->domain.cells[1];
+  /* Without a slab, which has every plane: centres between front and back. */
+  double first = ceil(m->front / ds - 0.5), last = floor((m->front + m->length) / ds - 0.5);
+  if (m->clamped_layers > 0) {
+    first = HUGE_VAL, last = -HUGE_VAL;
+    for (int64_t k = 0; k < n; k++) {
+      if (site[3 * k + 1] >= 0) continue;
+      first = fmin(first, site[3 * k]), last = fmax(last, site[3 * k]);
+    }
+    /* Each rank has its part of the sites. */
+    bw_comm_min(p->comm, 1, &first);
+    bw_comm_max(p->comm, 1, &last);
+  }
+  p->length = (last - first + 1.0) * ds;
+  if (fabs(p->length / m->length - 1.0) < 1e-9)
+    p->length = m->length;
+  else
+    bw_log_warn(bw_case_log(p->run),
+                "medium.length = %g m is no whole number of particles of %g m: the medium is built "
+                "%g m long, and porosity and permeability are those of that length",
+                m->length, ds, p->length);
 }
 
 static bw_status build_fluid(porous_run *p)
@@ -61,6 +98,7 @@ static bw_status build_solid(porous_run *p)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   bw_status st = porous_medium_sites(p->comm, q, &n, &site, &kind);
+  if (st == BW_OK) measure_length(p, n, site);
   /* Each rank gives its part; the solid brings every particle to the rank that owns it. */
   BW_THEN(st, bw_solid_create(p->comm, &solid, &(bw_pd_sites){n, site, kind, NULL}, &p->solid));
   bw_release(&site);
@@ -154,13 +192,27 @@ static bw_status describe_cost(porous_run *p)
   return BW_OK;
 }
 
+/* What the stream does to the solid has to be more than rounding does. */
+static bw_status check_strain(const porous_config *q)
+{
+  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
+  const double h = q->domain.length[1] / q->domain.cells[1], U = q->fluid.bulk_velocity;
+  const double stress = q->fluid.density * U * (U + q->fluid.viscosity / h);
+  BW_REQUIRE(
+      stress / q->solid.young_modulus >= least, BW_EINPUT,
+      "solid.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g Pa, strains "
+      "it by %.3g, which rounding hides; at least %g",
+      q->solid.young_modulus, stress, stress / q->solid.young_modulus, least);
+  return BW_OK;
+}
+
 bw_status porous_describe(porous_run *p)
 {
   const porous_config *q = p->config;
   bw_log *log = bw_case_log(p->run);
   const double h = q->domain.length[1], U = q->fluid.bulk_velocity, rho = q->fluid.density;
   const double clamped = (double)q->medium.clamped_layers *
-                         round(q->medium.length / q->domain.length[1] * q->domain.cells[1]) *
+                         round(p->length / q->domain.length[1] * q->domain.cells[1]) *
                          q->domain.cells[2];
   const int64_t total = bw_solid_total(p->solid);
   /* Sizes. */
@@ -181,6 +233,7 @@ bw_status porous_describe(porous_run *p)
   const double fluid_max = bw_ns_channel_dt_max(p->fluid), solid_max = bw_solid_dt_max(p->solid);
   for (int k = 0; k < PHASE_COUNT; k++) {
     const porous_phase *f = porous_phase_of(q, k);
+    if (k != PHASE_FLOW) BW_TRY(bw_coupler_check_substeps(p->coupler, f->time_step));
     bw_log_info(log,
                 "phase %d    %-11s %d steps of %g s: %.2f of the fluid's limit, %s%d solid "
                 "sub-steps each",
@@ -188,6 +241,7 @@ bw_status porous_describe(porous_run *p)
                 k == PHASE_FLOW ? "no solid; else " : "",
                 bw_coupler_substeps(p->coupler, f->time_step));
   }
+  BW_TRY(check_strain(q));
   bw_log_info(log, "solid      stable to %.4g s per sub-step", solid_max);
   return describe_cost(p);
 }

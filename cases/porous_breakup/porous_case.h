@@ -29,14 +29,14 @@ typedef struct {
 } porous_random;
 /* A medium from voxels. */
 typedef struct {
-  char file[256];  /* NRRD or MetaImage */
+  char file[1024]; /* NRRD or MetaImage */
   double solid[2]; /* smallest and largest value of a solid voxel */
   double voxel;    /* its edge [m]; NaN: as the file says */
 } porous_image;
 /* A medium from a closed surface. */
 typedef struct {
-  char file[256]; /* STL */
-  double scale;   /* a unit of length of the file [m]                     default 1 */
+  char file[1024]; /* STL */
+  double scale;    /* a unit of length of the file [m]                     default 1 */
 } porous_surface;
 /* The medium: a box with pores on a lattice, or one of random, image and surface. */
 typedef struct {
@@ -89,7 +89,7 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
 /* ---- the objects of a run (porous_build.c) ---- */
-enum { N_PROGRESS = 5 }; /* numbers of a checkpoint: phase, steps, settling check */
+enum { N_PROGRESS = 6 }; /* numbers of a checkpoint: phase, steps, settling check, rows */
 typedef struct {
   const porous_config *config;
   bw_case *run;
@@ -106,7 +106,10 @@ typedef struct {
   double kept_progress[N_PROGRESS]; /* what a checkpoint says of the run, of the last good state */
   double broken, imbalance;         /* bonds; markers, most on a rank over the mean; last sample */
   bool warned;                      /* that pieces hit each other too hard */
-  bool stopped;                     /* a signal asked for an end in good order */
+  bool stopped;                     /* asked for an end in good order ... */
+  bool phase_done;                  /* ... when the phase was over, or on the way */
+  double length;                    /* of the medium as built [m] */
+  int64_t rows;                     /* of history.csv, when the checkpoint was written */
 } porous_run;
 
 /* Fluid, solid and coupler from p->config, the stream uniform. Destroy also after a failure.
@@ -175,8 +178,8 @@ void porous_tensors_release(porous_tensors *t);
 bw_status porous_stress_csv(porous_run *p) BW_MUST_CHECK;
 
 /* ---- files (porous_output.c) ---- */
-/* Creates history.csv, or goes on with it from restart_time [s] (NaN: anew). All collective. */
-bw_status porous_open_history(porous_run *p, double restart_time) BW_MUST_CHECK;
+/* Creates history.csv, or goes on with it from the checkpoint that was read. All collective. */
+bw_status porous_open_history(porous_run *p) BW_MUST_CHECK;
 bw_status porous_sample(porous_run *p) BW_MUST_CHECK;  /* measures, and writes a row */
 bw_status porous_picture(porous_run *p) BW_MUST_CHECK; /* adds to fluid.pvd and solid.pvd */
 /* Writes `name` in the folder of the run; `kept`: the last good state, not the present one. */

@@ -52,13 +52,13 @@ static const bw_config_field random_fields[] = {
       "number of the medium; another one gives another medium"),
     BW_CONFIG_END};
 static const bw_config_field image_fields[] = {
-    V(porous_image, file, BW_REQUIRED, BW_ANY, "", "path of an NRRD or MetaImage file"),
+    V(porous_image, file, BW_REQUIRED, BW_FILE, "", "path of an NRRD or MetaImage file"),
     V(porous_image, solid, BW_REQUIRED, BW_ANY, "", "smallest and largest value of a solid voxel"),
     V(porous_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "m",
       "edge of a voxel; left out: as the file says"),
     BW_CONFIG_END};
 static const bw_config_field surface_fields[] = {
-    V(porous_surface, file, BW_REQUIRED, BW_ANY, "", "path of an STL file with a closed surface"),
+    V(porous_surface, file, BW_REQUIRED, BW_FILE, "", "path of an STL file with a closed surface"),
     V(porous_surface, scale, BW_OPTIONAL, BW_ABOVE(0), "m", "length of one unit of the file"),
     BW_CONFIG_END};
 static const bw_config_field medium_fields[] = {

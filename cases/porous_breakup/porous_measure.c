@@ -118,7 +118,7 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
   }
   bw_comm_sum(p->comm, 3, sums);
   bw_comm_max(p->comm, 2, most);
-  row[COL_POROSITY] = 1.0 - sums[0] * volume / (q->medium.length * L[1] * L[2]);
+  row[COL_POROSITY] = 1.0 - sums[0] * volume / (p->length * L[1] * L[2]);
   row[COL_DAMAGE_MEAN] = sums[1] / sums[2];
   row[COL_DAMAGE_MAX] = most[0];
   row[COL_DISPLACEMENT] = sqrt(most[1]) / L[1];
@@ -193,12 +193,15 @@ static bw_status measure_solid(porous_run *p, double row[])
   return st;
 }
 
-/* Darcy, POROUS 2.4 and 6.2: k = Q L mu / (S dp). */
-static double permeability(const porous_config *q, double drop)
+/* Darcy, POROUS 2.4 and 6.2: k = Q L mu / (S dp). NaN where no flow was measured: before the first
+ * step, and while the unsteady pressure falls against the stream. */
+static double permeability(const porous_run *p, double drop)
 {
+  const porous_config *q = p->config;
+  if (p->total_step == 0 || !(drop > 0.0)) return NAN;
   const double U = q->fluid.bulk_velocity, p0 = q->fluid.density * U * U;
   const double mu = q->fluid.density * q->fluid.viscosity;
-  return U * q->medium.length * mu / (drop * p0); /* Q/S = U_b: the medium fills the section */
+  return U * p->length * mu / (drop * p0); /* Q/S = U_b: the medium fills the section */
 }
 
 bw_status porous_measure(porous_run *p, double row[COL_COUNT])
@@ -208,8 +211,8 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   BW_TRY(bw_coupler_measure(p->coupler, &r));
   row[COL_TIME] = bw_ns_channel_time(p->fluid);
   row[COL_PHASE] = p->phase + 1;
-  row[COL_DROP] = porous_pressure_drop(p);
-  row[COL_PERMEABILITY] = permeability(p->config, row[COL_DROP]);
+  row[COL_DROP] = p->total_step > 0 ? porous_pressure_drop(p) : NAN;
+  row[COL_PERMEABILITY] = permeability(p, row[COL_DROP]);
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_BLOCKED] = (double)r.probes_blocked;
   row[COL_GIVEN] = r.work_given;

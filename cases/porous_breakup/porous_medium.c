@@ -12,7 +12,7 @@ typedef struct {
   int count;
   bw_shape *shape;
   bw_shape_mask *mask;
-  char key[320]; /* that decides how much of it is pores, with its value: for messages */
+  char key[1100]; /* that decides how much of it is pores, with its value: for messages */
 } medium_body;
 
 static double spacing(const porous_config *q)

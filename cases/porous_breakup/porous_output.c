@@ -1,5 +1,6 @@
 /* What the porous medium writes: history.csv, VTK files, checkpoints, fragments.csv. */
 #include "bw_memory.h"
+#include "bw_number.h"
 #include "bw_vtk.h"
 #include "porous_case.h"
 
@@ -7,14 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-bw_status porous_open_history(porous_run *p, double restart_time)
+bw_status porous_open_history(porous_run *p)
 {
-  char *path = NULL;
-  bw_status st = bw_case_path(p->run, "history.csv", &path);
-  BW_THEN(st,
-          bw_history_create(p->comm, path, COL_COUNT, porous_columns, restart_time, &p->history));
-  bw_release(&path);
-  return st;
+  return bw_case_history(p->run, COL_COUNT, porous_columns, bw_ns_channel_time(p->fluid), p->rows,
+                         &p->history);
 }
 
 bw_status porous_sample(porous_run *p)
@@ -105,8 +102,9 @@ bw_status porous_picture(porous_run *p)
 
 static void progress_of(const porous_run *p, double progress[N_PROGRESS])
 {
-  const double now[N_PROGRESS] = {p->phase, (double)p->step, (double)p->total_step, p->last_drop,
-                                  p->last_drop_time};
+  const double now[N_PROGRESS] = {
+      p->phase,     (double)p->step,   (double)p->total_step,
+      p->last_drop, p->last_drop_time, (double)bw_history_rows(p->history)};
   memcpy(progress, now, sizeof now);
 }
 
@@ -135,7 +133,8 @@ bw_status porous_checkpoint(porous_run *p, const char *name, bool kept)
   progress_of(p, progress);
   char *path = NULL;
   bw_checkpoint *ck = NULL;
-  bw_status st = bw_case_path(p->run, name, &path);
+  bw_status st = bw_history_sync(p->comm, p->history);
+  BW_THEN(st, bw_case_path(p->run, name, &path));
   BW_THEN(st, bw_checkpoint_create(p->comm, path, &ck));
   BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "porous_breakup"));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", N_PROGRESS,
@@ -155,9 +154,12 @@ bw_status porous_restart(porous_run *p, const char *path)
   BW_TRY(bw_checkpoint_open(p->comm, path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", N_PROGRESS, progress);
   if (st == BW_OK) {
-    p->phase = (int)progress[0];
-    p->step = (int64_t)progress[1];
-    p->total_step = (int64_t)progress[2];
+    if (!bw_to_int(progress[0], &p->phase) || p->phase < 0 || p->phase >= PHASE_COUNT ||
+        !bw_to_int64(progress[1], &p->step) || !bw_to_int64(progress[2], &p->total_step) ||
+        !bw_to_int64(progress[5], &p->rows))
+      st = BW_FAIL(BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
+  }
+  if (st == BW_OK) {
     p->last_drop = progress[3];
     p->last_drop_time = progress[4];
     porous_enter_phase(p); /* before loading: new damping would ask for new forces */
@@ -168,16 +170,17 @@ bw_status porous_restart(porous_run *p, const char *path)
   return st;
 }
 
-/* What is due after a step: samples, pictures, checkpoints, the last good state. */
+/* What is due after a step: the last good state, samples, checkpoints, pictures. */
 bw_status porous_after_step(porous_run *p)
 {
   const porous_output *out = &p->config->output;
   /* Good states first, so that a failure while writing leaves one. */
   if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
   if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
-  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
+  /* The checkpoint first: what was paid for is on disk before a picture may fail. */
   if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
     BW_TRY(porous_checkpoint(p, "checkpoint-last.h5", false));
+  if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(porous_picture(p));
   return BW_OK;
 }
 

@@ -1,5 +1,6 @@
 /* The file as a whole: create, open, close, what is in it. */
 #include "bw_comm_mpi.h"
+#include "bw_folder.h"
 #include "bw_memory.h"
 #include "checkpoint_internal.h"
 
@@ -33,6 +34,7 @@ static bw_status begin(const bw_comm *comm, const char *path, bool writing, bw_c
 {
   *out = NULL;
   bw_checkpoint *ck = NULL;
+  BW_TRY(bw_path_check(path));
   BW_TRY(BW_ALLOCATE(&ck, 1));
   ck->comm = comm;
   ck->file = H5I_INVALID_HID;

@@ -4,6 +4,7 @@
 #include "bw_real.h"
 #include "case_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* Given by the build to this file alone, so that a commit compiles one file anew. */
@@ -27,6 +28,9 @@ const char *bw_commit(void)
 static void release(bw_case **run)
 {
   if (*run == NULL) return;
+  bw_core__case_leave(*run);
+  if ((*run)->files != NULL) bw_release(&(*run)->files->list);
+  bw_release(&(*run)->files);
   bw_release(&(*run)->overrides);
   bw_release(&(*run)->out);
   bw_log_destroy(&(*run)->log);
@@ -88,6 +92,7 @@ bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_cas
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&run, 1)));
   run->about = about;
   run->args.comm = comm;
+  run->args.stop_after = HUGE_VAL;
   /* The clock starts before the case file is read: set-up counts. */
   run->wall_start = bw_wall_time();
   const bw_status st = begin(run, argc, argv, config);
@@ -109,6 +114,7 @@ bw_log *bw_case_log(const bw_case *run)
 
 bw_status bw_case_path(const bw_case *run, const char *name, char **path)
 {
+  bw_core__case_note(run, name);
   const bw_status st = bw_comm_agree(run->args.comm, bw_path_join(run->out, name, path));
   if (st != BW_OK) bw_release(path);
   return st;

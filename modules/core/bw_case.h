@@ -9,10 +9,17 @@
  *     return bw_case_main(argc, argv, &about, &c, simulate);
  *   }
  *
- * Command line: CASE.yaml [--set key.path=value]... [--out DIR] [--restart FILE] [--check]
- * [--quiet] [--help] [--version]. */
+ * Command line: CASE.yaml [--set key.path=value]... [--out DIR] [--restart FILE]
+ * [--overwrite] [--stop-after TIME] [--check] [--quiet] [--help] [--version].
+ *
+ * The folder of the results belongs to one run. While it runs, it holds a lock of the system on
+ * run.lock, which ends with the process and is not copied with the folder: a second run is refused
+ * and told who holds it. Nothing is replaced without --restart, which goes on with a run of the
+ * same case, or --overwrite, which removes what runs of the same case have written (run.files) and
+ * begins anew. A folder with files of the user's and no run.yaml is never written into. */
 #pragma once
 #include "bw_config.h"
+#include "bw_history.h"
 #include "bw_log.h"
 
 BW_BEGIN_DECLS
@@ -40,8 +47,10 @@ typedef struct {
   const char *restart; /* checkpoint to go on from, or NULL */
   const char *const *overrides; /* (n_overrides) the texts behind --set, in their order */
   int n_overrides;              /* number of --set */
+  bool overwrite;               /* --overwrite: results of the same case may be replaced */
   bool check;                   /* --check: print the sizes, run and write nothing */
-  bool quiet;                   /* --quiet: only warnings and errors */
+  double stop_after; /* --stop-after: wall-clock seconds since the start; INFINITY: none */
+  bool quiet;        /* --quiet: only warnings and errors */
   bool stop; /* --help or --version was answered: nothing to do (the configuration is not read) */
 } bw_case_args;
 
@@ -51,8 +60,8 @@ typedef struct bw_case bw_case;
 /* Read the command line; load and check the configuration; make the folder; write run.yaml; print
  * the heading. With --check: prints the resolved configuration instead, touches no folder.
  * BW_EUSAGE for a command line not understood (with a hint), BW_EINPUT for the configuration,
- * BW_EINPUT when the folder holds another run (the remedy is named), BW_EIO when it cannot be
- * written. `about` is borrowed until end; `config` is not kept. Collective. */
+ * BW_EINPUT when another run writes into the folder or what it holds may not be replaced (the
+ * remedy is named), BW_EIO when it cannot be written. `about` is borrowed until end; `config` is not kept. Collective. */
 bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_case_about *about,
                         void *config, bw_case **out) BW_MUST_CHECK;
 
@@ -62,9 +71,24 @@ const bw_case_args *bw_case_args_of(const bw_case *run);
 /* The log of the case; borrowed, valid until bw_case_end. Local. */
 bw_log *bw_case_log(const bw_case *run);
 
-/* *path = a file in the output folder, allocated, owned by the caller (bw_release).
- * Collective. */
+/* *path = a file that the run writes into its folder, allocated, owned by the caller (bw_release).
+ * The name is noted: --overwrite of a later run may remove the file. Collective. */
 bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
+
+/* history.csv in the folder of the run (bw_history.h). After --restart, restart_time and
+ * restart_rows are the time of the checkpoint and the rows that had been written until then; rows
+ * are held against the file where the checkpoint lies in the folder of the results, for elsewhere
+ * the file is another one. Without --restart both are not looked at. Collective. */
+bw_status bw_case_history(const bw_case *run, int n, const char *const names[], double restart_time,
+                          int64_t restart_rows, bw_history **out) BW_MUST_CHECK;
+
+/* Is the run to end early, in good order: by a signal (bw_stop.h) or because the time of
+ * --stop-after is over? The same answer on all ranks. Once per step is cheap. Collective. */
+bool bw_case_stopping(const bw_case *run);
+
+/* What a run that ends early returns: BW_EUNFINISHED, with why it ended and how it goes on.
+ * `checkpoint`: name in the folder; NULL: the case writes none. Collective. */
+bw_status bw_case_unfinished(const bw_case *run, const char *checkpoint) BW_MUST_CHECK;
 
 /* Ranks agree on `mine`; end time and status are added to run.yaml; *run is freed (NULL inside is
  * fine). Returns the agreed status; bw_finish prints its message. Collective. */

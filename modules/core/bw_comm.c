@@ -47,7 +47,7 @@ int bw_finish(bw_comm **world, bw_status mine)
   if (*world != NULL) worst = bw_comm_agree(*world, mine);
   const bool speaker = *world == NULL || bw_comm_rank(*world) == 0;
   if (worst != BW_OK && speaker)
-    fprintf(stderr, "breakwater: error: %s\n",
+    fprintf(stderr, "breakwater: %s: %s\n", worst == BW_EUNFINISHED ? "unfinished" : "error",
             bw_last_message()[0] != '\0' ? bw_last_message() : bw_status_text(worst));
   bw_comm_destroy(world);
   MPI_Finalize();

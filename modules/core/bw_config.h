@@ -22,7 +22,8 @@
  * Defaults are what the struct holds before loading; for the items of a list, what item 0 holds.
  * Not set (an error by name where BW_REQUIRED): NaN, INT_MIN (words too), "", an empty list.
  * The struct is plain: no pointers inside; texts are char arrays, lists are arrays with a count.
- * A fixed array in C (double x[3]) is a YAML list of that length. Numbers are decimal and finite.
+ * A fixed array in C (double x[3]) is a YAML list of that length. Numbers are decimal, finite and
+ * of a size that products can be made of (BW_CONFIG_LARGEST).
  * Overrides are "key.path=value"; shapes.0.radius=2 names an item (its index at most the count,
  * so that the next one may be added); a value may be any YAML ("[1, 2, 3]"). The key `run` at the
  * top level is ignored, so that a run.yaml is itself a case file.
@@ -57,8 +58,14 @@ enum {
   BW_BOUND_MIN = 1,   /* x >= low */
   BW_BOUND_ABOVE = 2, /* x > low */
   BW_BOUND_MAX = 4,   /* x <= high */
-  BW_BOUND_BELOW = 8  /* x < high */
+  BW_BOUND_BELOW = 8, /* x < high */
+  BW_BOUND_FILE = 16  /* a text that names a file to be read */
 };
+
+/* Sizes of numbers. Beyond them even the sixth power leaves what a double holds, and no quantity in
+ * units of any trade is so small or large: 0, or |x| of [BW_CONFIG_SMALLEST, BW_CONFIG_LARGEST]. */
+#define BW_CONFIG_SMALLEST 1e-50
+#define BW_CONFIG_LARGEST  1e50
 
 /* The numbers a member may have, in the member's unit. Written by the macros below. */
 typedef struct {
@@ -70,6 +77,14 @@ typedef struct {
 #define BW_ANY                                                                                     \
   {                                                                                                \
     0, 0, 0                                                                                        \
+  }
+
+/* For a text: the path of a file that the program reads. A relative one is looked for beside the
+ * case file, then in the present folder; on the command line from the present folder. The struct
+ * gets the absolute path. */
+#define BW_FILE                                                                                    \
+  {                                                                                                \
+    BW_BOUND_FILE, 0, 0                                                                            \
   }
 
 /* Numbers greater than x. */
@@ -168,7 +183,7 @@ struct bw_config_field {
       char *: sizeof(x))
 
 /* A member of type double, int, bool (or a fixed array of one of them) or char[]. The range is
- * for numbers; a text takes BW_ANY. */
+ * for numbers; a text takes BW_ANY or BW_FILE. */
 #define BW_CONFIG_VALUE(T, m, need, range, unit, help)                                             \
   {                                                                                                \
 #m, BW_CONFIG_TYPE_OF_(BW_CONFIG_MEMBER_(T, m)), need, offsetof(T, m),                         \

@@ -60,7 +60,8 @@ bw_status bw_file_create(const bw_comm *comm, const char *path, bw_file **out)
 {
   bw_file *f = NULL;
   *out = NULL;
-  bw_status st = BW_ALLOCATE(&f, 1);
+  bw_status st = bw_path_check(path);
+  BW_THEN(st, BW_ALLOCATE(&f, 1));
   BW_THEN(st, bw_path_join("", path, &f->path));
   BW_THEN(st, bw_core__part_path(path, &f->part));
   /* PATH.part is made by rank 0 alone, before all ranks open it together. */

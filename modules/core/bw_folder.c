@@ -62,6 +62,15 @@ bool bw_path_exists(const bw_comm *comm, const char *path)
   return found != 0;
 }
 
+bw_status bw_path_check(const char *path)
+{
+  BW_REQUIRE(
+      strlen(path) <= BW_PATH_LONGEST, BW_EIO,
+      "%.40s...: the path has %zu bytes, %d at most: give a shorter one, or start nearer to it",
+      path, strlen(path), BW_PATH_LONGEST);
+  return BW_OK;
+}
+
 bw_status bw_path_join(const char *folder, const char *name, char **out)
 {
   /* An absolute name needs no folder before it. */

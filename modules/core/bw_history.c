@@ -9,14 +9,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct bw_history {
   int n;
   char *path;
   FILE *out; /* rank 0 only */
   int64_t rows;
-  double last_kept; /* time of the last row an old file gave; NaN: none */
-  int reason;       /* errno of the first failed write; 0: none */
+  double last;  /* time of the last row; NaN: none */
+  int reason;   /* errno of the first failed write; 0: none */
+  int infinite; /* column of the first infinite number, -1: none ... */
+  double when;  /* ... and its time */
 };
 
 /* Letters and a unit, nothing that would break a CSV reader. */
@@ -47,10 +50,42 @@ static bw_status make_header(int n, const char *const names[], char **header)
   return BW_OK;
 }
 
-/* Cut `text` behind the last complete row not later than `restart`; count the rows kept. */
-static bw_status keep_rows(bw_history *h, const char *header, double restart, char *text)
+/* A row up to its end: as many cells as columns, each empty or one number. */
+static bool is_row(const char *line, const char *end, int n, double *time)
 {
-  char *line = text, *end = strchr(line, '\n');
+  int cells = 0;
+  for (const char *at = line; at <= end; cells++) {
+    const size_t length = strcspn(at, ",\n");
+    char *behind = NULL;
+    const double x = length > 0 ? strtod(at, &behind) : (double)NAN;
+    /* strtod would go over a line's end to the next number, and take hexadecimal ones. */
+    if (length > 0 && (behind != at + length || strspn(at, "+-.0123456789eE") < length))
+      return false;
+    if (cells == 0) *time = x;
+    at += length + 1;
+  }
+  return cells == n && isfinite(*time);
+}
+
+/* Line `number` against those before; *row: does it belong to the time until the restart? */
+static bw_status check_row(bw_history *h, const char *line, const char *end, int64_t number,
+                           double restart, bool *row)
+{
+  double time = NAN;
+  BW_REQUIRE(is_row(line, end, h->n, &time), BW_EINPUT,
+             "%s:%lld: no row of %d numbers: the file is damaged; restore it or give another --out",
+             h->path, (long long)number, h->n);
+  *row = time <= restart;
+  BW_REQUIRE(!*row || !(time <= h->last), BW_EINPUT,
+             "%s:%lld: the time %.15g does not follow that of the row before, %.15g: the file is "
+             "damaged; restore it or give another --out",
+             h->path, (long long)number, time, h->last);
+  if (*row) h->last = time;
+  return BW_OK;
+}
+
+static bw_status check_header(const bw_history *h, const char *header, char *line, char *end)
+{
   const size_t length = strlen(header);
   const bool same =
       end != NULL && (size_t)(end - line) == length && strncmp(line, header, length) == 0;
@@ -60,14 +95,31 @@ static bw_status keep_rows(bw_history *h, const char *header, double restart, ch
              "%s holds other columns (%.300s) than this run writes (%.300s): give another --out",
              h->path, line, header);
   *end = '\n';
-  /* Rows that a killed run wrote after the checkpoint will be computed once more. A last line
-   * without its end was being written when the run was killed. */
+  return BW_OK;
+}
+
+/* Cut `text` behind the last row not later than `restart`; check and count the rows kept. Rows that
+ * a killed run wrote after the checkpoint will be computed once more. A last line without its end
+ * was being written when the run was killed. */
+static bw_status keep_rows(bw_history *h, const char *header, double restart, int64_t rows,
+                           char *text)
+{
+  char *line = text, *end = strchr(line, '\n');
+  BW_TRY(check_header(h, header, line, end));
   for (line = end + 1; (end = strchr(line, '\n')) != NULL; line = end + 1) {
-    const double time = strtod(line, NULL);
-    if (!(time <= restart)) break;
-    h->last_kept = time;
+    bool row = false;
+    const bw_status st = check_row(h, line, end, h->rows + 2, restart, &row);
+    /* Behind the checkpoint's rows anything may stand: it goes. */
+    if (rows >= 0 && h->rows == rows && (st != BW_OK || !row)) break;
+    BW_TRY(st);
+    if (!row) break;
     h->rows++;
   }
+  BW_REQUIRE(
+      rows < 0 || h->rows == rows, BW_EINPUT,
+      "%s holds %lld rows until the time of the checkpoint, %.15g; the run had written %lld: "
+      "the file is damaged; restore it or give another --out",
+      h->path, (long long)h->rows, restart, (long long)rows);
   *line = '\0';
   return BW_OK;
 }
@@ -85,7 +137,7 @@ static bw_status open_file(bw_history *h, const char *header, char *old)
 }
 
 bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const char *const names[],
-                            double restart_time, bw_history **out)
+                            double restart_time, int64_t restart_rows, bw_history **out)
 {
   bw_history *h = NULL;
   char *header = NULL, *old = NULL;
@@ -99,11 +151,14 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
   st = bw_comm_agree(comm, st);
   if (st == BW_OK) {
     h->n = n;
-    h->last_kept = NAN;
+    h->last = NAN;
+    h->infinite = -1;
     if (!isnan(restart_time) && bw_path_exists(comm, path))
       st = bw_file_read_text(comm, path, &bytes, &old);
-    if (bytes == 0) bw_release(&old); /* killed before its first line */
-    if (old != NULL) BW_THEN(st, bw_comm_agree(comm, keep_rows(h, header, restart_time, old)));
+    /* Killed before its first line; where rows were there before, they are lost. */
+    if (bytes == 0 && restart_rows <= 0) bw_release(&old);
+    if (old != NULL)
+      BW_THEN(st, bw_comm_agree(comm, keep_rows(h, header, restart_time, restart_rows, old)));
     /* The file is replaced as a whole: a run killed now leaves the old one or the cut one. */
     if (old != NULL) BW_THEN(st, bw_file_write_text(comm, path, old));
     if (st == BW_OK && bw_comm_rank(comm) == 0) st = open_file(h, header, old);
@@ -124,19 +179,40 @@ bw_status bw_history_create(const bw_comm *comm, const char *path, int n, const 
 void bw_history_append(bw_history *h, const double values[])
 {
   if (h == NULL || h->out == NULL) return;
-  /* A restarted run samples the state it begins with, which the old file may hold already. */
-  if (values[0] == h->last_kept) return;
+  /* The end of a phase may also be the time of a sample; a restarted run samples the state it
+   * begins with, which the old file may hold already. */
+  if (values[0] == h->last || h->reason != 0) return;
+  h->last = values[0];
   bool ok = true;
   for (int q = 0; q < h->n; q++) {
     char number[BW_NUMBER_SIZE];
-    bw_core__format_double(values[q], number);
-    ok = fprintf(h->out, "%s%s", q == 0 ? "" : ",", number) > 0 && ok;
+    number[0] = '\0'; /* not measured: nothing is written */
+    if (!isnan(values[q])) bw_core__format_double(values[q], number);
+    ok = fprintf(h->out, "%s%s", q == 0 ? "" : ",", number) >= 0 && ok;
+    if (isinf(values[q]) && h->infinite < 0) h->infinite = q, h->when = values[0];
   }
   ok = fputc('\n', h->out) != EOF && ok;
   /* A killed run keeps all rows but the one being written. */
   ok = fflush(h->out) == 0 && ok;
-  if (!ok && h->reason == 0) h->reason = errno != 0 ? errno : EIO;
-  h->rows++;
+  /* What is left of a row without its end is dropped when the run goes on. */
+  if (!ok) h->reason = errno != 0 ? errno : EIO;
+  h->rows += ok;
+}
+
+static bw_status write_failed(const bw_history *h)
+{
+  return BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
+}
+
+bw_status bw_history_sync(const bw_comm *comm, bw_history *h)
+{
+  bw_status st = BW_OK;
+  if (h != NULL && h->out != NULL) {
+    /* EINVAL: a pipe or a device, which has no disk behind it. */
+    if (h->reason == 0 && fsync(fileno(h->out)) != 0 && errno != EINVAL) h->reason = errno;
+    if (h->reason != 0) st = write_failed(h);
+  }
+  return bw_comm_agree(comm, st);
 }
 
 int64_t bw_history_rows(const bw_history *h)
@@ -152,7 +228,11 @@ bw_status bw_history_close(const bw_comm *comm, bw_history **history)
     errno = 0;
     /* What failed in between shows here at the latest: rows are written without a status. */
     if (fclose(h->out) != 0 && h->reason == 0) h->reason = errno;
-    if (h->reason != 0) st = BW_FAIL(BW_EIO, "cannot write %s: %s", h->path, strerror(h->reason));
+    if (h->reason != 0)
+      st = write_failed(h);
+    else if (h->infinite >= 0)
+      st = BW_FAIL(BW_EDIVERGED, "%s: column %d is infinite at %.15g, the first time", h->path,
+                   h->infinite + 1, h->when);
   }
   st = bw_comm_agree(comm, st);
   if (h != NULL) bw_release(&h->path);

@@ -11,7 +11,8 @@
 
 BW_BEGIN_DECLS
 
-/* One list, three uses (enum, name, text). Append only; the numbers are exit codes. */
+/* One list, three uses (enum, name, text). Append only; the numbers are exit codes. 75 is
+ * EX_TEMPFAIL of sysexits.h: the run was stopped early in good order and can go on. */
 #define BW_STATUS_LIST(X)                                                                          \
   X(BW_OK, 0, "success")                                                                           \
   X(BW_EINPUT, 2, "a value is missing, out of range or contradicts another")                       \
@@ -19,7 +20,8 @@ BW_BEGIN_DECLS
   X(BW_EIO, 4, "a file could not be read or written")                                              \
   X(BW_ECFL, 5, "the time step exceeds the stability limit")                                       \
   X(BW_EDIVERGED, 6, "the solution is not finite or an iteration did not converge")                \
-  X(BW_EUSAGE, 7, "the command line was not understood")
+  X(BW_EUSAGE, 7, "the command line was not understood")                                           \
+  X(BW_EUNFINISHED, 75, "unfinished")
 
 /* Behind a declaration: a caller that drops the status is warned by the compiler. */
 #define BW_MUST_CHECK __attribute__((warn_unused_result))

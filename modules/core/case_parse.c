@@ -5,6 +5,8 @@
 #include "case_internal.h"
 #include "core_internal.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bw_status take_set(bw_case *run, const char *value)
@@ -23,6 +25,37 @@ static bw_status take_out(bw_case *run, const char *value)
 static bw_status take_restart(bw_case *run, const char *value)
 {
   run->args.restart = value;
+  return BW_OK;
+}
+
+static bw_status take_overwrite(bw_case *run, const char *value)
+{
+  (void)value;
+  run->args.overwrite = true;
+  return BW_OK;
+}
+
+/* "90", "15m", "2h30m", "1d": seconds where no unit is told. */
+static bw_status take_stop_after(bw_case *run, const char *value)
+{
+  static const char units[] = "smhd";
+  static const double seconds[] = {1.0, 60.0, 3600.0, 86400.0};
+  double sum = 0.0;
+  bool good = value[0] != '\0';
+  for (const char *at = value; good && *at != '\0';) {
+    char *end = NULL;
+    /* Decimal, without sign: strtod alone would take "inf" and "-1". */
+    const double x = strtod(at, &end);
+    const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
+    good = strspn(at, ".0123456789") > 0 && (size_t)(end - at) <= strspn(at, ".0123456789") &&
+           end > at && (unit != NULL || (*end == '\0' && at == value));
+    if (!good) break;
+    sum += x * seconds[unit != NULL ? unit - units : 0];
+    at = end + (unit != NULL);
+  }
+  BW_REQUIRE(good && isfinite(sum), BW_EUSAGE,
+             "--stop-after %s: write a time such as 90s, 15m, 2h or 1d12h", value);
+  run->args.stop_after = sum;
   return BW_OK;
 }
 
@@ -62,6 +95,8 @@ static const struct option {
     {"--set", "KEY.PATH=VALUE", take_set, "replace or add a value of the case file; repeatable"},
     {"--out", "DIR", take_out, "folder of the results"},
     {"--restart", "FILE", take_restart, "go on from a checkpoint"},
+    {"--overwrite", NULL, take_overwrite, "replace the results of the same case in that folder"},
+    {"--stop-after", "TIME", take_stop_after, "end in good order then, e.g. 2h; exit code 75"},
     {"--check", NULL, take_check, "read and check everything, print the sizes, run nothing"},
     {"--quiet", NULL, take_quiet, "only warnings and errors"},
     {"--help", NULL, take_help, "this text, with all keys of the case file"},
@@ -141,6 +176,8 @@ bw_status bw_core__case_parse(bw_case *run, int argc, char **argv)
   run->args.overrides = run->overrides;
   /* Help and version need no case file. */
   if (run->args.stop) return BW_OK;
+  BW_REQUIRE(!run->args.overwrite || run->args.restart == NULL, BW_EUSAGE,
+             "--overwrite begins anew and --restart goes on: give one of them");
   BW_REQUIRE(run->args.yaml != NULL, BW_EUSAGE,
              "no case file is given: %s CASE.yaml [options]; --help lists them", run->about->name);
   if (run->out == NULL) BW_TRY(default_folder(run));

@@ -25,11 +25,20 @@ bool bw_core__config_in_range(const bw_config_range *r, double x)
   return true;
 }
 
+bool bw_core__config_meant(const char *text, double x)
+{
+  /* strtod makes 0 of what is too small for it: the digits tell. */
+  const size_t digits = strcspn(text, "eE");
+  if (x == 0.0) return strcspn(text, "123456789") >= digits;
+  return fabs(x) >= BW_CONFIG_SMALLEST && fabs(x) <= BW_CONFIG_LARGEST;
+}
+
 /* Accepted as written, so that libcyaml reads the user's own digits. */
 static bool accept_double(FILE *out, const bw_config_field *f, const char *text)
 {
   double x = 0.0;
   if (!bw_core__config_number(text, &x) || !bw_core__config_in_range(&f->range, x)) return false;
+  if (!bw_core__config_meant(text, x)) return false;
   fputs(text, out);
   return true;
 }

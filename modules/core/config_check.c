@@ -2,6 +2,8 @@
 #include "config_internal.h"
 
 #include "bw_memory.h"
+#include <limits.h>
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -51,6 +53,13 @@ static void wrong(walk *w, const bw_config_field *f, int id, const char *path)
   problem(w, id, "%s = %s: must be %s%s", path, value, expected, meaning);
 }
 
+/* Is it a number of this kind, but of a size that cannot be meant? */
+static bool wrong_size(const bw_config_field *f, const char *text, double x)
+{
+  if (f->type == BW_CONFIG_TYPE_DOUBLE) return !bw_core__config_meant(text, x);
+  return x == floor(x) && fabs(x) > (double)INT_MAX;
+}
+
 /* Why a value that looks right was refused. */
 static void refuse(walk *w, const bw_config_field *f, int id, const char *path, const char *text)
 {
@@ -64,12 +73,20 @@ static void refuse(walk *w, const bw_config_field *f, int id, const char *path, 
     for (const bw_config_word *word = f->words; word->word != NULL; word++)
       if (bw_core__near_miss(text, word->word, &best)) nearest = word->word;
   double x = 0.0;
-  /* Four things may be wrong: a number out of its range, a text too long, a word misspelt, or
-   * another kind of value altogether. */
+  /* Five things may be wrong: a number out of its range, one of a size that cannot be meant, a text
+   * too long, a word misspelt, or another kind of value altogether. */
   const bool number = f->type == BW_CONFIG_TYPE_DOUBLE || f->type == BW_CONFIG_TYPE_INT;
   if (number && bw_core__config_number(text, &x) && !bw_core__config_in_range(&f->range, x)) {
     const char *relation = strpbrk(expected, "<>");
     problem(w, id, "%s = %s: must be %s%s", path, text, relation, meaning);
+  } else if (number && bw_core__config_number(text, &x) && wrong_size(f, text, x)) {
+    const bool whole = f->type == BW_CONFIG_TYPE_INT;
+    problem(w, id, "%s = %s: too %s; %s %.10g%s", path, text, fabs(x) < 1.0 ? "small" : "large",
+            fabs(x) < 1.0 ? "0, or in size at least" : "in size at most",
+            whole           ? (double)INT_MAX
+            : fabs(x) < 1.0 ? BW_CONFIG_SMALLEST
+                            : BW_CONFIG_LARGEST,
+            meaning);
   } else if (f->type == BW_CONFIG_TYPE_TEXT) {
     problem(w, id, "%s: must be a text of at most %d bytes, %d are given%s", path, (int)f->size - 1,
             (int)strlen(text), meaning);
@@ -92,13 +109,22 @@ static void check_scalar(walk *w, const bw_config_field *f, int id, const char *
     return;
   }
   const char *value = (const char *)node->data.scalar.value;
+  char *file = NULL;
+  if ((f->range.bounds & BW_BOUND_FILE) && value[0] != '\0') {
+    if (bw_core__config_file(w->source, id, value, &file) != BW_OK) {
+      problem(w, id, "%s: %s", path, bw_last_message());
+      return;
+    }
+    value = file;
+  }
   /* What is accepted is written for libcyaml; every other way out is one line for the user. */
-  if (strlen(value) != node->data.scalar.length)
-    wrong(w, f, id, path); /* a 0 byte inside */
+  if (file == NULL && strlen(value) != node->data.scalar.length)
+    wrong(w, f, id, path); /* a 0 byte inside: "\0" of YAML */
   else if (!bw_core__config_accept(f, value, w->accepted))
     refuse(w, f, id, path, value);
   else if (text && value[0] == '\0' && f->need == BW_REQUIRED)
     wrong(w, f, id, path);
+  bw_release(&file);
 }
 
 /* A scalar, or a list of exactly as many as the array has. */

@@ -22,10 +22,13 @@ typedef struct {
 } bw_core__config_source;
 
 /* The document of `text` with the overrides in it; free also after a failure. */
-bw_status bw_core__config_read(const char *name, const char *text, int n_overrides,
+bw_status bw_core__config_read(const char *name, const char *text, size_t bytes, int n_overrides,
                                const char *const overrides[],
                                bw_core__config_source *s) BW_MUST_CHECK;
 void bw_core__config_free(bw_core__config_source *s);
+
+/* BW_EINPUT with the line of the first byte that is not UTF-8, or 0. */
+bw_status bw_core__config_encoding(const char *name, const char *text, size_t bytes) BW_MUST_CHECK;
 
 const yaml_node_t *bw_core__config_node(const bw_core__config_source *s, int id);
 /* The value of `key` in a block, 0 when there is none (or no block); *key_id may be NULL. */
@@ -37,6 +40,12 @@ int bw_core__config_item(const bw_core__config_source *s, int id, int item);
 bool bw_core__config_is_null(const bw_core__config_source *s, int id);
 /* The word `none`, which switches an optional block off. */
 bool bw_core__config_is_none(const bw_core__config_source *s, int id);
+/* Which override made the node; -1: it is the file's. */
+int bw_core__config_override(const bw_core__config_source *s, int id);
+/* *path = the file that a value names, absolute: beside the case file if it stands there, else (and
+ * where the command line names it) from the present folder. The caller's (bw_release). */
+bw_status bw_core__config_file(const bw_core__config_source *s, int id, const char *value,
+                               char **path) BW_MUST_CHECK;
 /* "case.yaml:12" or "--set key=value": where the node comes from; id 0: the file. */
 void bw_core__config_where(const bw_core__config_source *s, int id, size_t size, char *text);
 
@@ -67,6 +76,8 @@ void bw_core__config_meaning(const bw_config_field *f, size_t size, char *text);
 
 /* Decimal and finite, with nothing behind it? */
 bool bw_core__config_number(const char *text, double *x);
+/* Is x (0 as written) a size that products can be made of? BW_CONFIG_SMALLEST, BW_CONFIG_LARGEST */
+bool bw_core__config_meant(const char *text, double x);
 bool bw_core__config_in_range(const bw_config_range *r, double x);
 /* Is `text` a value of one element of the field? Then it is printed, normalised, to `out`. */
 bool bw_core__config_accept(const bw_config_field *f, const char *text, FILE *out);

@@ -79,14 +79,20 @@ bool bw_core__config_is_none(const bw_core__config_source *s, int id)
   return is_plain_word(s, id, words);
 }
 
-void bw_core__config_where(const bw_core__config_source *s, int id, size_t size, char *text)
+int bw_core__config_override(const bw_core__config_source *s, int id)
 {
   int override = s->n_overrides - 1;
-  const yaml_node_t *node = bw_core__config_node(s, id);
   /* Nodes are numbered in the order in which they were made: those of the file first, then those of
    * each override. */
   while (override >= 0 && (s->first_node[override] == 0 || id < s->first_node[override]))
     override--;
+  return override;
+}
+
+void bw_core__config_where(const bw_core__config_source *s, int id, size_t size, char *text)
+{
+  const int override = bw_core__config_override(s, id);
+  const yaml_node_t *node = bw_core__config_node(s, id);
   if (node == NULL)
     snprintf(text, size, "%s", s->name);
   else if (override >= 0)
@@ -95,31 +101,36 @@ void bw_core__config_where(const bw_core__config_source *s, int id, size_t size,
     snprintf(text, size, "%s:%zu", s->name, node->start_mark.line + 1);
 }
 
-static bw_status not_yaml(const char *name, const yaml_parser_t *parser)
+static bw_status not_yaml(const char *name, const char *text, const yaml_parser_t *parser)
 {
   const char *context = parser->context != NULL ? parser->context : "";
-  return BW_FAIL(BW_EINPUT, "%s:%zu: not YAML: %s%s%s", name, parser->problem_mark.line + 1,
+  size_t line = parser->problem_mark.line + 1;
+  /* What the reader of bytes refuses has a place among them, no line. */
+  for (size_t q = 0; parser->error == YAML_READER_ERROR && q < parser->problem_offset; q++)
+    line += text[q] == '\n';
+  return BW_FAIL(BW_EINPUT, "%s:%zu: not YAML: %s%s%s", name, line,
                  parser->problem != NULL ? parser->problem : "cannot be parsed",
                  context[0] != '\0' ? " " : "", context);
 }
 
 /* One document; an empty text gives an empty scalar. */
-static bw_status parse(const char *name, const char *text, yaml_document_t *document)
+static bw_status parse(const char *name, const char *text, size_t bytes, yaml_document_t *document)
 {
   yaml_parser_t parser;
   yaml_document_t second;
   bw_status st = BW_OK;
+  BW_TRY(bw_core__config_encoding(name, text, bytes));
   BW_REQUIRE(yaml_parser_initialize(&parser), BW_EMEM, "no memory to read %s", name);
-  yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
+  yaml_parser_set_input_string(&parser, (const unsigned char *)text, bytes);
   /* A failed load leaves no document to be deleted. */
   if (!yaml_parser_load(&parser, document)) {
-    st = not_yaml(name, &parser);
+    st = not_yaml(name, text, &parser);
     yaml_parser_delete(&parser);
     return st;
   }
   /* A second document would be overlooked in silence: it is looked for and refused. */
   if (!yaml_parser_load(&parser, &second)) {
-    st = not_yaml(name, &parser);
+    st = not_yaml(name, text, &parser);
   } else {
     const yaml_node_t *root = yaml_document_get_root_node(&second);
     if (root != NULL)
@@ -177,7 +188,7 @@ static bw_status add_value(bw_core__config_source *s, const char *override, cons
     *id = add_scalar(&s->document, "", 0, YAML_DOUBLE_QUOTED_SCALAR_STYLE);
   } else {
     /* Any YAML is a value, as it would be in the file. */
-    BW_TRY(parse(name, text, &value));
+    BW_TRY(parse(name, text, strlen(text), &value));
     *id = yaml_document_get_root_node(&value) == NULL
               ? add_scalar(&s->document, "", 0, YAML_PLAIN_SCALAR_STYLE)
               : copy_node(&s->document, &value, 1, 0);
@@ -268,12 +279,12 @@ static bw_status apply(bw_core__config_source *s, const char *override)
   return BW_OK;
 }
 
-bw_status bw_core__config_read(const char *name, const char *text, int n_overrides,
+bw_status bw_core__config_read(const char *name, const char *text, size_t bytes, int n_overrides,
                                const char *const overrides[], bw_core__config_source *s)
 {
   *s = (bw_core__config_source){.name = name};
   BW_TRY(BW_ALLOCATE(&s->first_node, (size_t)n_overrides));
-  BW_TRY(parse(name, text, &s->document));
+  BW_TRY(parse(name, text, bytes, &s->document));
   /* An empty file is an empty block: all values come from the defaults and the overrides. */
   if (yaml_document_get_root_node(&s->document) == NULL) {
     yaml_document_delete(&s->document);

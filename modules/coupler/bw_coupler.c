@@ -175,7 +175,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   /* Whole particles share a marker; a spacing below one of theirs gives each its own. */
   const double k = c->config.marker_spacing * c->h / bw_solid_settings(solid)->ds;
-  c->block = (int)fmax(1.0, floor(k + 1e-9));
+  c->block = (int)fmin(1e9, fmax(1.0, floor(k + 1e-9)));
   BW_THEN(st, bw_coupler__bodies_create(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
   /* Markers and probes stand where the solid is. */

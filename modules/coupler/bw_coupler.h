@@ -118,8 +118,16 @@ void bw_coupler_watch(bw_coupler *c, bool watched);
  * Collective. */
 bw_status bw_coupler_step(bw_coupler *c, double dt) BW_MUST_CHECK;
 
-/* How many solid sub-steps a step of dt [T] takes, at least 1. Local. */
+/* How many solid sub-steps a step of dt [T] takes, at least 1; INT_MAX for more. Local. */
 int bw_coupler_substeps(const bw_coupler *c, double dt);
+
+/* Solid sub-steps that one step may take. A million of a microsecond per particle are hours a step
+ * for any solid worth the name, and the error of rounding in their sum begins to be seen. */
+#define BW_COUPLER_MOST_SUBSTEPS 1000000
+
+/* BW_EINPUT, with the number and the limit, when a step of dt [T] would take more sub-steps than
+ * that; bw_coupler_step refuses them, too. Local, the same on all ranks. */
+bw_status bw_coupler_check_substeps(const bw_coupler *c, double dt) BW_MUST_CHECK;
 
 /* What was seen in the last step. */
 typedef struct {

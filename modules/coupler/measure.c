@@ -16,6 +16,8 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
+  /* Before the first step the markers are those it will begin with. */
+  if (!c->stepped) BW_TRY(bw_coupler__place_markers(c));
   const bw_ibm_mdf_report ibm = bw_ibm_mdf_measure(c->ibm, bw_ns_channel_velocity(c->fluid));
   bw_coupler_report r = {.slip_rms = ibm.slip_after,
                          .markers = ibm.markers,

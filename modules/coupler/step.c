@@ -2,13 +2,33 @@
 #include "bw_coupler.h"
 #include "coupler_internal.h"
 
+#include <limits.h>
 #include <math.h>
 
-int bw_coupler_substeps(const bw_coupler *c, double dt)
+static double substeps(const bw_coupler *c, double dt)
 {
   /* The squares of their frequencies add: a particle held by its bonds and pressed on all sides. */
   const double rate = hypot(1.0 / bw_solid_dt_max(c->solid), 1.0 / bw_solid_dt_contact(c->solid));
-  return (int)fmax(1.0, ceil(dt * rate / c->config.solid_safety));
+  const double n = ceil(dt * rate / c->config.solid_safety);
+  return n < 1.0 ? 1.0 : n; /* fmax would hide NaN */
+}
+
+int bw_coupler_substeps(const bw_coupler *c, double dt)
+{
+  const double n = substeps(c, dt);
+  return n < (double)INT_MAX ? (int)n : INT_MAX;
+}
+
+bw_status bw_coupler_check_substeps(const bw_coupler *c, double dt)
+{
+  const double n = substeps(c, dt);
+  /* Written so that NaN fails. */
+  BW_REQUIRE(
+      n <= BW_COUPLER_MOST_SUBSTEPS, BW_EINPUT,
+      "a step of %g takes %.3g solid sub-steps of %.3g (solid_safety %g), more than %d: take a "
+      "shorter step, a softer or heavier solid, or larger particles",
+      dt, n, dt / n, c->config.solid_safety, BW_COUPLER_MOST_SUBSTEPS);
+  return BW_OK;
 }
 
 bool bw_coupler__probes_look(const bw_coupler *c)
@@ -95,13 +115,15 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
 /* Solid sub-cycled until it has caught up with the fluid, POROUS 3.47-3.49. */
 bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
 {
-  const int substeps = bw_coupler_substeps(c, dt);
+  const int n = bw_coupler_substeps(c, dt);
+  /* Contact may have become so stiff on the way. */
+  BW_TRY(bw_coupler_check_substeps(c, dt));
   bw_status st = BW_OK;
   bw_timer_start(c->timer, BW_PART_SOLID);
   /* The surface's acceleration over the step will be told from it. */
   bw_solid_get_velocity(c->solid, c->V_before);
-  for (int q = 0; q < substeps; q++)
-    BW_THEN(st, bw_solid_step(c->solid, dt / substeps));
+  for (int q = 0; q < n; q++)
+    BW_THEN(st, bw_solid_step(c->solid, dt / n));
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
   bw_timer_stop(c->timer, BW_PART_SOLID);

@@ -23,6 +23,13 @@ static bw_status check(const bw_grid_config *c)
     BW_REQUIRE(isfinite(c->length[d]) && c->length[d] > 0, BW_EINPUT,
                "grid: length[%d] = %g in %c is missing or not positive", d, c->length[d], axis[d]);
   }
+  /* Numbers of cells are counted in 64 bits, those of one direction, with halos, in 32. */
+  static const double most_along = 1073741824.0, most = 281474976710656.0; /* 2^30, 2^48 */
+  const double all = (double)c->n[0] * c->n[1] * c->n[2];
+  BW_REQUIRE(c->n[0] <= most_along && c->n[1] <= most_along && c->n[2] <= most_along && all <= most,
+             BW_EINPUT,
+             "grid: %d x %d x %d cells are %.3g; at most %.0f in a direction, %.4g in all", c->n[0],
+             c->n[1], c->n[2], all, most_along, most);
   BW_REQUIRE(c->halo == 1 || c->halo == 2, BW_EINPUT, "grid: halo = %d; 1 or 2 layers are possible",
              c->halo);
   /* x is never divided: where it is periodic its halo is copied from cells of the same row, which

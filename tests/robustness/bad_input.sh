@@ -34,6 +34,15 @@ with pitch "pitch" --set medium.pitch=0.03
 with closed_pores "radius_over_pitch = 0.168.*larger pores" --set medium.radius_over_pitch=0.168
 with no_solid "radius_over_pitch = 0.9.*no particle" --set medium.radius_over_pitch=0.9
 with too_large_step "at t = 0 .*limit" --set flow.time_step=0.5
+# Numbers that cannot be meant, each with what it would lead to and the limit; --check says so, too.
+with no_stream "fluid.bulk_velocity = 1e-300: too small" --set fluid.bulk_velocity=1e-300
+with no_stiffness "solid.young_modulus = 1e-300: too small" --set solid.young_modulus=1e-300
+with too_soft "0.0001 of the stream's dynamic pressure" --set solid.young_modulus=1e-3
+with too_stiff "which rounding hides" --check --set solid.young_modulus=1e17 \
+  --set solid.density=1e18 --set flow.time_step=1e-3 --set deformation.time_step=1e-3
+with stiffer "1.13e.12 solid sub-steps of .*more than 1000000" --check --set solid.young_modulus=1e30
+with unsafe "solid sub-steps of .*solid_safety 1e-09.*more than 1000000" --check \
+  --set coupling.solid_safety=1e-9
 with no_restart "absent.h5" --restart "$out/absent.h5"
 refused too_many_ranks "ranks" mpirun -n 8 "$program" "$case" --out "$out/ranks" --quiet \
   --set "domain.cells=[8, 4, 4]" --set medium.length=0.025 --set medium.pitch=0.1

@@ -70,7 +70,7 @@ with two_steps "time.step is 0.001 and time.limit_share is 0.5" "$channel" --set
 with odd_samples "time.end is 10, no whole number of output.sample_every, 0.3" "$channel" \
   --set output.sample_every=0.3
 
-with two_grids "domain.stretch is 1 and domain.faces is faces.txt" "$channel" \
+with two_grids "domain.stretch is 1 and domain.faces is .*faces.txt" "$channel" \
   --set domain.stretch=1 --set domain.faces=faces.txt
 echo "0 0.5 0.9 1.1" > "$out/faces.txt"
 with faces_beyond "faces.txt" "$channel" --set "domain.cells=[64, 3, 1]" \
@@ -80,11 +80,26 @@ with faces_beyond "faces.txt" "$channel" --set "domain.cells=[64, 3, 1]" \
 with no_outflow "more volume enters than leaves; add an outflow" "$channel" \
   --set sides.x.upper.kind=wall
 with no_inflow "outflow but no inflow" "$channel" --set sides.x.lower="{kind: wall}"
-with wrong_way "net inflow is -1.*outflow needs a positive one" "$channel" \
+with wrong_way "sides.x.lower: nothing comes in.*bulk_velocity is -1.*positive" "$channel" \
   --set sides.x.lower.bulk_velocity=-1
-with unequal "1 more volume enters than leaves" "$channel" \
-  --set sides.x.upper="{kind: inflow, profile: poiseuille, bulk_velocity: 2}" \
+with wrong_way_upper "sides.x.upper: nothing comes in.*bulk_velocity is 2.*negative" "$channel" \
+  --set sides.x.upper="{kind: inflow, profile: poiseuille, bulk_velocity: 2}"
+with no_stream "sides.x.lower: nothing comes in.*velocity is 0" "$cavity" \
+  --set sides.x.lower.kind=inflow
+with unequal "5 more volume enters than leaves" "$channel" \
+  --set sides.x.upper="{kind: inflow, profile: poiseuille, bulk_velocity: -2}" \
   --set sides.x.lower.bulk_velocity=3
+
+# Numbers that cannot be meant.
+with tiny_step "time.step = 1e-300: too small" "$cavity" --set time.step=1e-300
+with endless "1e\\+30 times time.step.*more than the 1e\\+12 that anybody can wait for" "$cavity" \
+  --set time.step=1e-30 --set time.end=1 --set output.sample_every=1
+with tiny_interval "more than the 1e\\+12" "$cavity" --set output.sample_every=1e-40
+with too_many_cells "domain.cells.0 = 3000000000: too large; in size at most 2147483647" "$cavity" \
+  --set "domain.cells=[3000000000, 16, 1]"
+with far_too_fast "velocities are too large for the cells" "$cavity" \
+  --set "domain.cells=[16, 16, 1]" --set time.end=2 --set "sides.y.upper.velocity=[1e22, 0, 0]"
+with long_path "has [0-9]+ bytes, 186 at most" "$cavity" --out "$out/$(printf 'a%.0s' $(seq 230))"
 
 # Steps that are too long, from the start and on the way.
 with too_long "dt = 0.1 at t = 0 is over the limit.*use a step below" "$channel" --set time.step=0.1

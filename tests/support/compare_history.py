@@ -15,7 +15,7 @@ DIVISION = ("markers_most_over_mean[-]",)  # depends on the number of ranks by i
 def read(path):
     with open(path) as f:
         rows = list(csv.reader(f))
-    return rows[0], [[float(x) for x in row] for row in rows[1:]]
+    return rows[0], [[float(x) if x else None for x in row] for row in rows[1:]]
 
 
 def scales(names, rows):
@@ -26,7 +26,7 @@ def scales(names, rows):
         return name.replace("_x[", "[").replace("_y[", "[").replace("_z[", "[")
     largest = {}
     for q, name in enumerate(names):
-        top = max(abs(row[q]) for row in rows)
+        top = max((abs(row[q]) for row in rows if row[q] is not None), default=0.0)
         largest[group(name)] = max(largest.get(group(name), 0.0), top)
     return [largest[group(name)] for name in names]
 
@@ -42,6 +42,10 @@ def main(path_a, path_b, tolerance, after=100):
     for q in range(first):
         for c, name in enumerate(names):
             if name in DIVISION:
+                continue
+            if (a[q][c] is None) != (b[q][c] is None):
+                sys.exit(f"{name} is measured in one of the two at row {q}")
+            if a[q][c] is None:
                 continue
             error = abs(a[q][c] - b[q][c]) / scale[c] if scale[c] > 0 else abs(b[q][c])
             worst = max(worst, (error, name, q))

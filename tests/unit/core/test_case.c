@@ -1,72 +1,7 @@
-/* The command line, the rules of the output folder, run.yaml.
+/* The command line, run.yaml, the end of a run before its time.
  * TEST ranks=1,2 */
-#include "bw_case.h"
-#include "bw_check.h"
-#include "bw_file.h"
-#include "bw_folder.h"
 #include "bw_memory.h"
-
-#include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-typedef struct {
-  double nu;
-  int steps;
-} config;
-static const bw_config_field fields[] = {
-    BW_CONFIG_VALUE(config, nu, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
-    BW_CONFIG_VALUE(config, steps, BW_OPTIONAL, BW_AT_LEAST(0), "", "time steps"), BW_CONFIG_END};
-static const bw_case_about about = {"tube", "flow in a tube", fields, sizeof(config)};
-static const bw_case_about other_case = {"plate", "another", fields, sizeof(config)};
-
-/* A folder that is new for every test program run, the same on all ranks. */
-static char base[96];
-static const char *in_base(const char *name, char path[200])
-{
-  if (base[0] == '\0') {
-    int64_t number = bw_comm_rank(bw_check_world()) == 0 ? (int64_t)getpid() : 0;
-    bw_comm_max_int(bw_check_world(), 1, &number);
-    snprintf(base, sizeof base, "test_core_case/%lld", (long long)number);
-    bw_check_ok(bw_folder_make(bw_check_world(), base));
-  }
-  snprintf(path, 200, "%s/%s", base, name);
-  return path;
-}
-
-/* begin with the words given (the program's name comes first) */
-static bw_status begin(const bw_case_about *of, const char *const words[], config *c, bw_case **run)
-{
-  char *argv[16] = {(char *)"program"};
-  char copy[16][256];
-  int argc = 1;
-  for (; words[argc - 1] != NULL; argc++) {
-    snprintf(copy[argc], sizeof copy[argc], "%s", words[argc - 1]);
-    argv[argc] = copy[argc];
-  }
-  *c = (config){.nu = NAN, .steps = 7};
-  return bw_case_begin(bw_check_world(), argc, argv, of, c, run);
-}
-#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
-
-static void expect_refusal(const bw_case_about *of, const char *const words[], bw_status code,
-                           const char *piece)
-{
-  config c;
-  bw_case *run = NULL;
-  bw_check_status(begin(of, words, &c, &run), code);
-  ck_assert_ptr_null(run);
-  ck_assert_msg(strstr(bw_last_message(), piece) != NULL, "'%s' not in: %s", piece,
-                bw_last_message());
-}
-
-static const char *case_file(char path[200])
-{
-  in_base("tube.yaml", path);
-  bw_check_ok(bw_file_write_text(bw_check_world(), path, "nu: 0.5\n"));
-  return path;
-}
+#include "case_test.h"
 
 START_TEST(command_line_errors_have_hints)
 {
@@ -172,41 +107,87 @@ START_TEST(the_record)
 }
 END_TEST
 
-START_TEST(results_are_not_overwritten)
+/* The wall-clock time of --stop-after, without waiting for it; and what a run returns then. */
+START_TEST(stopping_before_the_end)
 {
+  static const struct {
+    const char *text;
+    double seconds;
+  } times[] = {{"0", 0.0}, {"90", 90.0}, {"1.5m", 90.0}, {"2h30m", 9000.0}, {"1d1s", 86401.0}};
   const bw_comm *comm = bw_check_world();
-  char yaml[200], folder[200], *checkpoint = NULL, *kept = NULL;
+  char yaml[200], folder[200], *text = NULL, *record = NULL;
   config c;
   bw_case *run = NULL;
   case_file(yaml);
-  in_base("kept", folder);
-  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
+  in_base("stopped", folder);
+  for (size_t q = 0; q < sizeof times / sizeof *times; q++) {
+    bw_check_ok(
+        begin(&about, WORDS(yaml, "--check", "--quiet", "--stop-after", times[q].text), &c, &run));
+    ck_assert_double_eq(bw_case_args_of(run)->stop_after, times[q].seconds);
+    bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  }
+  bw_check_ok(begin(&about, WORDS(yaml, "--check", "--quiet"), &c, &run));
+  ck_assert(!bw_case_stopping(run));
   bw_check_ok(bw_case_end(comm, &run, BW_OK));
-  /* a run without results may be repeated */
-  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
-  bw_check_ok(bw_case_path(run, "checkpoint-1.h5", &checkpoint));
-  bw_check_ok(bw_case_path(run, "run-1.yaml", &kept));
-  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
-  bw_check_ok(bw_case_end(comm, &run, BW_OK));
-  ck_assert(bw_path_exists(comm, kept));
-
-  expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EINPUT, "give --out NEW, or --restart");
-  expect_refusal(&other_case, WORDS(yaml, "--out", folder, "--restart", checkpoint), BW_EINPUT,
-                 "holds results of another case than plate");
-  bw_check_ok(
-      begin(&about, WORDS(yaml, "--out", folder, "--restart", checkpoint, "--quiet"), &c, &run));
-  ck_assert_str_eq(bw_case_args_of(run)->restart, checkpoint);
-  bw_check_ok(bw_case_end(comm, &run, BW_OK));
-  bw_release(&checkpoint);
-  bw_release(&kept);
-
-  in_base("in_the_way", folder);
-  bw_check_ok(bw_file_write_text(comm, folder, "a file"));
-  expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EIO, "in the way");
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet", "--stop-after=0"), &c, &run));
+  ck_assert(bw_case_stopping(run));
+  bw_check_ok(bw_case_path(run, "run.yaml", &record));
+  const bw_status st = bw_case_unfinished(run, "checkpoint.h5");
+  ck_assert_int_eq(st, BW_EUNFINISHED);
+  ck_assert_int_eq(st, 75);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "stopped/checkpoint.h5"));
+  bw_check_status(bw_case_end(comm, &run, st), BW_EUNFINISHED);
+  bw_check_ok(bw_file_read_text(comm, record, NULL, &text));
+  ck_assert_ptr_nonnull(strstr(text, "  exit_code: 75\n  status: \"unfinished\"\n"));
+  bw_release(&text);
+  bw_release(&record);
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(command_line_errors_have_hints), BW_TEST(check_help_and_version_touch_nothing),
-    BW_TEST(default_folders), BW_TEST(the_record), BW_TEST(results_are_not_overwritten)};
+static void close_rows(bw_history **h, int64_t expected)
+{
+  if (bw_comm_rank(bw_check_world()) == 0) ck_assert_int_eq(bw_history_rows(*h), expected);
+  bw_check_ok(bw_history_close(bw_check_world(), h));
+}
+
+/* Rows are counted where the checkpoint lies in the folder of the results, and not elsewhere. */
+START_TEST(histories_go_on_in_their_folder)
+{
+  static const char *const columns[] = {"time[s]", "x[-]"};
+  const bw_comm *comm = bw_check_world();
+  char yaml[200], folder[200], other[200], checkpoint[220];
+  config c;
+  bw_case *run = NULL;
+  bw_history *h = NULL;
+  case_file(yaml);
+  in_base("history", folder);
+  in_base("history-2", other);
+  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.h5", folder);
+  bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
+  bw_check_ok(bw_case_history(run, 2, columns, 5.0, 5, &h)); /* new: 5.0 and 5 are not looked at */
+  for (int q = 0; q < 3; q++)
+    bw_history_append(h, (const double[]){q, 0.0});
+  close_rows(&h, 3);
+  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  const char *const here[] = {yaml, "--out", folder, "--quiet", "--restart", checkpoint, NULL};
+  bw_check_ok(begin(&about, here, &c, &run));
+  bw_check_status(bw_case_history(run, 2, columns, 2.0, 4, &h), BW_EINPUT);
+  bw_check_ok(bw_case_history(run, 2, columns, 1.0, 2, &h));
+  close_rows(&h, 2);
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+  const char *const there[] = {yaml, "--out", other, "--quiet", "--restart", checkpoint, NULL};
+  bw_check_ok(begin(&about, there, &c, &run));
+  bw_check_ok(bw_case_history(run, 2, columns, 1.0, 2, &h));
+  close_rows(&h, 0);
+  bw_check_ok(bw_case_end(comm, &run, BW_OK));
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(command_line_errors_have_hints),
+                                      BW_TEST(check_help_and_version_touch_nothing),
+                                      BW_TEST(default_folders),
+                                      BW_TEST(the_record),
+                                      BW_TEST(stopping_before_the_end),
+                                      BW_TEST(histories_go_on_in_their_folder)};
 BW_CHECK_MAIN("core.case", tests)

@@ -262,7 +262,7 @@ START_TEST(wrong_types_and_ranges)
   EXPECT("cfl: 0\n", "cfl = 0: must be > 0 and <= 1");
   EXPECT("courant_limit: 2\n", "courant_limit = 2: must be < 2");
   EXPECT("probe: {length: 1, count: 10}\n", "probe.count = 10: must be <= 9");
-  EXPECT("steps: 3000000000\n", "steps = 3000000000: must be a whole number");
+  EXPECT("steps: 3000000000\n", "steps = 3000000000: too large");
   EXPECT("verbose: 3\n", "verbose = 3: must be true or false (say more)");
   EXPECT("fluid: {inflow: unifrom}\n",
          "fluid.inflow = unifrom: must be one of poiseuille, uniform; did you mean uniform?");
@@ -333,9 +333,9 @@ START_TEST(the_dump_loads_back)
   static const char *const sets[] = {"fluid.nu=0.1",
                                      "fluid.rho=1000.0000000000001",
                                      "name=\"a: \\\"b\\\" #\\n\\\\\"",
-                                     "probe.length=1e-310",
+                                     "probe.length=1e-49",
                                      "damping=none",
-                                     "shapes.0.x=[1e300, -0.3333333333333333, 2e-5]"};
+                                     "shapes.0.x=[1e49, -0.3333333333333333, 2e-5]"};
   config c = defaults(), again = defaults(), third = defaults();
   char *text = NULL, *text_again = NULL;
   bw_check_ok(load(good, sizeof sets / sizeof *sets, sets, &c));

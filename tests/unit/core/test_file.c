@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 /* A folder of its own per number of ranks: the tests of several may run at once. */
@@ -194,20 +195,69 @@ START_TEST(folders_are_made_with_parents)
 }
 END_TEST
 
+/* Refused in our words before Open MPI's file layer would abort; the longest that is allowed works. */
+START_TEST(paths_that_are_too_long)
+{
+  const bw_comm *comm = bw_check_world();
+  char path[400];
+  bw_file *file = NULL;
+  in_own_folder("", path);
+  while (strlen(path) < BW_PATH_LONGEST)
+    strcat(path, "a");
+  bw_check_ok(bw_file_create(comm, path, &file));
+  bw_check_ok(bw_file_close(&file));
+  ck_assert(bw_path_exists(comm, path));
+  strcat(path, "a");
+  bw_check_status(bw_file_create(comm, path, &file), BW_EIO);
+  ck_assert_ptr_null(file);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "has 236 bytes, 235 at most"));
+}
+END_TEST
+
 /* A signal at one rank stops all, in the same call. */
 START_TEST(a_signal_to_one_rank_reaches_all)
 {
   const bw_comm *comm = bw_check_world();
-  static const int signals[] = {SIGTERM, SIGINT, SIGUSR1};
-  for (int q = 0; q < 3; q++) {
+  static const int signals[] = {SIGTERM, SIGINT, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2};
+  for (size_t q = 0; q < sizeof signals / sizeof *signals; q++) {
     bw_stop_install();
     ck_assert(!bw_stop_requested(comm));
     if (bw_comm_rank(comm) == bw_comm_size(comm) - 1) raise(signals[q]);
     ck_assert(bw_stop_requested(comm));
     ck_assert(bw_stop_requested(comm));
+    const bool here = bw_comm_rank(comm) == bw_comm_size(comm) - 1;
+    ck_assert_int_eq(bw_stop_signal(), here ? signals[q] : 0);
     bw_stop_clear();
     ck_assert(!bw_stop_requested(comm));
   }
+}
+END_TEST
+
+/* What a child process dies of that gets the signals, one after the other; 0: it lives. */
+static int died_of(int first, int second, bool nohup)
+{
+  int how = 0;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (nohup) signal(SIGHUP, SIG_IGN);
+    bw_stop_install();
+    if (first != 0) raise(first);
+    if (second != 0) raise(second);
+    _exit(0);
+  }
+  ck_assert_int_gt(child, 0);
+  ck_assert_int_eq(waitpid(child, &how, 0), child);
+  return WIFSIGNALED(how) ? WTERMSIG(how) : 0;
+}
+
+/* Who asks twice does not wait, whatever the two signals are. */
+START_TEST(a_second_signal_ends_at_once)
+{
+  ck_assert_int_eq(died_of(SIGTERM, 0, false), 0);
+  ck_assert_int_eq(died_of(SIGTERM, SIGTERM, false), SIGTERM);
+  ck_assert_int_eq(died_of(SIGUSR1, SIGINT, false), SIGINT);
+  ck_assert_int_eq(died_of(SIGHUP, SIGUSR2, false), SIGUSR2);
+  ck_assert_int_eq(died_of(SIGTERM, SIGHUP, true), 0); /* nohup holds */
 }
 END_TEST
 
@@ -217,5 +267,7 @@ static const bw_check_test tests[] = {BW_TEST(ranks_write_their_bytes),
                                       BW_TEST(a_short_write_is_an_error),
                                       BW_TEST(missing_bytes_are_noticed_at_the_end),
                                       BW_TEST(folders_are_made_with_parents),
-                                      BW_TEST(a_signal_to_one_rank_reaches_all)};
+                                      BW_TEST(paths_that_are_too_long),
+                                      BW_TEST(a_signal_to_one_rank_reaches_all),
+                                      BW_TEST(a_second_signal_ends_at_once)};
 BW_CHECK_MAIN("core.file", tests)

@@ -1,10 +1,7 @@
-/* What a run tells and keeps: log, progress, timer, history.
+/* What a run tells and keeps: log, progress, timer.
  * TEST ranks=1,2,4 */
 #include "bw_check.h"
-#include "bw_file.h"
-#include "bw_history.h"
 #include "bw_log.h"
-#include "bw_memory.h"
 #include "bw_timer.h"
 
 #include <stdio.h>
@@ -261,106 +258,7 @@ START_TEST(timer_sums)
 }
 END_TEST
 
-static const char *const columns[] = {"time[s]", "pressure_drop_over_p0[-]"};
-static char history_path[64];
-
-static bw_history *open_history(double restart)
-{
-  bw_history *h = NULL;
-  snprintf(history_path, sizeof history_path, "test_core_history_np%d.csv",
-           bw_comm_size(bw_check_world()));
-  bw_check_ok(bw_history_create(bw_check_world(), history_path, 2, columns, restart, &h));
-  return h;
-}
-
-static void rows(bw_history *h, int first, int last, double scale)
-{
-  for (int q = first; q <= last; q++)
-    bw_history_append(h, (const double[]){0.1 * q, scale * q});
-}
-
-static void expect_history(const char *expected)
-{
-  char *text = NULL;
-  bw_check_ok(bw_file_read_text(bw_check_world(), history_path, NULL, &text));
-  ck_assert_str_eq(text, expected);
-  bw_release(&text);
-}
-
-/* Rows later than the restart go, the row at the restart stays once whoever writes it, an
- * incomplete row goes; all doubles read back. */
-START_TEST(history_goes_on_without_duplicates)
-{
-  const bw_comm *comm = bw_check_world();
-  bw_history *h = open_history(NAN);
-  rows(h, 0, 4, 1.0 / 3.0);
-  ck_assert_int_eq(bw_history_rows(h), speaks() ? 5 : 0);
-  bw_check_ok(bw_history_close(comm, &h));
-  ck_assert_ptr_null(h);
-  expect_history("time[s],pressure_drop_over_p0[-]\n0,0\n0.1,0.3333333333333333\n"
-                 "0.2,0.6666666666666666\n0.30000000000000004,1\n0.4,1.3333333333333333\n");
-
-  h = open_history(0.2); /* sampled before the checkpoint: the next row is a new one */
-  ck_assert_int_eq(bw_history_rows(h), speaks() ? 3 : 0);
-  rows(h, 3, 3, 2.0);
-  bw_check_ok(bw_history_close(comm, &h));
-  expect_history("time[s],pressure_drop_over_p0[-]\n0,0\n0.1,0.3333333333333333\n"
-                 "0.2,0.6666666666666666\n0.30000000000000004,6\n");
-
-  h = open_history(0.1); /* sampled again at the start: it is there already */
-  rows(h, 1, 2, 5.0);
-  bw_check_ok(bw_history_close(comm, &h));
-  expect_history("time[s],pressure_drop_over_p0[-]\n0,0\n0.1,0.3333333333333333\n0.2,10\n");
-
-  bw_check_ok(bw_file_write_text(comm, history_path,
-                                 "time[s],pressure_drop_over_p0[-]\n0,0\n0.1,0.3\n0.15,0."));
-  h = open_history(1.0); /* killed while it wrote */
-  rows(h, 2, 2, 5.0);
-  bw_check_ok(bw_history_close(comm, &h));
-  expect_history("time[s],pressure_drop_over_p0[-]\n0,0\n0.1,0.3\n0.2,10\n");
-
-  h = open_history(-1.0); /* a restart before all rows */
-  bw_check_ok(bw_history_close(comm, &h));
-  expect_history("time[s],pressure_drop_over_p0[-]\n");
-
-  bw_check_ok(bw_file_write_text(comm, history_path, "")); /* killed before the first line */
-  h = open_history(1.0);
-  bw_check_ok(bw_history_close(comm, &h));
-  expect_history("time[s],pressure_drop_over_p0[-]\n");
-  bw_check_ok(bw_history_close(comm, &h)); /* NULL is fine */
-}
-END_TEST
-
-START_TEST(history_refusals)
-{
-  const bw_comm *comm = bw_check_world();
-  static const char *const bare[] = {"time[s]", "drop"}, *const comma[] = {"time[s]", "a,b[-]"};
-  bw_history *h = open_history(NAN);
-  bw_check_ok(bw_history_close(comm, &h));
-  bw_check_status(bw_history_create(comm, history_path, 1, columns, 0.0, &h), BW_EINPUT);
-  ck_assert_ptr_null(h);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "holds other columns"));
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "pressure_drop_over_p0[-]"));
-  bw_check_status(bw_history_create(comm, history_path, 2, bare, NAN, &h), BW_EINPUT);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "'drop' has no unit"));
-  bw_check_status(bw_history_create(comm, history_path, 2, comma, NAN, &h), BW_EINPUT);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "comma"));
-  bw_check_status(bw_history_create(comm, "no_such_folder/h.csv", 2, columns, NAN, &h), BW_EIO);
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "no_such_folder/h.csv: No such file"));
-
-  bw_check_ok(bw_history_create(comm, "/dev/full", 2, columns, NAN, &h) == BW_EIO
-                  ? BW_OK
-                  : BW_EIO); /* the header cannot be written */
-  ck_assert_ptr_nonnull(strstr(bw_last_message(), "No space left"));
-}
-END_TEST
-
-static const bw_check_test tests[] = {BW_TEST(rank_zero_speaks),
-                                      BW_TEST(plain_progress),
-                                      BW_TEST(terminal_progress),
-                                      BW_TEST(speed_and_time_left),
-                                      BW_TEST(timer_moves_seconds),
-                                      BW_TEST(timer_sums),
-                                      BW_TEST(history_goes_on_without_duplicates),
-                                      BW_TEST(history_refusals)};
+static const bw_check_test tests[] = {BW_TEST(rank_zero_speaks),    BW_TEST(plain_progress),
+                                      BW_TEST(terminal_progress),   BW_TEST(speed_and_time_left),
+                                      BW_TEST(timer_moves_seconds), BW_TEST(timer_sums)};
 BW_CHECK_MAIN("core.run", tests)

@@ -4,6 +4,7 @@
 #include "bw_file.h"
 #include "bw_grid.h"
 #include "bw_memory.h"
+#include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -231,6 +232,9 @@ START_TEST(impossible_grids_are_refused_by_name)
   c.n[1] = 1, refused(c, "n[1] = 1");
   c = good, c.n[2] = 0, refused(c, "n[2] = 0");
   c = good, c.n[0] = -4, refused(c, "n[0] = -4");
+  /* Counts that would not hold them: refused before anything is counted. */
+  c = good, c.n[1] = INT_MAX, refused(c, "at most 1073741824 in a direction");
+  c = good, c.n[0] = c.n[1] = c.n[2] = 1000000, refused(c, "cells are 1e+18");
   c = good, c.length[0] = NAN, refused(c, "length[0]");
   c = good, c.length[2] = 0, refused(c, "length[2]");
   c = good, c.length[1] = INFINITY, refused(c, "length[1]");

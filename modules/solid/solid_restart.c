@@ -100,7 +100,8 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
       row[6 + k] = (double)(pd->a[k][i] + pd->load.extra[k][i]);
       row[9 + k] = (double)pd->load.damp[k][i];
     }
-    row[BW_SOLID__ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
+    const int gone = pd->points.kind[i] & BW_PD_RETIRED ? BW_SOLID__GONE : 0;
+    row[BW_SOLID__ROW - 1] = gone | (pd->current ? 0 : BW_SOLID__STALE);
   }
   get_fields(s, rows);
   const bw_solid_book *book = &s->book;
@@ -130,6 +131,16 @@ static void set_sums(bw_solid *s, const double sums[])
   }
 }
 
+/* Were the rows written between a change of state and the next evaluation? The same on all ranks. */
+static bool are_stale(const bw_solid *s, const double rows[])
+{
+  int64_t stale = 0;
+  for (size_t i = 0; i < s->body->n; i++)
+    stale |= (int)rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] & BW_SOLID__STALE;
+  bw_comm_max_int(s->body->comm, 1, &stale);
+  return stale != 0;
+}
+
 bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double sums[])
 {
   bw_pd_body *pd = s->body;
@@ -148,9 +159,9 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);
-  /* Copies follow; with a given, the state counts as evaluated. */
+  /* Copies follow; with a given, the state counts as evaluated, unless nobody had evaluated it. */
   bw_pd_body_refresh(pd, true);
-  pd->current = s->restored = true;
+  pd->current = s->restored = !are_stale(s, rows);
   s->loaded = s->contact != NULL || bw_pd_body_damped(pd);
   return BW_OK;
 }

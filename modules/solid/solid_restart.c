@@ -131,7 +131,7 @@ static void set_sums(bw_solid *s, const double sums[])
   }
 }
 
-/* Were the rows written between a change of state and the next evaluation? The same on all ranks. */
+/* Were the rows written before the forces of a new state were known? The same on all ranks. */
 static bool are_stale(const bw_solid *s, const double rows[])
 {
   int64_t stale = 0;

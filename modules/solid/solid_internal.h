@@ -25,6 +25,7 @@ struct bw_solid {
   bool loaded;                        /* load.extra may differ from zero */
   bool restored;                      /* a was given by set_restart */
   int64_t evaluated;                  /* raised when the forces were: what a set added is gone */
+  int64_t shared; /* evaluated when a set added its contact last; -1: not yet, 0: in no set */
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
   bw_solid_book book;

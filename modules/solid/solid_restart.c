@@ -92,6 +92,9 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
   const size_t width = bw_solid_restart_row(s);
+  /* In a set a solid that was evaluated by itself has lost the others' push. */
+  const bool lone = s->shared != 0 && s->shared != s->evaluated && !s->restored;
+  const int stale = pd->current && !lone ? 0 : BW_SOLID__STALE;
   for (size_t i = 0; i < pd->n; i++) {
     double *row = rows + width * i;
     for (size_t k = 0; k < 3; k++) {
@@ -101,7 +104,7 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
       row[9 + k] = (double)pd->load.damp[k][i];
     }
     const int gone = pd->points.kind[i] & BW_PD_RETIRED ? BW_SOLID__GONE : 0;
-    row[BW_SOLID__ROW - 1] = gone | (pd->current ? 0 : BW_SOLID__STALE);
+    row[BW_SOLID__ROW - 1] = gone | stale;
   }
   get_fields(s, rows);
   const bw_solid_book *book = &s->book;

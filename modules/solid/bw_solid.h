@@ -255,8 +255,8 @@ typedef struct {
   double closest;           /* least distance of a pair in contact so far, over ds; INFINITY:
                                      none. Below BW_SOLID_TOO_CLOSE a particle may have passed
                                      between others: the impact is too violent for this ds. */
-  double retired;           /* elastic energy of bonds when their particles were retired
-                                     [M L^2/T^2] */
+  double retired;           /* elastic energy of bonds and contact that went when their particles
+                                     were retired [M L^2/T^2] */
   double damping, fracture; /* dissipated since the start (or restart's stored value)
                                      [M L^2/T^2] */
   double plastic;           /* dissipated inside particles by the law, so far [M L^2/T^2] */
@@ -288,10 +288,11 @@ enum { BW_SOLID_RESTART_SUMS = 11 }; /* sums of the whole solid in a restart */
 size_t bw_solid_restart_row(const bw_solid *solid);
 
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
- * part, 1 when retired, the law's saved fields (n, restart_row), and the ledger's running sums of
- * all ranks (11: damping, fracture, external, directed bonds cut by pre-cracks, retired, impulse on
- * walls, force on them). Set bits and rows, in any order, then force and prescribed velocities: the
- * run goes on to the same bits. Both collective. */
+ * part, 1 when retired (2 more when a state was set and its forces are still to be evaluated), the
+ * law's saved fields (n, restart_row), and the ledger's running sums of all ranks (11: damping,
+ * fracture, external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them).
+ * Set bits and rows, in any order, then force and prescribed velocities: the run goes on to the
+ * same bits. Both collective. */
 void bw_solid_get_restart(const bw_solid *solid, double rows[], double sums[]);
 bw_status bw_solid_set_restart(bw_solid *solid, const double rows[],
                                const double sums[]) BW_MUST_CHECK;

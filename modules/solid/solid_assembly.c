@@ -12,8 +12,7 @@
 
 struct bw_solid_assembly {
   int n;
-  bw_solid **solid;   /* (n) borrowed */
-  int64_t *evaluated; /* (n) of each when the contact between was added last; -1: never */
+  bw_solid **solid;               /* (n) borrowed */
   bw_pd_contact_between *between; /* NULL: half built */
 };
 
@@ -35,11 +34,10 @@ static bw_status allocate(int n, bw_solid *const solid[], bw_solid_assembly *set
                           bw_pd_body ***body)
 {
   BW_TRY(BW_ALLOCATE(&set->solid, (size_t)n));
-  BW_TRY(BW_ALLOCATE(&set->evaluated, (size_t)n));
   BW_TRY(BW_ALLOCATE(body, (size_t)n));
   for (int q = 0; q < n; q++) {
     set->solid[q] = solid[q];
-    set->evaluated[q] = -1;
+    solid[q]->shared = -1;
     (*body)[q] = solid[q]->body;
   }
   set->n = n;
@@ -83,8 +81,9 @@ void bw_solid_assembly_destroy(bw_solid_assembly **set_)
   bw_solid_assembly *set = *set_;
   if (set == NULL) return;
   bw_pd_contact_between_destroy(&set->between);
+  for (int q = 0; q < set->n; q++)
+    set->solid[q]->shared = 0;
   bw_release(&set->solid);
-  bw_release(&set->evaluated);
   bw_release(set_);
 }
 
@@ -97,7 +96,7 @@ static bw_status add_between(bw_solid_assembly *set)
   for (int q = 0; q < set->n; q++) {
     /* From here on `extra` is read in the kicks and has to be emptied before the next forces. */
     set->solid[q]->loaded = true;
-    set->evaluated[q] = set->solid[q]->evaluated;
+    set->solid[q]->shared = set->solid[q]->evaluated;
   }
   return BW_OK;
 }
@@ -122,7 +121,7 @@ static bool is_current(const bw_solid_assembly *set)
   for (int q = 0; q < set->n; q++) {
     const bw_solid *s = set->solid[q];
     if (!s->body->current) return false;
-    if (!s->restored && set->evaluated[q] != s->evaluated) return false;
+    if (!s->restored && s->shared != s->evaluated) return false;
   }
   return true;
 }

@@ -5,13 +5,14 @@
 
 enum {
   BW_SOLID__ROW = 13
-}; /* of a restart: u, v, a, damping, 1 when retired; then the law's fields */
+}; /* of a restart: u, v, a, damping, the bits below; then the law's fields */
+enum { BW_SOLID__GONE = 1, BW_SOLID__STALE = 2 }; /* is retired; a is not that of u and v */
 
 /* What has gone where since the start, of this rank. */
 typedef struct {
   double damping;     /* dissipated [M L^2/T^2] */
   double external;    /* work of forces and prescribed motion [M L^2/T^2] */
-  double retired;     /* elastic energy of bonds when their particles were retired [M L^2/T^2] */
+  double retired;     /* elastic energy that went with retired particles [M L^2/T^2] */
   double wall[3];     /* impulse on the walls [M L/T] */
   int64_t precracked; /* bonds cut by pre-cracks, from both ends */
 } bw_solid_book;
@@ -24,6 +25,7 @@ struct bw_solid {
   bool loaded;                        /* load.extra may differ from zero */
   bool restored;                      /* a was given by set_restart */
   int64_t evaluated;                  /* raised when the forces were: what a set added is gone */
+  int64_t shared; /* evaluated when a set added its contact last; -1: not yet, 0: in no set */
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
   bw_solid_book book;

@@ -92,6 +92,9 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
   const size_t width = bw_solid_restart_row(s);
+  /* In a set a solid that was evaluated by itself has lost the others' push. */
+  const bool lone = s->shared != 0 && s->shared != s->evaluated && !s->restored;
+  const int stale = pd->current && !lone ? 0 : BW_SOLID__STALE;
   for (size_t i = 0; i < pd->n; i++) {
     double *row = rows + width * i;
     for (size_t k = 0; k < 3; k++) {
@@ -100,7 +103,8 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
       row[6 + k] = (double)(pd->a[k][i] + pd->load.extra[k][i]);
       row[9 + k] = (double)pd->load.damp[k][i];
     }
-    row[BW_SOLID__ROW - 1] = (pd->points.kind[i] & BW_PD_RETIRED) != 0;
+    const int gone = pd->points.kind[i] & BW_PD_RETIRED ? BW_SOLID__GONE : 0;
+    row[BW_SOLID__ROW - 1] = gone | stale;
   }
   get_fields(s, rows);
   const bw_solid_book *book = &s->book;
@@ -130,6 +134,16 @@ static void set_sums(bw_solid *s, const double sums[])
   }
 }
 
+/* Were the rows written before the forces of a new state were known? The same on all ranks. */
+static bool are_stale(const bw_solid *s, const double rows[])
+{
+  int64_t stale = 0;
+  for (size_t i = 0; i < s->body->n; i++)
+    stale |= (int)rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] & BW_SOLID__STALE;
+  bw_comm_max_int(s->body->comm, 1, &stale);
+  return stale != 0;
+}
+
 bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double sums[])
 {
   bw_pd_body *pd = s->body;
@@ -148,9 +162,9 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);
-  /* Copies follow; with a given, the state counts as evaluated. */
+  /* Copies follow; with a given, the state counts as evaluated, unless nobody had evaluated it. */
   bw_pd_body_refresh(pd, true);
-  pd->current = s->restored = true;
+  pd->current = s->restored = !are_stale(s, rows);
   s->loaded = s->contact != NULL || bw_pd_body_damped(pd);
   return BW_OK;
 }

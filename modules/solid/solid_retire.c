@@ -52,8 +52,10 @@ static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool 
 bw_status bw_solid_retire(bw_solid *s, const bool gone[])
 {
   bw_pd_body *pd = s->body;
-  /* Bonds hold what present places of both ends say. */
+  /* Bonds and contact hold what present places of both ends say. */
   if (!pd->current) bw_pd_body_refresh(pd, false);
+  if (s->contact != NULL) BW_TRY(bw_comm_agree(pd->comm, bw_pd_contact_update(s->contact)));
+  if (s->contact != NULL) s->book.retired += bw_pd_contact_energy(s->contact);
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     s->book.retired += stored(pd, &pd->bonds.block[b], gone);
   /* Energies are booked: now the kinds may change. */
@@ -61,7 +63,10 @@ bw_status bw_solid_retire(bw_solid *s, const bool gone[])
     if (gone[i] && !(pd->points.kind[i] & BW_PD_PRESCRIBED)) pd->points.kind[i] |= BW_PD_RETIRED;
   renew(s);
   /* Forces anew: those of the retired are gone from everybody's. */
-  return bw_comm_agree(pd->comm, bw_solid__evaluate(s, false));
+  BW_TRY(bw_comm_agree(pd->comm, bw_solid__evaluate(s, false)));
+  /* What is left of contact was not theirs. */
+  if (s->contact != NULL) s->book.retired -= bw_pd_contact_energy(s->contact);
+  return BW_OK;
 }
 
 void bw_solid__retire_rows(bw_solid *s, const double rows[])
@@ -70,7 +75,7 @@ void bw_solid__retire_rows(bw_solid *s, const double rows[])
   /* A restart may have more of them, or less. */
   int64_t changed = 0;
   for (size_t i = 0; i < pd->n; i++) {
-    const bool gone = rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] != 0;
+    const bool gone = (int)rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] & BW_SOLID__GONE;
     const uint8_t kind =
         (uint8_t)((pd->points.kind[i] & ~BW_PD_RETIRED) | (gone ? BW_PD_RETIRED : 0));
     changed |= kind != pd->points.kind[i];

@@ -87,8 +87,30 @@ static void evaluate_alone(bw_solid *ball)
   bw_check_ok(bw_solid_evaluate(ball));
 }
 
+/* The state of a ball whose forces were taken alone, in a set of its own: the same motion. */
+static void check_restart_anew(void (*touch)(bw_solid *))
+{
+  scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
+  scene t = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
+  const double dt = 0.1 * bw_solid_set_dt(s.set);
+  int n = 0;
+  while (book(&s).contact < 0.02 && n++ < 4000)
+    steps(&s, 1, dt);
+  touch(s.ball);
+  pd_restart_from(s.plate, t.plate);
+  pd_restart_from(s.ball, t.ball);
+  steps(&s, 20, dt);
+  steps(&t, 20, dt);
+  compare(s.plate, t.plate, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+  compare(s.ball, t.ball, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+  scene_release(&s);
+  scene_release(&t);
+}
+
 START_TEST(forces_of_one_taken_alone_do_not_lose_the_others)
 {
+  check_restart_anew(set_again);
+  check_restart_anew(evaluate_alone);
   check_anew(set_again);
   check_anew(evaluate_alone);
 }

@@ -172,6 +172,42 @@ START_TEST(a_broken_bond_repels_in_closed_form)
 }
 END_TEST
 
+/* Two that push each other part when one of them is retired: what contact held is booked, and a
+ * restart of a state that was only set goes on as this one does. */
+START_TEST(contact_of_the_retired_is_booked_and_a_set_state_restarts)
+{
+  bw_solid_config c = pd_soft(BW_PD_3D);
+  c.contact = true;
+  pd_body two = pd_box(2, 1, 1);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &two), *next = pd_make(bw_check_world(), &c, &two);
+  double X[6], Y[6];
+  approach = 0.1;
+  bw_check_ok(bw_solid_precrack(pd, (double[]){0.5, -1, -1}, (double[]){0.5, 1, -1},
+                                (double[]){0.5, -1, 1}));
+  pd_set(pd, close_up, NULL);
+  pd_restart_from(pd, next); /* nobody has evaluated the forces of this state */
+  const double start = pd_energy(pd), dt = 0.1 * bw_solid_dt_contact(pd);
+  ck_assert_double_gt(start, 0);
+  pd_steps(pd, 3, dt);
+  pd_steps(next, 3, dt);
+  pd_gather(pd, bw_solid_get_position, X);
+  pd_gather(next, bw_solid_get_position, Y);
+  for (int k = 0; k < 6; k++)
+    bw_check_near(X[k], Y[k], 10 * BW_REAL_EPSILON);
+  const double before = pd_energy(pd);
+  ck_assert_double_gt(ledger_of(pd).contact, 0);
+  bool gone[2] = {false, false};
+  for (size_t i = 0; i < bw_solid_count(pd); i++)
+    gone[i] = bw_solid_id(pd)[i] == 0;
+  bw_check_ok(bw_solid_retire(pd, gone));
+  ck_assert_double_eq(ledger_of(pd).contact, 0);
+  bw_check_near(pd_energy(pd) / before, 1, 100 * BW_REAL_EPSILON);
+  bw_solid_destroy(&pd);
+  bw_solid_destroy(&next);
+  pd_body_release(&two);
+}
+END_TEST
+
 static void squeezed(const double X0[3], double u[3])
 {
   for (int k = 0; k < 3; k++)
@@ -217,7 +253,10 @@ START_TEST(rubble_makes_no_energy)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(bodies_bounce), BW_TEST(the_step_of_contact_resolves_a_collision),
-    BW_TEST(bodies_meet_through_a_period), BW_TEST(a_broken_bond_repels_in_closed_form),
+    BW_TEST(bodies_bounce),
+    BW_TEST(the_step_of_contact_resolves_a_collision),
+    BW_TEST(bodies_meet_through_a_period),
+    BW_TEST(a_broken_bond_repels_in_closed_form),
+    BW_TEST(contact_of_the_retired_is_booked_and_a_set_state_restarts),
     BW_TEST(rubble_makes_no_energy)};
 BW_CHECK_MAIN("pd_bond.contact", tests)

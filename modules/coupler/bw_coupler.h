@@ -29,6 +29,10 @@
  * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
  * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
  *
+ * What markers remember (bw_ibm_mdf.h) is kept per particle: a block's memory is the sum over its
+ * members, and goes back to them in shares of area. Particles that lost a bond have none: faces of
+ * a crack may ask for two velocities in the same cells, which a memory would push against for ever.
+ *
  * How many markers: one per surface particle, or, where particles are finer than the grid (FSI's
  * plate: ds = h/5, every fifth particle a marker), one per block of k^(dim-1) particles of a face,
  * k = marker_spacing h/ds: at their mean position, with their mean velocity and the sum of their
@@ -75,7 +79,9 @@ typedef struct {
   double rho;                /* density of the fluid [M/L^3]                required */
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
-  int iterations;            /* forcing iterations [-]                      default 2 */
+  int iterations;            /* forcing iterations [-]                      default 1 */
+  double memory;             /* of the markers (bw_ibm_mdf.h), 0 .. 0.5 [-]; 0: none, which asks
+                                for two iterations or more                  default 0.2 */
   double retraction;         /* of the markers, in grid spacings [-]; NaN: the best one known
                                 for kernel and iterations (bw_ibm_mdf_retraction)  default NaN */
   double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);

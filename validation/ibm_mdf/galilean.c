@@ -49,7 +49,8 @@ static void destroy(moving *m)
 static bw_status make(const bw_comm *comm, int cells, bw_kernel_delta_id kernel, double V,
                       moving *m)
 {
-  const bw_ibm_mdf_config body = {kernel, 2};
+  bw_ibm_mdf_config body = bw_ibm_mdf_config_default();
+  body.kernel = kernel;
   double bulk = V + 1.0;
   const body_box box = {.n = {6 * cells, 4 * cells, 1},
                         .h = 1.0 / cells,
@@ -57,8 +58,7 @@ static bw_status make(const bw_comm *comm, int cells, bw_kernel_delta_id kernel,
                         .periodic = {true, true, true},
                         .forcing = BW_FORCING_FLOW_RATE,
                         .forcing_value = bulk,
-                        .kernel = body.kernel,
-                        .n_iter = body.n_iter};
+                        .body = body};
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = 1.0, probe.nu = box.nu, probe.profile = BW_PROBE_QUADRATIC;
   m->h = box.h;
@@ -86,7 +86,7 @@ static bw_status step(moving *m, double V, double Cd[ROUTES])
   body_circle(&m->markers, 0, body_circle_size(0.5 - m->retraction, m->h), centre,
               0.5 - m->retraction, m->h);
   body_circle(&m->wall, 0, around, centre, 0.5, m->h);
-  BW_TRY(body_set_markers(&m->flow, &m->markers));
+  BW_TRY(body_move_markers(&m->flow, &m->markers));
   BW_TRY(body_flow_step(&m->flow));
   Cd[MARKERS] = -scale * bw_ibm_mdf_measure(m->flow.body, u).total_force[0];
   BW_TRY(bw_probe_set_points(m->probe, m->wall.n, m->wall.X, m->wall.N));

@@ -57,11 +57,8 @@ static int steps_per_period(int cells)
 static bw_status make(const bw_comm *comm, int cells, swing *s)
 {
   const bw_ibm_mdf_config body = bw_ibm_mdf_config_default();
-  const body_box box = {.n = {SIDE * cells, SIDE * cells, 1},
-                        .h = 1.0 / cells,
-                        .nu = 1.0 / RE,
-                        .kernel = body.kernel,
-                        .n_iter = body.n_iter};
+  const body_box box = {
+      .n = {SIDE * cells, SIDE * cells, 1}, .h = 1.0 / cells, .nu = 1.0 / RE, .body = body};
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = 1.0, probe.nu = box.nu, probe.profile = BW_PROBE_QUADRATIC;
   s->h = box.h;
@@ -105,7 +102,7 @@ static bw_status step(swing *s, double F[ROUTES], double motion[2])
   const double centre[2] = {half - sin(w * end) / w, half + 0.3 * s->h};
   move(&s->markers, body_circle_size(s->radius, s->h), centre, s->radius, s->h, V);
   move(&s->wall, body_circle_size(0.5, s->h), centre, 0.5, s->h, V);
-  BW_TRY(body_set_markers(&s->flow, &s->markers));
+  BW_TRY(body_move_markers(&s->flow, &s->markers));
   BW_TRY(body_flow_step(&s->flow));
   BW_TRY(bw_probe_set_points(s->probe, s->wall.n, s->wall.X, s->wall.N));
   motion[0] = -cos(w * middle), motion[1] = w * sin(w * middle);

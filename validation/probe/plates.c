@@ -141,8 +141,7 @@ static bw_status make(const bw_comm *comm, scene *s)
                         .h = 1.0,
                         .nu = 1.0,
                         .periodic = {true, true, true},
-                        .kernel = body.kernel,
-                        .n_iter = body.n_iter};
+                        .body = body};
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = probe.nu = 1.0, probe.profile = BW_PROBE_QUADRATIC;
   s->period = s->a->period * m;

@@ -4,7 +4,9 @@
  * Reference  an independent finite-element solution for the same domain (8 d x 4 d, cylinder in
  *            the middle): data/confined_cylinder; FSI's printed figures are reported beside.
  * Measured   force of the markers; momentum balance of a box of 2 d; normal probes on the nominal
- *            surface. Steady: the drag changes by less than 1e-5 per d/U_b. 15 cells across the
+ *            surface. Steady: the drag changes by less than 1e-5 per d/U_b (forces that hardly move
+ *            the fluid, pressure of the inside against the outside, are found within 36 d/U_b only
+ *            and are worth 4e-4 of the drag, 2e-3 where markers are not retracted). 15 cells across the
  *            cylinder at Re_d 20 and 25 and 30 at 20; --full: 60 cells, every kernel and 1 to 8
  *            iterations at 15 and 30 cells, drag against retraction.
  * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e4 eps.
@@ -27,7 +29,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double STEADY = 1.0e-5, LATEST = 60.0, FRICTION_SHARE = 0.35;
+static const double STEADY = 1.0e-5, LATEST = 90.0, FRICTION_SHARE = 0.35;
 
 /* Cd of the reference for a domain. */
 static bw_status reference(const cylinder_config *c, double *Cd)

@@ -11,7 +11,8 @@
  * Tolerance  mean: 1 % - the wall felt wanders by some 0.05 h with the place of the markers (0.25
  *            to 0.28 h for Roma's kernel, 0 to 0.25 for the hat; bw_ibm_mdf.h), 0.3 % of d, and
  *            the drag with it and with the blockage. The noise is reported, no claim but that the
- *            wider kernel has the smaller one.
+ *            kernels whose sum of squares is the same everywhere (Roma's, Peskin's) have less of it
+ *            than the hat, whose markers find a different part of their slip in every place.
  * BUILD modules=ns_channel,probe
  * TEST  ranks=1,2 */
 #include "../../cases/cylinder_drag/body_flow.h"
@@ -171,22 +172,21 @@ static bw_status one_kernel(bw_validation *v, bw_kernel_delta_id kernel, int cel
 
 static bw_status run(bw_validation *v)
 {
-  const int finest = bw_validation_full(v) ? 32 : 16, most = (int)lround(END * finest / 0.2);
+  const int finest = bw_validation_full(v) ? 32 : 16, longest = (int)lround(END * finest / 0.2);
   double noise[BW_KERNEL_COUNT] = {0.0}, *series = NULL;
   bw_status st =
-      bw_comm_agree(bw_validation_comm(v), BW_ALLOCATE(&series, 2 * ROUTES * (size_t)most));
+      bw_comm_agree(bw_validation_comm(v), BW_ALLOCATE(&series, 2 * ROUTES * (size_t)longest));
   for (int cells = 16; cells <= finest; cells *= 2)
     for (int k = 0; k < BW_KERNEL_COUNT; k++)
       BW_THEN(st, one_kernel(v, (bw_kernel_delta_id)k, cells, (int)lround(END * cells / 0.2),
                              series, &noise[k]));
   bw_release(&series);
   BW_TRY(st);
-  const double order[2] = {noise[BW_KERNEL_PESKIN4] / noise[BW_KERNEL_ROMA3],
-                           noise[BW_KERNEL_ROMA3] / noise[BW_KERNEL_HAT2]};
-  bw_validation_row(v, &(bw_claim){"wider kernels are quieter", "largest_ratio",
-                                   fmax(fmax(order[0], order[1]) - 1.0, 0.0), 0.0, 0.0, BW_ORDER,
-                                   "noise over that of the next narrower kernel, excess over 1",
-                                   NULL});
+  const double most = fmax(noise[BW_KERNEL_PESKIN4], noise[BW_KERNEL_ROMA3]);
+  bw_validation_row(v,
+                    &(bw_claim){"kernels of constant sum of squares are quieter", "largest_ratio",
+                                fmax(most / noise[BW_KERNEL_HAT2] - 1.0, 0.0), 0.0, 0.0, BW_ORDER,
+                                "noise over that of the hat, excess over 1", NULL});
   return BW_OK;
 }
 

@@ -274,6 +274,15 @@ void bw_coupler__blocks_gather_memory(bw_coupler *c)
   }
 }
 
+void bw_coupler__blocks_velocity(bw_coupler *c, double out[])
+{
+  bw_coupler__blocks *b = &c->blocks;
+  bw_ibm_mdf_interpolate(c->ibm, bw_ns_channel_velocity(c->fluid), b->force); /* scratch */
+  for (size_t q = 0; q < b->n_members; q++)
+    memcpy(b->receive + 3 * q, b->force + 3 * (size_t)b->marker[q], 3 * sizeof *b->force);
+  bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, out);
+}
+
 void bw_coupler__blocks_memory(bw_coupler *c)
 {
   /* Not in use now: the force per marker. */

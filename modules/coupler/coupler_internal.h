@@ -105,6 +105,9 @@ struct bw_coupler {
   int iterations;
   double residual;
   int64_t unconverged;
+  int64_t steps;  /* since create */
+  size_t handed;  /* markers that this rank has handed over */
+  int slip_above; /* reports in a row with much slip; -1: it was said */
 };
 
 /* Everything with a row per particle anew, after the set of particles changed. Collective. */
@@ -150,6 +153,8 @@ void bw_coupler__blocks_reaction(bw_coupler *c);
 /* Memory of the blocks, from c->marker_M of their members and back to it, in shares of area.
  * Collective. */
 void bw_coupler__blocks_gather_memory(bw_coupler *c);
+/* Velocity of the fluid at each member's marker, out (n_surface,3). Collective. */
+void bw_coupler__blocks_velocity(bw_coupler *c, double out[]);
 void bw_coupler__blocks_memory(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 

@@ -139,6 +139,7 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
   /* Every step ends with a check of the same dt. */
   c->checked_dt = dt;
   count_work(c, dt);
+  c->steps++;
   c->iterations = 1;
   /* A held solid: the fluid alone, around markers that do not move. */
   if (c->held) {

@@ -201,6 +201,7 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
   c->markers_moved = false;
   const bw_coupler__blocks *b = &c->blocks;
   place_memory(c);
+  c->handed = c->block > 1 ? b->n : c->n_surface;
   if (c->block == 1)
     return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV,
                                   c->marker_M);

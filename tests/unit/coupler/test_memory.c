@@ -135,8 +135,65 @@ START_TEST(broken_particles_have_none)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(it_is_kept_per_particle), BW_TEST(blocks_share_it),
-                                      BW_TEST(tries_of_a_step_leave_it_alone),
-                                      BW_TEST(a_held_solid_has_one_too),
-                                      BW_TEST(broken_particles_have_none)};
+/* Fluid of velocity 1 along x that goes through a cube at rest as if it were not there: slip and leak
+ * are the whole of the inflow's speed, 1, and of the flux past the cube's face. For blocks too. */
+START_TEST(slip_and_leak_are_told)
+{
+  for (int blocks = 0; blocks <= 1; blocks++) {
+    scene s = build(0.3, 1.0);
+    couple(&s, blocks ? 2.0 : 0.0, 1);
+    bw_coupler_hold_solid(s.coupler, true);
+    bw_check_ok(bw_coupler_step(s.coupler, STEP));
+    bw_coupler_report r;
+    for (int d = 0; d < 3; d++)
+      for (size_t q = 0; q < bw_grid_look(s.grid)->size; q++)
+        bw_ns_channel_velocity(s.fluid)[d][q] = d == 0;
+    bw_check_ok(bw_coupler_measure(s.coupler, &r));
+    bw_check_near(r.slip, 1.0, 1e-10);
+    bw_check_near(r.leak, 1.0, 1e-10);
+    destroy(&s);
+  }
+}
+END_TEST
+
+/* Said once, when it was so five times running and the start is over. */
+START_TEST(much_slip_is_said_once)
+{
+  scene s = build(0.3, 1.0);
+  char text[512] = "";
+  bw_log_config config = bw_log_config_default();
+  config.err = tmpfile();
+  ck_assert_ptr_nonnull(config.err);
+  bw_log *log = NULL;
+  bw_check_ok(bw_log_create(bw_check_world(), &config, &log));
+  const bw_coupler_report little = {.slip = 0.01, .leak = 0.0}, much = {.leak = 0.03};
+  for (int q = 0; q < 9; q++) /* not in the first hundred steps */
+    bw_coupler_warn_slip(s.coupler, &much, log);
+  s.coupler->steps = 100;
+  for (int q = 0; q < 9; q++)
+    bw_coupler_warn_slip(s.coupler, q == 4 ? &little : &much, log);
+  ck_assert_int_eq(ftell(config.err), 0);
+  bw_coupler_warn_slip(s.coupler, &much, log);
+  const long said = ftell(config.err);
+  for (int q = 0; q < 9; q++)
+    bw_coupler_warn_slip(s.coupler, &much, log);
+  ck_assert_int_eq(ftell(config.err), said);
+  ck_assert((said > 0) == (bw_comm_rank(bw_check_world()) == 0)); /* rank 0 speaks */
+  rewind(config.err);
+  if (said > 0) {
+    ck_assert_ptr_nonnull(fgets(text, sizeof text, config.err));
+    ck_assert_ptr_nonnull(strstr(text, "3.0 %"));
+    ck_assert_ptr_nonnull(strstr(text, "coupling.memory"));
+  }
+  bw_log_destroy(&log);
+  fclose(config.err);
+  destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(it_is_kept_per_particle),        BW_TEST(blocks_share_it),
+    BW_TEST(tries_of_a_step_leave_it_alone), BW_TEST(a_held_solid_has_one_too),
+    BW_TEST(broken_particles_have_none),     BW_TEST(slip_and_leak_are_told),
+    BW_TEST(much_slip_is_said_once)};
 BW_CHECK_MAIN("coupler.memory", tests)

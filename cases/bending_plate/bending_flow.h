@@ -66,6 +66,7 @@ typedef struct {
   double given, received;                 /* work of the fluid per depth: given by it at the
                                              markers, received by the solid */
   double kinetic, elastic, damping, slip; /* per depth; slip [L/T] */
+  bw_coupler_report report;               /* of the coupler, of the whole depth */
   int64_t markers, outside;               /* markers of all ranks; of them outside the box */
   int64_t shortened, blocked;             /* probes */
 } bending_measure;
@@ -274,6 +275,7 @@ static inline bw_status bending_look(bending_flow *f, bending_measure *m)
                          .elastic = e.elastic / f->h,
                          .damping = e.damping / f->h,
                          .slip = r.slip_rms,
+                         .report = r,
                          .markers = r.markers,
                          .outside = r.markers_outside,
                          .shortened = r.probes_shortened,

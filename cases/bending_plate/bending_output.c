@@ -73,7 +73,8 @@ static const char *const columns[] = {"time[s]",
                                       "work_received_by_plate[J/m]",
                                       "work_given_by_fluid[J/m]",
                                       "slip_rms_over_U_b[-]",
-                                      "probes_blocked[-]"};
+                                      "probes_blocked[-]",
+                                      "leak_over_flux_past[-]"};
 
 bw_status bending_open_history(bending_run *p)
 {
@@ -100,7 +101,9 @@ bw_status bending_sample(bending_run *p, bending_measure *m)
                                                         m->received,
                                                         m->given,
                                                         m->slip / U,
-                                                        (double)m->blocked};
+                                                        (double)m->blocked,
+                                                        m->report.leak};
+  bw_coupler_warn_slip(p->flow.coupler, &m->report, bw_case_log(p->run));
   bw_history_append(p->history, row);
   return BW_OK;
 }

@@ -31,10 +31,17 @@ static inline void body_flow_destroy(body_flow *f)
   bw_grid_destroy(&f->grid);
 }
 
-/* The last of the making: the step and the field of the pressure that acts. Collective. */
+/* For bw_ibm_mdf_set_ghosts. */
+static inline void body_ghosts(void *fluid)
+{
+  bw_ns_channel_ghosts(fluid);
+}
+
+/* The last of the making: ghosts, the step, the field of the pressure that acts. Collective. */
 static inline bw_status body_flow_ready(body_flow *f, double dt)
 {
   f->dt = dt;
+  bw_ibm_mdf_set_ghosts(f->body, body_ghosts, f->fluid);
   return bw_comm_agree(bw_grid_comm(f->grid), bw_field_create(f->grid, &f->pressure));
 }
 
@@ -45,8 +52,7 @@ typedef struct {
   bool periodic[3]; /* else walls at rest; z of a flat box is periodic */
   bw_ns_forcing forcing;
   double forcing_value;
-  bw_kernel_delta_id kernel; /* of the forcing at the markers, and its iterations */
-  int n_iter;
+  bw_ibm_mdf_config body; /* forcing at the markers */
 } body_box;
 
 /* Fluid at rest, no markers yet; f->dt is the caller's to choose. Destroy also after a failure. */
@@ -54,7 +60,6 @@ static inline bw_status body_flow_box(const bw_comm *comm, const body_box *b, bo
 {
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config fluid = bw_ns_channel_config_default();
-  const bw_ibm_mdf_config body = {b->kernel, b->n_iter};
   *f = (body_flow){0};
   grid.halo = 2;
   /* A flat box is one periodic cell deep. */
@@ -70,7 +75,7 @@ static inline bw_status body_flow_box(const bw_comm *comm, const body_box *b, bo
   fluid.forcing_value = b->forcing_value;
   BW_TRY(bw_grid_create(comm, &grid, &f->grid));
   BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
-  BW_TRY(bw_ibm_mdf_create(f->grid, &body, &f->body));
+  BW_TRY(bw_ibm_mdf_create(f->grid, &b->body, &f->body));
   return body_flow_ready(f, NAN);
 }
 
@@ -107,6 +112,7 @@ static inline bw_status body_flow_step(body_flow *f)
 typedef struct {
   size_t n;
   double *X, *N, *V, *dV; /* (n,3) (n,3) (n,3) (n) */
+  double *M;              /* (n,3) of moving markers */
 } body_surface;
 
 static inline void body_surface_free(body_surface *s)
@@ -115,6 +121,7 @@ static inline void body_surface_free(body_surface *s)
   bw_release(&s->N);
   bw_release(&s->V);
   bw_release(&s->dV);
+  bw_release(&s->M);
 }
 
 /* Room for n points on rank 0, zeros. Collective. */
@@ -125,13 +132,21 @@ static inline bw_status body_surface_alloc(const bw_comm *comm, size_t n, body_s
   BW_THEN(st, BW_ALLOCATE(&s->N, 3 * s->n));
   BW_THEN(st, BW_ALLOCATE(&s->V, 3 * s->n));
   BW_THEN(st, BW_ALLOCATE(&s->dV, s->n));
+  BW_THEN(st, BW_ALLOCATE(&s->M, 3 * s->n));
   return bw_comm_agree(comm, st);
 }
 
-/* Makes the surface the markers of the flow. Collective. */
+/* Makes the surface the markers of the flow: new ones, without a memory. Collective. */
 static inline bw_status body_set_markers(body_flow *f, const body_surface *s)
 {
-  return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV);
+  return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, NULL);
+}
+
+/* The markers of the flow have moved; what they remember moves with them. Collective. */
+static inline bw_status body_move_markers(body_flow *f, const body_surface *s)
+{
+  bw_ibm_mdf_memory(f->body, s->M);
+  return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, s->M);
 }
 
 /* Points about h apart around a circle of radius R. */

@@ -24,6 +24,9 @@ static const bw_config_field cylinder_fields[] = {
       "how far inside the surface markers are; left out: the best for kernel and n_iter"),
     V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "",
       "forcing iterations in each sub-step"),
+    V(cylinder_config, memory, BW_OPTIONAL, BW_FROM_TO(0, 0.5), "",
+      "share of the last step's force in the markers' memory; 0: none, then two iterations or "
+      "more"),
     BW_CONFIG_WORD(cylinder_config, kernel, BW_OPTIONAL, kernel_words,
                    "delta kernel of the markers"),
     V(cylinder_config, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "h",

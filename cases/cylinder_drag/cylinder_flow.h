@@ -16,7 +16,9 @@ typedef struct {
   int cells_per_diameter;      /*                                          default 15 */
   double retraction;           /* of the markers, in spacings [-]; NaN: the best
                                   one known for kernel and n_iter          default NaN */
-  int n_iter;                  /* forcing iterations                       default 2 */
+  int n_iter;                  /* forcing iterations                       default 1 */
+  double memory;               /* share of the last step in the markers'
+                                  memory (bw_ibm_mdf.h), 0: none           default 0.2 */
   int kernel;                  /* of the markers, bw_kernel_delta_id       default roma3 */
   double probe_length;         /* in spacings [-]                          default 2 */
   double dt_fraction;          /* of the largest stable step [-]           default 0.5 */
@@ -49,7 +51,8 @@ static inline cylinder_config cylinder_config_default(void)
                            .downstream = 4.0,
                            .cells_per_diameter = 15,
                            .retraction = NAN,
-                           .n_iter = 2,
+                           .n_iter = 1,
+                           .memory = 0.2,
                            .kernel = BW_KERNEL_ROMA3,
                            .probe_length = 2.0,
                            .dt_fraction = 0.5};
@@ -125,6 +128,7 @@ static inline bw_status cylinder_make_body(const bw_comm *comm, cylinder_flow *f
   bw_ibm_mdf_config config = bw_ibm_mdf_config_default();
   config.kernel = (bw_kernel_delta_id)f->config.kernel;
   config.n_iter = f->config.n_iter;
+  config.memory = f->config.memory;
   BW_TRY(bw_ibm_mdf_create(f->flow.grid, &config, &f->flow.body));
   /* Markers stand inside the nominal surface (ERRATA 21). */
   if (isnan(f->config.retraction)) f->config.retraction = bw_ibm_mdf_retraction(&config);

@@ -153,7 +153,8 @@ enum {
   COL_OUT,
   COL_LEFT,
   COL_WALLS,
-  COL_COUNT = COL_WALLS + 3
+  COL_LEAK = COL_WALLS + 3,
+  COL_COUNT
 };
 extern const char *const porous_columns[COL_COUNT]; /* names with units */
 /* A row of history.csv of the last step. Collective. */

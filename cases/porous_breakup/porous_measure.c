@@ -43,6 +43,7 @@ const char *const porous_columns[COL_COUNT] = {
     [COL_WALLS] = "impulse_on_walls_x[N s]",
     [COL_WALLS + 1] = "impulse_on_walls_y[N s]",
     [COL_WALLS + 2] = "impulse_on_walls_z[N s]",
+    [COL_LEAK] = "leak_over_flux_past[-]",
 };
 
 /* Mean of p/rho over the plane of cells i. */
@@ -214,6 +215,8 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_DROP] = p->total_step > 0 ? porous_pressure_drop(p) : NAN;
   row[COL_PERMEABILITY] = permeability(p, row[COL_DROP]);
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
+  row[COL_LEAK] = r.leak;
+  bw_coupler_warn_slip(p->coupler, &r, bw_case_log(p->run));
   row[COL_BLOCKED] = (double)r.probes_blocked;
   row[COL_GIVEN] = r.work_given;
   row[COL_LATE] = r.work_late;

@@ -53,13 +53,13 @@ static bw_status hold_body(const bw_comm *world, scene *s)
 {
   static const double rest[3 * POINTS];
   double X[3 * POINTS], N[3 * POINTS], dV[POINTS];
-  bw_ibm_mdf_config forcing = bw_ibm_mdf_config_default(); /* Roma's kernel, two iterations */
+  bw_ibm_mdf_config forcing = bw_ibm_mdf_config_default(); /* Roma's kernel, with memory */
   const double radius = 0.5 - bw_ibm_mdf_retraction(&forcing) * h;
   const size_t n = circle(world, radius, X, N);
   for (size_t q = 0; q < POINTS; q++)
     dV[q] = 2 * pi * radius / POINTS * h * h; /* arc times depth, times the grid spacing */
   BW_TRY(bw_ibm_mdf_create(s->grid, &forcing, &s->body));
-  return bw_ibm_mdf_set_markers(s->body, n, X, rest, dV);
+  return bw_ibm_mdf_set_markers(s->body, n, X, rest, dV, NULL);
 }
 
 static bw_status step(scene *s, double dt)

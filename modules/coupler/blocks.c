@@ -16,7 +16,7 @@ static const int64_t OWN_MARKER = (int64_t)1 << 62;
 void bw_coupler__blocks_release(bw_coupler__blocks *b)
 {
   bw_exchange_destroy(&b->plan);
-  double **const all[] = {&b->send, &b->receive, &b->X, &b->V, &b->dV, &b->area, &b->force};
+  double **const all[] = {&b->send, &b->receive, &b->X, &b->V, &b->M, &b->dV, &b->area, &b->force};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&b->order);
@@ -147,10 +147,10 @@ static bw_status number_markers(bw_coupler__blocks *b, const int64_t received[])
 
 static bw_status allocate_markers(bw_coupler__blocks *b)
 {
-  double **const all[] = {&b->X, &b->V, &b->force, &b->dV, &b->area};
-  for (int q = 0; q < 5; q++) {
+  double **const all[] = {&b->X, &b->V, &b->M, &b->force, &b->dV, &b->area};
+  for (int q = 0; q < 6; q++) {
     bw_release(all[q]);
-    BW_TRY(BW_ALLOCATE(all[q], (q < 3 ? 3 : 1) * b->n));
+    BW_TRY(BW_ALLOCATE(all[q], (q < 4 ? 3 : 1) * b->n));
   }
   return BW_OK;
 }
@@ -238,19 +238,54 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c)
   return BW_OK;
 }
 
-void bw_coupler__blocks_reaction(bw_coupler *c)
+/* What belongs to the markers (n,3), times `scale`, to their members, out (n_surface,3), who take
+ * it by their own share of the area. Collective. */
+static void share_out(bw_coupler *c, const double of_marker[], double scale, double out[])
 {
   bw_coupler__blocks *b = &c->blocks;
-  /* Force of the step on the fluid, per marker. */
-  bw_ibm_mdf_marker_force(c->ibm, b->force);
-  for (size_t q = 0; q < b->n_members; q++) { /* the row's place is free: force per area */
+  for (size_t q = 0; q < b->n_members; q++) { /* the row's place is free */
     const size_t m = (size_t)b->marker[q];
-    for (int d = 0; d < 3; d++)
-      b->receive[3 * q + d] = -c->config.rho * b->force[3 * m + d] / b->area[m]; /* ERRATA 18 */
+    for (size_t d = 0; d < 3; d++)
+      b->receive[3 * q + d] = scale * of_marker[3 * m + d] / b->area[m];
   }
-  /* Back to the members, who take it by their own share of the area. */
-  bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, c->force);
+  bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, out);
   for (size_t q = 0; q < c->n_surface; q++)
-    for (int d = 0; d < 3; d++)
-      c->force[3 * q + d] *= c->area[q];
+    for (size_t d = 0; d < 3; d++)
+      out[3 * q + d] *= c->area[q];
+}
+
+void bw_coupler__blocks_reaction(bw_coupler *c)
+{
+  /* Force of the step on the fluid, per marker. */
+  bw_ibm_mdf_marker_force(c->ibm, c->blocks.force);
+  share_out(c, c->blocks.force, -c->config.rho, c->force); /* ERRATA 18 */
+}
+
+void bw_coupler__blocks_gather_memory(bw_coupler *c)
+{
+  bw_coupler__blocks *b = &c->blocks;
+  bw_exchange_forward(b->plan, 3 * sizeof *b->receive, c->marker_M, b->receive);
+  memset(b->M, 0, 3 * b->n * sizeof *b->M);
+  /* In the fixed order of blocks and ids. A particle without memory is a block of its own. */
+  for (size_t q = 0; q < b->n_members; q++) {
+    const size_t m = (size_t)b->marker[b->order[q]];
+    for (size_t d = 0; d < 3; d++)
+      b->M[3 * m + d] += b->receive[3 * (size_t)b->order[q] + d];
+  }
+}
+
+void bw_coupler__blocks_velocity(bw_coupler *c, double out[])
+{
+  bw_coupler__blocks *b = &c->blocks;
+  bw_ibm_mdf_interpolate(c->ibm, bw_ns_channel_velocity(c->fluid), b->force); /* scratch */
+  for (size_t q = 0; q < b->n_members; q++)
+    memcpy(b->receive + 3 * q, b->force + 3 * (size_t)b->marker[q], 3 * sizeof *b->force);
+  bw_exchange_backward(b->plan, 3 * sizeof *b->receive, b->receive, out);
+}
+
+void bw_coupler__blocks_memory(bw_coupler *c)
+{
+  /* Not in use now: the force per marker. */
+  bw_ibm_mdf_memory(c->ibm, c->blocks.force);
+  share_out(c, c->blocks.force, 1.0, c->marker_M);
 }

@@ -11,7 +11,8 @@ bw_coupler_config bw_coupler_config_default(void)
   return (bw_coupler_config){.rho = NAN,
                              .nu = NAN,
                              .kernel = BW_KERNEL_ROMA3,
-                             .iterations = 2,
+                             .iterations = 1,
+                             .memory = 0.2,
                              .retraction = NAN,
                              .probe_length = 2.0,
                              .probe_profile = BW_PROBE_QUADRATIC,
@@ -45,6 +46,12 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
   return BW_OK;
 }
 
+/* For the markers, which know no fluid. */
+static void set_ghosts(void *fluid)
+{
+  bw_ns_channel_ghosts(fluid);
+}
+
 static bw_status create_parts(bw_coupler *c)
 {
   bw_grid *grid = bw_ns_channel_grid(c->fluid);
@@ -54,6 +61,7 @@ static bw_status create_parts(bw_coupler *c)
   bw_pd_interface_config surface = bw_pd_interface_config_default();
   ibm.kernel = c->config.kernel;
   ibm.n_iter = c->config.iterations;
+  ibm.memory = c->config.memory;
   /* Left open: the retraction at which a cylinder's drag has no error (ERRATA 21). */
   if (isnan(c->config.retraction)) c->config.retraction = bw_ibm_mdf_retraction(&ibm);
   probe.length = c->config.probe_length;
@@ -65,18 +73,20 @@ static bw_status create_parts(bw_coupler *c)
   memcpy(surface.upper, g->length, sizeof surface.upper);
   memset(surface.lower, 0, sizeof surface.lower);
   BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->ibm));
+  bw_ibm_mdf_set_ghosts(c->ibm, set_ghosts, c->fluid);
   BW_TRY(bw_probe_create(grid, &probe, &c->probe));
   return bw_pd_interface_create(c->solid, &surface, &c->interface);
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 19 };
+enum { N_VECTORS = 21 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
-      &c->F,        &c->V,      &c->V_before,  &c->X,    &c->root_inside, &c->marker_X, &c->root,
-      &c->marker_V, &c->normal, &c->marker_dV, &c->area, &c->accel,       &c->traction, &c->force,
-      &c->turn,     &c->spin,   &c->root_V,    &c->load, &c->moment};
+      &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
+      &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
+      &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V,      &c->load,
+      &c->moment,   &c->M,        &c->marker_M};
   memcpy(vector, all, sizeof all);
 }
 
@@ -108,6 +118,10 @@ static bw_status particle_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
+  BW_TRY(BW_ALLOCATE(&c->broken, n));
+  BW_TRY(BW_ALLOCATE(&c->id, n));
+  if (n > 0) memcpy(c->id, bw_solid_id(c->solid), n * sizeof *c->id);
+  c->events = -1; /* not asked yet */
   /* Iterations repeat a step from a state that has to be kept. */
   return c->config.coupling_iterations > 1 ? bw_coupler__iteration_create(c) : BW_OK;
 }
@@ -122,6 +136,8 @@ static void release_particle_arrays(bw_coupler *c)
   bw_release(&c->particle);
   bw_release(&c->particle_inside);
   bw_release(&c->row);
+  bw_release(&c->broken);
+  bw_release(&c->id);
   bw_coupler__state_release(&c->kept);
   bw_coupler__iteration_release(c);
   bw_coupler__blocks_release(&c->blocks);
@@ -136,12 +152,63 @@ static bw_status create_arrays(bw_coupler *c)
   return bw_field_create(bw_ns_channel_grid(c->fluid), &c->inside);
 }
 
+/* What a step takes over from the one before, (n,3) each, with the ids of the particles. */
+enum { N_CARRIED = 3 };
+typedef struct {
+  size_t n;
+  int64_t *id;
+  double *of[N_CARRIED];
+} carried;
+
+static void list_carried(bw_coupler *c, double **of[N_CARRIED])
+{
+  double **const all[N_CARRIED] = {&c->F, &c->V_before, &c->M};
+  memcpy(of, all, sizeof all);
+}
+
+/* Out of the coupler's arrays, which are to be released. */
+static carried take(bw_coupler *c)
+{
+  carried k = {.n = c->n, .id = c->id};
+  double **of[N_CARRIED];
+  list_carried(c, of);
+  c->id = NULL;
+  for (int q = 0; q < N_CARRIED; q++) {
+    k.of[q] = *of[q];
+    *of[q] = NULL;
+  }
+  return k;
+}
+
+/* To the particles that are still here. Ids do not rise with the row, but particles that stay keep
+ * their order as a rule: each search goes on behind the last find, around the end. */
+static void give_back(bw_coupler *c, const carried *k)
+{
+  double **of[N_CARRIED];
+  list_carried(c, of);
+  size_t at = 0;
+  for (size_t i = 0; i < c->n; i++) {
+    size_t tried = 0;
+    while (tried < k->n && k->id[at] != c->id[i])
+      at = at + 1 < k->n ? at + 1 : 0, tried++;
+    if (tried == k->n) continue;
+    for (int q = 0; q < N_CARRIED; q++)
+      memcpy(*of[q] + 3 * i, k->of[q] + 3 * at, 3 * sizeof **of[q]);
+  }
+}
+
 bw_status bw_coupler__renew(bw_coupler *c)
 {
   const bw_comm *comm = bw_solid_comm(c->solid);
+  carried k = take(c);
   release_particle_arrays(c);
-  /* The load of the step before is not known of particles that were not there: it is found anew. */
-  BW_TRY(bw_comm_agree(comm, particle_arrays(c)));
+  bw_status st = bw_comm_agree(comm, particle_arrays(c));
+  /* Load and memory of particles that were not there are not known: they are found anew. */
+  if (st == BW_OK) give_back(c, &k);
+  bw_release(&k.id);
+  for (int q = 0; q < N_CARRIED; q++)
+    bw_release(&k.of[q]);
+  if (st != BW_OK) return st;
   BW_TRY(bw_coupler__bodies_create(c));
   if (c->block > 1) BW_TRY(bw_coupler__blocks_create(c));
   c->n_surface = c->n_inside = 0;

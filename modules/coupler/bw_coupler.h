@@ -29,6 +29,10 @@
  * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
  * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
  *
+ * What markers remember (bw_ibm_mdf.h) is kept per particle: a block's memory is the sum over its
+ * members, and goes back to them in shares of area. Particles that lost a bond have none: faces of
+ * a crack may ask for two velocities in the same cells, which a memory would push against for ever.
+ *
  * How many markers: one per surface particle, or, where particles are finer than the grid (FSI's
  * plate: ds = h/5, every fifth particle a marker), one per block of k^(dim-1) particles of a face,
  * k = marker_spacing h/ds: at their mean position, with their mean velocity and the sum of their
@@ -48,6 +52,7 @@
 #pragma once
 #include "bw_checkpoint.h"
 #include "bw_ibm_mdf.h"
+#include "bw_log.h"
 #include "bw_ns_channel.h"
 #include "bw_pd_interface.h"
 #include "bw_probe.h"
@@ -75,7 +80,9 @@ typedef struct {
   double rho;                /* density of the fluid [M/L^3]                required */
   double nu;                 /* its kinematic viscosity [L^2/T]             required */
   bw_kernel_delta_id kernel; /* of the forcing; probes use Roma's           default Roma 3-point */
-  int iterations;            /* forcing iterations [-]                      default 2 */
+  int iterations;            /* forcing iterations [-]                      default 1 */
+  double memory;             /* of the markers (bw_ibm_mdf.h), 0 .. 0.5 [-]; 0: none, which asks
+                                for two iterations or more                  default 0.2 */
   double retraction;         /* of the markers, in grid spacings [-]; NaN: the best one known
                                 for kernel and iterations (bw_ibm_mdf_retraction)  default NaN */
   double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);
@@ -144,22 +151,33 @@ typedef struct {
                                      given = late + received (the solid's ledger, external, less
                                      its weight's), to the order of the step */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
-  int iterations;                 /* of the last step; 1: explicit */
-  double residual;                /* with which it ended [-]; 0 when explicit */
-  int64_t unconverged;            /* steps so far that used up their iterations */
-  int64_t markers;                /* of all ranks */
-  int64_t markers_outside;        /* of them, outside the box: they force nothing */
-  int64_t probes_shortened;       /* shortened or crowded by something in their way */
-  int64_t probes_blocked;         /* without room: they bring no load */
-  double surface_area;            /* of the solid in the box [L^2] */
-  double mass_inside; /* of the solid in the box, with what holds it under the walls [M] */
-  double mass_out;    /* beyond a side, still joined to what is inside [M] */
-  double mass_left;   /* retired [M]; the sum of the three never changes */
-  double imbalance;   /* most markers on a rank over the mean [-] */
+  double slip;                    /* that over the largest speed of inflows, walls and bodies, or of
+                                     the fluid's mean where all of them rest [-] */
+  double leak;              /* flux through the surface, (1/2) sum |(U - V).N| A, over that past
+                                     it, the same speed times the largest of the three frontal areas
+                                     (1/2) sum |N_d| A [-]; NaN after a step in which the surface
+                                     became another */
+  int iterations;           /* of the last step; 1: explicit */
+  double residual;          /* with which it ended [-]; 0 when explicit */
+  int64_t unconverged;      /* steps so far that used up their iterations */
+  int64_t markers;          /* of all ranks */
+  int64_t markers_outside;  /* of them, outside the box: they force nothing */
+  int64_t probes_shortened; /* shortened or crowded by something in their way */
+  int64_t probes_blocked;   /* without room: they bring no load */
+  double surface_area;      /* of the solid in the box [L^2] */
+  double mass_inside;       /* of the solid in the box, with what holds it under the walls [M] */
+  double mass_out;          /* beyond a side, still joined to what is inside [M] */
+  double mass_left;         /* retired [M]; the sum of the three never changes */
+  double imbalance;         /* most markers on a rank over the mean [-] */
 } bw_coupler_report;
 /* Measures the last step; probes are read for it where they do not load the solid. BW_EMEM.
  * Collective. */
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHECK;
+
+/* One warning on `log`, with the remedy, when slip or leak of five reports in a row are above 2 %; r
+ * is the report of bw_coupler_measure. Not in the first hundred steps, in which every flow slips.
+ * The same on all ranks. Local. */
+void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log);
 
 /* Parts of a step whose time is measured. */
 typedef enum {

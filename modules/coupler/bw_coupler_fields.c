@@ -22,6 +22,8 @@ const bw_config_field bw_coupler_fields[] = {
     WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "delta kernel of the forcing"),
     V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
       "forcing iterations in each sub-step of the fluid"),
+    V(OURS, memory, BW_OPTIONAL, BW_FROM_TO(0, 0.5), "",
+      "share of the last step in the memory of the forcing; 0: none, then two iterations or more"),
     V(OURS, retraction, BW_OPTIONAL, BW_FROM_TO(-2, 2), "cells",
       "how far inside the nominal surface markers are; left out: the best for kernel and "
       "iterations"),

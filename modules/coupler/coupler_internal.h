@@ -17,24 +17,24 @@ typedef struct {
   double *rows;            /* (n, bw_solid_restart_row) of bw_solid_get_restart */
   double sums[BW_SOLID_RESTART_SUMS], work[2]; /* of all ranks: given, late */
   uint8_t *bits;                               /* (n, bits_bytes) */
-  double *V_before, *F;                        /* (n,3) */
+  double *V_before, *F, *M;                    /* (n,3) */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
  * marker over; that rank follows from the block alone, and members are summed in the order of their
  * ids, so that markers do not depend on the number of ranks. */
 typedef struct {
-  bw_exchange *plan;                 /* members to the ranks of their markers */
-  size_t n_members, n;               /* received members, markers */
-  int32_t *order, *marker;           /* (n_members) rising by block and id; which marker is whose */
-  double *send, *receive;            /* (n_surface,7), (n_members,7): area, X, V */
-  double *X, *V, *dV, *area, *force; /* (n,3), (n,3), (n), (n), (n,3) */
-  size_t n_surface;                  /* surface the plan is for */
-  int64_t events;                    /* broken bonds then, bw_solid_events */
-  int32_t *particle;                 /* (particles) and its members */
-  uint16_t *broken;                  /* (particles) broken bonds of each */
-  int8_t *face;                      /* (particles) 2 axis + side of the reference normal, or -1 */
-  int64_t *block;                    /* (particles) reference site over k, packed */
+  bw_exchange *plan;       /* members to the ranks of their markers */
+  size_t n_members, n;     /* received members, markers */
+  int32_t *order, *marker; /* (n_members) rising by block and id; which marker is whose */
+  double *send, *receive;  /* (n_surface,7), (n_members,7): area, X, V */
+  double *X, *V, *M, *dV, *area, *force; /* (n,3), (n,3), (n,3), (n), (n), (n,3) */
+  size_t n_surface;                      /* surface the plan is for */
+  int64_t events;                        /* broken bonds then, bw_solid_events */
+  int32_t *particle;                     /* (particles) and its members */
+  uint16_t *broken;                      /* (particles) broken bonds of each */
+  int8_t *face;   /* (particles) 2 axis + side of the reference normal, or -1 */
+  int64_t *block; /* (particles) reference site over k, packed */
 } bw_coupler__blocks;
 
 /* Iterated coupling (iterate.c): state at the beginning of the step, positions then (n,3);
@@ -57,22 +57,27 @@ struct bw_coupler {
   bw_probe *probe;
   bool held;
   size_t n;                /* particles of this rank */
+  int64_t *id;             /* (n) theirs */
   int64_t revision;        /* of the solid that the arrays below are for */
   double h;                /* grid spacing [L] */
   double *F;               /* (n,3) fluid load on particles [M/(L^2 T^2)] */
+  double *M;               /* (n,3) memory of the particles' markers [L^4/T^2] */
+  uint16_t *broken;        /* (n) broken bonds of each particle ... */
+  int64_t events;          /* ... when the solid had counted so many */
   double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
                               what the markers were told (iterated) */
   size_t n_surface;        /* surface particles inside the box: rows used of the arrays below */
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
-  double *root, *normal, *area;            /* probe points (n,3), normals (n,3), areas (n) */
-  double *accel, *traction, *force;        /* (n,3) each: of the surface points */
-  double *load;                            /* (n,3) of c->force, on the particles [M L/T^2] */
-  double *moment;                          /* (n,3) of the interface's rows [M L^2/T^2] */
-  double *turn;                            /* (n,3) spin of the interface's rows */
-  double *spin, *root_V;                   /* (n,3) of the surface points */
-  unsigned char *flag;                     /* (n) bw_probe_flag */
-  double force_probe[3];                   /* of this rank, last probes */
+  double *marker_M; /* (n,3) memory of the surface points [L^4/T^2]; NaN: they have none */
+  double *root, *normal, *area;     /* probe points (n,3), normals (n,3), areas (n) */
+  double *accel, *traction, *force; /* (n,3) each: of the surface points */
+  double *load;                     /* (n,3) of c->force, on the particles [M L/T^2] */
+  double *moment;                   /* (n,3) of the interface's rows [M L^2/T^2] */
+  double *turn;                     /* (n,3) spin of the interface's rows */
+  double *spin, *root_V;            /* (n,3) of the surface points */
+  unsigned char *flag;              /* (n) bw_probe_flag */
+  double force_probe[3];            /* of this rank, last probes */
   bw_real *p_mean;       /* field: pressure that acted over the last step (ns_channel's p/rho) */
   bool p_mean_known;     /* false before the first step, after a load, after an unwatched step */
   bool watched, stepped; /* bw_coupler_watch; has there been a step since create or load */
@@ -100,12 +105,17 @@ struct bw_coupler {
   int iterations;
   double residual;
   int64_t unconverged;
+  int64_t steps;  /* since create */
+  size_t handed;  /* markers that this rank has handed over */
+  int slip_above; /* reports in a row with much slip; -1: it was said */
 };
 
 /* Everything with a row per particle anew, after the set of particles changed. Collective. */
 bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 /* Surface, markers, probe points to where the solid is now. Collective. */
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
+/* The memory of the markers to the particles, at the end of a step. Collective. */
+void bw_coupler__remember(bw_coupler *c);
 /* Velocity (n_surface,3) of points that far inside the nominal surface, and of the markers, by the
  * solid's present velocities; c->spin and c->V are current after. Collective. */
 void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[]);
@@ -140,6 +150,12 @@ void bw_coupler__count_mass(bw_coupler *c, double mass[3]);
 bw_status bw_coupler__blocks_create(bw_coupler *c) BW_MUST_CHECK;
 bw_status bw_coupler__blocks_follow(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__blocks_reaction(bw_coupler *c);
+/* Memory of the blocks, from c->marker_M of their members and back to it, in shares of area.
+ * Collective. */
+void bw_coupler__blocks_gather_memory(bw_coupler *c);
+/* Velocity of the fluid at each member's marker, out (n_surface,3). Collective. */
+void bw_coupler__blocks_velocity(bw_coupler *c, double out[]);
+void bw_coupler__blocks_memory(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
 /* How far inside the nominal surface markers sit. Local. */

@@ -13,6 +13,70 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
   }
 }
 
+/* The largest speed that drives the fluid: of inflows, walls, a given flow rate, bodies; the mean of
+ * the fluid where nothing of this moves. Collective. */
+static double reference_speed(bw_coupler *c)
+{
+  const bw_ns_channel_config *fluid = bw_ns_channel_settings(c->fluid);
+  double most = fluid->forcing == BW_FORCING_FLOW_RATE ? fabs(fluid->forcing_value) : 0.0;
+  for (int d = 0; d < 3; d++)
+    for (int s = 0; s < 2; s++) {
+      const bw_ns_side *side = &fluid->side[d][s];
+      if (side->kind != BW_SIDE_WALL && side->kind != BW_SIDE_INFLOW) continue;
+      const double *v = side->velocity;
+      most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+      if (side->profile == BW_PROFILE_POISEUILLE) most = fmax(most, fabs(side->bulk_velocity));
+    }
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const double *v = c->marker_V + 3 * q;
+    most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  }
+  bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 1, &most);
+  return most > 0.0 ? most : fabs(bw_ns_channel_summary(c->fluid).bulk_velocity);
+}
+
+/* Through the surface over past it. Collective. */
+static double measure_leak(bw_coupler *c, double speed)
+{
+  const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
+  double *U = c->load, sum[4] = {0.0}; /* scratch; through, frontal areas */
+  /* Markers that are not those of the present surface tell nothing about it. */
+  double other = c->handed != (c->block > 1 ? c->blocks.n : c->n_surface);
+  bw_comm_max(comm, 1, &other);
+  if (other > 0.0) return NAN;
+  if (c->block > 1)
+    bw_coupler__blocks_velocity(c, U);
+  else
+    bw_ibm_mdf_interpolate(c->ibm, bw_ns_channel_velocity(c->fluid), U);
+  for (size_t q = 0; q < c->n_surface; q++) {
+    double through = 0.0;
+    for (size_t d = 0; d < 3; d++) {
+      through += (U[3 * q + d] - c->marker_V[3 * q + d]) * c->normal[3 * q + d];
+      sum[1 + d] += fabs(c->normal[3 * q + d]) * c->area[q];
+    }
+    sum[0] += fabs(through) * c->area[q];
+  }
+  bw_comm_sum(comm, 4, sum);
+  const double past = speed * fmax(sum[1], fmax(sum[2], sum[3]));
+  return past > 0.0 ? sum[0] / past : 0.0;
+}
+
+void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
+{
+  enum { IN_A_ROW = 5, SETTLED = 100 }; /* a start is no news */
+  static const double MUCH = 0.02;      /* 2 % of slip cost some 2 % of the force in narrow gaps */
+  const bool much = r->slip > MUCH || r->leak > MUCH;
+  if (c->slip_above < 0 || c->steps < SETTLED) return;
+  c->slip_above = much ? c->slip_above + 1 : 0;
+  if (c->slip_above < IN_A_ROW) return;
+  c->slip_above = -1;
+  bw_log_warn(log,
+              "slip at the markers is %.1f %% of the flow, %.1f %% of it passes through the "
+              "surface: forces come out too low; take smaller steps, give the forcing its memory "
+              "(coupling.memory: 0.2), or, without it, more iterations",
+              100.0 * r->slip, 100.0 * r->leak);
+}
+
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
@@ -30,6 +94,9 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .unconverged = c->unconverged};
   double box[3], mass[3];
   int64_t count[2];
+  const double speed = reference_speed(c);
+  r.slip = speed > 0.0 ? r.slip_rms / speed : 0.0;
+  r.leak = measure_leak(c, speed);
   /* Probes that load the solid were read in the step; others are read now, if p is known. */
   const bool probed = !c->held && c->config.load == BW_LOAD_PROBES; /* in the step itself */
   const bool known = probed || c->p_mean_known || !c->stepped;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum { N_FIELDS = 4 };
+static const char memory_name[] = "solid/memory_of_forcing";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 void bw_coupler__state_release(bw_coupler__state *s)
@@ -16,6 +17,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->bits);
   bw_release(&s->V_before);
   bw_release(&s->F);
+  bw_release(&s->M);
   s->filled = false;
 }
 
@@ -37,7 +39,8 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   BW_TRY(BW_ALLOCATE(&s->rows, bw_solid_restart_row(c->solid) * c->n));
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
-  return BW_ALLOCATE(&s->F, 3 * c->n);
+  BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
+  return BW_ALLOCATE(&s->M, 3 * c->n);
 }
 
 void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
@@ -60,6 +63,7 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   /* The relaxed load and the velocity before belong to the state: both act in the next step. */
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
+  memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
   s->filled = true;
 }
 
@@ -97,6 +101,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
+  BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -118,6 +123,10 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
+  /* Files from before the memory go on without: it fills within some steps. */
+  memset(s->M, 0, 3 * c->n * sizeof *s->M);
+  if (bw_checkpoint_has(ck, memory_name))
+    BW_TRY(bw_checkpoint_get_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -140,6 +149,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   BW_TRY(bw_solid_set_restart(c->solid, s->rows, s->sums));
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
+  memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
   return BW_OK;
 }
 

@@ -160,9 +160,14 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
   /* Every step ends with a check of the same dt. */
   c->checked_dt = dt;
   count_work(c, dt);
+  c->steps++;
   c->iterations = 1;
   /* A held solid: the fluid alone, around markers that do not move. */
-  if (c->held) return bw_coupler__advance_fluid(c, dt);
+  if (c->held) {
+    const bw_status st = bw_coupler__advance_fluid(c, dt);
+    bw_coupler__remember(c);
+    return st;
+  }
   if (c->config.coupling_iterations > 1) {
     /* The same phases, repeated until both sides agree. */
     BW_TRY(bw_coupler__iterate(c, dt));
@@ -171,6 +176,7 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
     BW_TRY(bw_coupler__load_solid(c, dt, c->config.load_relaxation)); /* stress of the new flow */
     BW_TRY(bw_coupler__advance_solid(c, dt));                         /* X, V, bonds at t + dt */
   }
+  bw_coupler__remember(c);       /* what the markers needed, for the next step */
   BW_TRY(bw_coupler__let_go(c)); /* pieces that have passed an outflow */
   return move_surface(c);        /* surface and markers at t + dt */
 }

@@ -189,13 +189,45 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
   return BW_OK;
 }
 
+/* The memory of the surface points: that of their particles, none where a bond has broken. */
+static void place_memory(bw_coupler *c)
+{
+  if (c->events != bw_solid_events(c->solid)) {
+    bw_solid_get_broken(c->solid, c->broken);
+    c->events = bw_solid_events(c->solid);
+  }
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const size_t p = (size_t)c->particle[q];
+    for (size_t d = 0; d < 3; d++)
+      c->marker_M[3 * q + d] = c->broken[p] > 0 ? NAN : c->M[3 * p + d];
+  }
+}
+
 bw_status bw_coupler__place_markers(bw_coupler *c)
 {
   if (!c->markers_moved) return BW_OK;
   c->markers_moved = false;
   const bw_coupler__blocks *b = &c->blocks;
-  if (c->block > 1) return bw_ibm_mdf_set_markers(c->ibm, b->n, b->X, b->V, b->dV);
-  return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV);
+  place_memory(c);
+  c->handed = c->block > 1 ? b->n : c->n_surface;
+  if (c->block == 1)
+    return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV,
+                                  c->marker_M);
+  bw_coupler__blocks_gather_memory(c);
+  return bw_ibm_mdf_set_markers(c->ibm, b->n, b->X, b->V, b->dV, b->M);
+}
+
+void bw_coupler__remember(bw_coupler *c)
+{
+  if (c->config.memory == 0.0) return;
+  if (c->block > 1)
+    bw_coupler__blocks_memory(c);
+  else
+    bw_ibm_mdf_memory(c->ibm, c->marker_M);
+  /* What is no surface (any more), or out of the box, has nothing to remember. */
+  memset(c->M, 0, 3 * c->n * sizeof *c->M);
+  for (size_t q = 0; q < c->n_surface; q++)
+    memcpy(c->M + 3 * (size_t)c->particle[q], c->marker_M + 3 * q, 3 * sizeof *c->M);
 }
 
 /* Cells (with halos) that probes on the surface, wherever it moves in a step, can read: its

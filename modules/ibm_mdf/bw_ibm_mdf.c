@@ -7,7 +7,7 @@
 
 bw_ibm_mdf_config bw_ibm_mdf_config_default(void)
 {
-  return (bw_ibm_mdf_config){.kernel = BW_KERNEL_ROMA3, .n_iter = 2};
+  return (bw_ibm_mdf_config){.kernel = BW_KERNEL_ROMA3, .n_iter = 1, .memory = 0.2};
 }
 
 double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
@@ -18,6 +18,11 @@ double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
       [BW_KERNEL_PESKIN4] = {0.48, 0.44, 0.42, 0.41},
       [BW_KERNEL_HAT2] = {0.26, 0.24, 0.23, 0.23},
   };
+  /* Without slip: data/forcing_sheet/sheet_displacement.csv, the mean over the normals of a
+   * cylinder and that over those of a sphere, which differ by less than 0.01. */
+  static const double no_slip[BW_KERNEL_COUNT] = {
+      [BW_KERNEL_ROMA3] = 0.28, [BW_KERNEL_PESKIN4] = 0.39, [BW_KERNEL_HAT2] = 0.19};
+  if (config->memory > 0.0) return no_slip[config->kernel];
   /* The columns double: n_iter from 2, 4, 8 on. */
   int column = 0;
   while (column < COLUMNS - 1 && config->n_iter >= 2 << column)
@@ -32,6 +37,8 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
   /* What follows from the arguments alone fails on every rank alike, before anything is agreed. */
   BW_REQUIRE(config->n_iter >= 1, BW_EINPUT, "n_iter: at least 1 forcing iteration, found %d",
              config->n_iter);
+  BW_REQUIRE(config->memory >= 0.0 && config->memory <= 0.5, BW_EINPUT,
+             "memory: %g is not in [0, 0.5]; 0.2 is a good share, 0 is none", config->memory);
   BW_REQUIRE((int)config->kernel >= 0 && config->kernel < BW_KERNEL_COUNT, BW_EINPUT,
              "kernel: no row %d in the table of %d", (int)config->kernel, (int)BW_KERNEL_COUNT);
   BW_REQUIRE(g->uniform_y, BW_EINPUT,
@@ -55,6 +62,8 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
   if (st != BW_OK) return st;
   ib->kernel = bw_kernel_delta_get(config->kernel);
   ib->n_iter = config->n_iter;
+  ib->beta = config->memory;
+  ib->share = 1.0;
   ib->cell_volume = g->spacing[0] * g->spacing[1] * g->spacing[2];
   bw_ibm_mdf__find_blocks(ib);
   /* Kernels are chosen once, by support and dimension, so
@@ -73,9 +82,10 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib)
   bw_exchange_destroy(&b->image_plan);
   /* All of them may be NULL: the object may be half built. */
   void *const arrays[] = {
-      &b->sent_from, &b->destination, &b->item,   &b->answer, &b->received, &b->order, &b->swap,
-      &b->key,       &b->key_swap,    &b->V,      &b->dV,     &b->QdV,      &b->reply, &b->cast_to,
-      &b->cast_from, &b->cast_item,   &b->cast_F, &b->image,  &b->weights,  &b->nodes, &b->U};
+      &b->sent_from, &b->destination, &b->item,     &b->answer,    &b->received,  &b->order,
+      &b->swap,      &b->key,         &b->key_swap, &b->V,         &b->dV,        &b->QdV,
+      &b->M,         &b->reply,       &b->cast_to,  &b->cast_from, &b->cast_item, &b->cast_F,
+      &b->image,     &b->weights,     &b->nodes,    &b->U};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(ib);
@@ -102,10 +112,11 @@ static void spread_from(bw_ibm_mdf *ib, size_t begin, bw_real *const u[3])
   ib->spread(&s, ib->U, u);
 }
 
-/* Of the markers of s: U <- (V - U) dV/h^3, QdV += (V - U) dV/dt; returns sum |V - U|^2. */
+/* Of the markers of s: U <- (V - U) dV/h^3, QdV += (V - U) dV/dt, of both the share that an
+ * iteration gives; returns sum |V - U|^2. */
 static double velocity_to_force(bw_ibm_mdf *ib, const bw_ibm_mdf__stencils *s, double dt)
 {
-  const double per_volume = 1.0 / ib->cell_volume, per_step = 1.0 / dt;
+  const double per_volume = ib->share / ib->cell_volume, per_step = ib->share / dt;
   const double *restrict V = ib->V, *restrict dV = ib->dV;
   double *restrict QdV = ib->QdV, slip = 0.0;
   bw_real *restrict U = ib->U;
@@ -187,6 +198,8 @@ bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
   for (int q = 0; q < TURNS; q++)
     largest = power_iteration(ib, field);
   bw_release(&field);
+  /* With memory a mode is stable while an iteration takes no more than all of its slip. */
+  if (ib->beta > 0.0) ib->share = 1.0 / fmax(1.0, largest);
   /* The slip goes through I - A: it grows where an eigenvalue of A is above 2. */
   BW_REQUIRE(largest <= 2.0, BW_EINPUT,
              "markers: forcing would grow by %.2f per iteration, they stand for more volume than "
@@ -195,11 +208,49 @@ bw_status bw_ibm_mdf__check_growth(bw_ibm_mdf *ib)
   return BW_OK;
 }
 
+void bw_ibm_mdf_set_ghosts(bw_ibm_mdf *ib, bw_ibm_mdf_ghosts_fn function, void *context)
+{
+  ib->ghosts = function;
+  ib->ghosts_of = context;
+}
+
+/* Does marker m have a memory? */
+static bool remembers(const bw_ibm_mdf *ib, size_t m)
+{
+  return !isnan(ib->M[3 * m]);
+}
+
+/* u += dt gamma_r spread(M), QdV += gamma_r M. Collective. */
+static void recall(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
+{
+  static const double gamma[3] = {8.0 / 15, 2.0 / 15, 1.0 / 3}; /* bw_ns_channel.h */
+  const double share = gamma[ib->call % 3], per_volume = share * dt / ib->cell_volume;
+  const double start = bw_wall_time();
+  for (size_t m = 0; m < ib->held; m++) {
+    const bool has = remembers(ib, m);
+    for (size_t i = 3 * m; i < 3 * m + 3; i++) {
+      const double M = has ? ib->M[i] : 0.0;
+      ib->QdV[i] += share * M;
+      ib->U[i] = (bw_real)(per_volume * M);
+    }
+  }
+  const double ready = bw_wall_time();
+  bw_ibm_mdf__give_images(ib);
+  const double given = bw_wall_time();
+  spread_from(ib, 0, u);
+  ib->cost.images += given - ready;
+  ib->cost.kernels += bw_wall_time() - given + ready - start;
+}
+
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
 {
   if (ib->markers == ib->outside) return;
+  /* What the surface needed before comes first: iterations have to find the rest only. */
+  if (ib->beta > 0.0) recall(ib, u, dt);
   /* POROUS 3.79 to 3.82, n_iter times: what one spreading leaves of the slip the next takes. */
   for (int s = 0; s < ib->n_iter; s++) {
+    /* Markers near a side read the ghosts beyond it, which no spreading has reached. */
+    if (ib->ghosts != NULL && (s > 0 || ib->beta > 0.0)) ib->ghosts(ib->ghosts_of);
     const double start = bw_wall_time();
     const double slip = force_held(ib, u, dt);
     if (s == 0) ib->slip_sum = slip;
@@ -212,6 +263,7 @@ void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
     ib->cost.images += given - held;
     ib->cost.kernels += bw_wall_time() - given + held - start;
   }
+  ib->call++;
   ib->cost.forced += (int64_t)ib->held * ib->n_iter;
 }
 
@@ -225,8 +277,20 @@ void bw_ibm_mdf_cost_reset(bw_ibm_mdf *ib)
   ib->cost = (bw_ibm_mdf_cost){.forced = 0};
 }
 
+/* Memory of held marker m, component c, with the force of the last step in it; NaN for none. */
+static double renewed(const bw_ibm_mdf *ib, size_t m, size_t c)
+{
+  const double M = ib->M[3 * m + c];
+  return ib->call == 0 ? M : (1.0 - ib->beta) * M + ib->beta * ib->QdV[3 * m + c];
+}
+
 void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib)
 {
+  /* M <- (1 - beta) M + beta sum_r Q_r; without a step since there is nothing to take up. */
+  for (size_t m = 0; ib->call > 0 && ib->beta > 0.0 && m < ib->held; m++)
+    for (size_t c = 0; c < 3; c++)
+      ib->M[3 * m + c] = renewed(ib, m, c);
+  ib->call = 0;
   if (ib->held > 0) memset(ib->QdV, 0, 3 * ib->held * sizeof *ib->QdV);
 }
 
@@ -246,6 +310,16 @@ void bw_ibm_mdf_marker_force(bw_ibm_mdf *ib, double QdV[])
   for (size_t m = 0; m < ib->held; m++)
     memcpy(ib->reply + 3 * (size_t)ib->order[m], ib->QdV + 3 * m, 3 * sizeof *QdV);
   return_to_caller(ib, QdV);
+}
+
+void bw_ibm_mdf_memory(bw_ibm_mdf *ib, double M[])
+{
+  for (size_t m = 0; m < ib->held; m++) {
+    const bool has = ib->beta > 0.0 && remembers(ib, m);
+    for (size_t c = 0; c < 3; c++)
+      ib->reply[3 * (size_t)ib->order[m] + c] = has ? renewed(ib, m, c) : 0.0;
+  }
+  return_to_caller(ib, M);
 }
 
 void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[])

@@ -4,6 +4,19 @@
  *   U = interpolate(u^);  Q += (V - U)/dt;  u^ = u* + dt spread(Q dV)
  * with the full dt of the step in every sub-step. Interpolation and spreading use the same
  * kernel and are adjoint: sum Q.U dV over markers = sum q.u h^3 over cells, to round-off.
+ *
+ * Memory. Each iteration takes a part of the slip, and projection brings slip back, so that any
+ * number of iterations leaves some for ever, of the order of the step. With a memory M per marker,
+ * the running mean of the force that it needed, the iterations of sub-step r begin from
+ *   u* + dt gamma_r spread(M),  Q_r = gamma_r M/dV + what they add,  gamma = 8/15, 2/15, 1/3,
+ * and the step ends with M <- (1 - beta) M + beta sum_r Q_r dV. Where the flow is steady M is the
+ * whole force and no slip is left, after one iteration. For a mode with the eigenvalues a of A =
+ * interpolate(spread(. dV)) and p a of the same with the projection in between, k = 1 - (1 - a)^
+ * n_iter and y = (1 - beta) k (1 - p), a step multiplies what is not steady by the roots of
+ *   mu^3 - (2 - k p (1 + beta) + y) mu^2 + (1 - k p + 2 y) mu - y = 0
+ * (data/forcing_sheet/memory_roots.py). beta = 0 has the root 1, the slip that stays; it leaves 1
+ * as 1 - beta a p. No root is above 1 while k <= 1; where A has an eigenvalue above 1 the
+ * iterations take the part 1/a of what is missing only. beta = 0.05 to 0.3 behave alike.
  * Grid     must be uniform (checked, BW_EINPUT) with halo 2; kernels reach two cells.
  * Shapes   marker vectors are row-major (n,3); dV (n).
  * Owns     copies of the markers, sorted by cell, on the rank that owns the cell; their weights.
@@ -24,17 +37,22 @@ typedef struct bw_ibm_mdf bw_ibm_mdf;
 /* What a user chooses. */
 typedef struct {
   bw_kernel_delta_id kernel; /*                     default BW_KERNEL_ROMA3 */
-  int n_iter;                /* forcing iterations [-], >= 1       default 2 */
+  int n_iter;                /* forcing iterations [-], >= 1       default 1 */
+  double memory;             /* beta [-], 0 .. 0.5; 0: no memory   default 0.2 */
 } bw_ibm_mdf_config;
 
-/* Roma's kernel, two iterations. Pure. */
+/* Roma's kernel, one iteration, a memory of five steps. Without memory use two iterations or more.
+ * Pure. */
 bw_ibm_mdf_config bw_ibm_mdf_config_default(void);
 
 /* How far inside the nominal surface the markers of a solid belong, in grid spacings (ERRATA 21).
  * A regularised sheet of force stops the fluid some way outside itself: over a flat sheet on the
  * grid by (1/2) sum_ij phi_i phi_j |i - j| spacings (0.25 to 0.28 for Roma's kernel, 0.375 to 0.39
- * for Peskin's, 0 to 0.25 for the hat), more where slip is left. The values are those at which the
- * drag of a cylinder has no error (validation/ibm_mdf/cylinder_drag). Pure. */
+ * for Peskin's, 0 to 0.25 for the hat), over a turned one by more, linearly in n_x^4 + n_y^4 +
+ * n_z^4 of its normal. With memory no slip is left and the value is the mean over all places and
+ * turns of the sheet (data/forcing_sheet/flat_sheet.py): it follows from the kernel alone. Without
+ * memory slip adds to it, and the values are those at which the drag of a cylinder has no error
+ * (validation/ibm_mdf/cylinder_drag). Pure. */
 double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config);
 
 /* No markers yet. `grid` is borrowed until destroy. BW_EINPUT for values out of range and a grid
@@ -55,19 +73,37 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib);
  * A = interpolate(spread(. dV)); when the largest eigenvalue of A is above 2 the iteration grows.
  * That of the first set that has markers is measured (the cost of 8 iterations), later sets are
  * taken to be as dense.
+ * M (n,3) [L^4/T^2]: what bw_ibm_mdf_memory gave of these markers, whatever their order and ranks
+ * were then; NULL where they are new. The first component NaN: the marker neither has nor gathers a
+ * memory (where two surfaces ask for different velocities in the same cells, as the faces of a
+ * crack do, a memory would grow for ever). Not used without memory.
  * BW_EINPUT for values that are not finite, negative volumes and iterations that grow, on all
  * ranks; BW_EMEM. Collective. */
 bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], const double V[],
-                                 const double dV[]) BW_MUST_CHECK;
+                                 const double dV[], const double M[]) BW_MUST_CHECK;
+
+/* Sets the ghosts of the velocity beyond the physical sides of the box from what is inside. */
+typedef void (*bw_ibm_mdf_ghosts_fn)(void *context);
+/* Who forces walled boxes gives the function that does so for his fluid (bw_ns_channel_ghosts):
+ * spreading changes cells at a side and not the ghosts beyond, which the next iteration reads. The
+ * context is borrowed for the life of the markers; NULL: nobody does. Local, on all ranks. */
+void bw_ibm_mdf_set_ghosts(bw_ibm_mdf *ib, bw_ibm_mdf_ghosts_fn function, void *context);
 
 /* Make the velocity u[3] [L/T] (fields with valid halos; u[2] may be NULL in 2D) meet V at the
  * markers, in place; halos of u stay valid (their owners' values to round-off), except beyond
  * physical boundaries. dt [T] is that of the whole step (ERRATA 18). Adds to the force of the step.
- * Collective. */
+ * Once per sub-step: memory enters the first, second and third call since begin_step with gamma_0,
+ * gamma_1 and gamma_2. Collective. */
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt);
 
-/* Start a new step: the accumulated force is zero. Local. */
+/* Start a new step: the memory takes up the force of the last one, which is zero from now on.
+ * After set_markers, whose M has it already, the memory stays as it is. Local. */
 void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib);
+
+/* M (n,3) [L^4/T^2], in the order of set_markers: the memory with which the next step begins (the
+ * force of the last one is in it). Markers without memory and outside the box have zeros.
+ * Collective. */
+void bw_ibm_mdf_memory(bw_ibm_mdf *ib, double M[]);
 
 /* Sum over the sub-steps since begin_step of Q dV, per marker in the order of set_markers
  * (n,3) [L^4/T^2]: the mean force of the boundary on the fluid over the step, per density
@@ -83,7 +119,8 @@ void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
 /* What the last step did. */
 typedef struct {
-  double slip_before;    /* rms |V - U| over markers before the last force call [L/T] */
+  double slip_before;    /* rms |V - U| over markers before the iterations of the last force
+                            call, with what memory had spread [L/T] */
   double slip_after;     /* the same after it [L/T]; costs one interpolation */
   double total_force[3]; /* sum of QdV over all markers since begin_step [L^4/T^2] */
   int64_t markers;       /* handed over by all ranks */

@@ -32,6 +32,7 @@ static bw_status reserve_held(bw_ibm_mdf *ib, size_t held)
   IBM_RENEW(&ib->V, 3 * some);
   IBM_RENEW(&ib->dV, some);
   IBM_RENEW(&ib->QdV, 3 * some);
+  IBM_RENEW(&ib->M, 3 * some);
   IBM_RENEW(&ib->reply, 3 * some);
   ib->held_room = some;
   return BW_OK;
@@ -48,7 +49,8 @@ static void wrap(const bw_grid_view *g, double x[3])
   if (g->n[2] == 1) x[2] = 0.5 * g->length[2];
 }
 
-static bw_status check(size_t n, const double X[], const double V[], const double dV[])
+static bw_status check(size_t n, const double X[], const double V[], const double dV[],
+                       const double M[])
 {
   for (size_t i = 0; i < n; i++) {
     /* A marker without a place has no owner, and NaN would spread through the whole fluid. */
@@ -58,12 +60,16 @@ static bw_status check(size_t n, const double X[], const double V[], const doubl
                  d, X[3 * i + d], V[3 * i + d]);
     BW_REQUIRE(isfinite(dV[i]) && dV[i] >= 0.0, BW_EINPUT,
                "marker %zu: volume must be finite and >= 0, found %g", i, dV[i]);
+    BW_REQUIRE(M == NULL || isnan(M[3 * i]) ||
+                   (isfinite(M[3 * i]) && isfinite(M[3 * i + 1]) && isfinite(M[3 * i + 2])),
+               BW_EINPUT, "marker %zu: memory must be finite, or NaN for none", i);
   }
   return BW_OK;
 }
 
 /* Fill item, destination, sent_from with the markers in the box; true if the routes changed. */
-static bool address(bw_ibm_mdf *ib, const double X[], const double V[], const double dV[])
+static bool address(bw_ibm_mdf *ib, const double X[], const double V[], const double dV[],
+                    const double M[])
 {
   bool changed = ib->plan == NULL;
   const size_t before = ib->n_sent;
@@ -79,6 +85,8 @@ static bool address(bw_ibm_mdf *ib, const double X[], const double V[], const do
       item->s[d] = x[d] / ib->g->spacing[d];
     memcpy(item->v, V + 3 * i, sizeof item->v);
     if (ib->g->n[2] == 1) item->v[2] = 0.0; /* as is what is interpolated there */
+    for (int d = 0; d < 3; d++)
+      item->m[d] = M == NULL ? 0.0 : M[3 * i + (size_t)d];
     item->volume = dV[i];
     /* The plan only knows how many go where: it holds while each goes to the rank it went to. */
     changed |= sent >= before || ib->destination[sent] != owner;
@@ -157,11 +165,14 @@ static bw_status settle(bw_ibm_mdf *ib)
     for (int d = 0; d < 3; d++)
       ib->place[m].s[d] = bw_ibm_mdf__local(ib->g, item->s, d);
     memcpy(ib->V + 3 * m, item->v, sizeof item->v);
+    memcpy(ib->M + 3 * m, item->m, sizeof item->m);
     ib->dV[m] = item->volume;
   }
   /* Places are known: images follow, then the weights of both. */
   BW_TRY(bw_ibm_mdf__cast_images(ib));
   bw_ibm_mdf__weigh(ib);
+  /* The force of the last step belongs to other markers: M has it, if anybody has. */
+  ib->call = 0;
   bw_ibm_mdf_begin_step(ib);
   return BW_OK;
 }
@@ -181,17 +192,17 @@ static bw_status plan_markers(bw_ibm_mdf *ib)
 }
 
 bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], const double V[],
-                                 const double dV[])
+                                 const double dV[], const double M[])
 {
   const bw_comm *comm = bw_grid_comm(ib->grid);
   const double start = bw_wall_time();
-  bw_status st = check(n, X, V, dV);
+  bw_status st = check(n, X, V, dV, M);
   BW_THEN(st, reserve_sent(ib, n));
   /* Bad values on one rank end the call on all. */
   BW_TRY(bw_comm_agree(comm, st));
   ib->n = n;
   /* Routes first: only when some marker changes its rank is a new plan made. */
-  const int64_t changed = address(ib, X, V, dV);
+  const int64_t changed = address(ib, X, V, dV, M);
   int64_t count[3] = {changed, (int64_t)n, (int64_t)(n - ib->n_sent)};
   bw_comm_sum_int(comm, 3, count);
   ib->markers = count[1], ib->outside = count[2];

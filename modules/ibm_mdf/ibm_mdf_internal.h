@@ -43,7 +43,7 @@ bw_ibm_mdf__spread_fn bw_ibm_mdf__spreader(int support, bool flat);
 /* What travels to the marker's rank: place in cells from the lower corner of the box, periodic
  * directions wrapped. */
 typedef struct {
-  double s[3], v[3], volume;
+  double s[3], v[3], m[3], volume;
 } bw_ibm_mdf__item;
 
 /* The same place, in cells from the lower corner of the block that it is for. */
@@ -63,7 +63,10 @@ struct bw_ibm_mdf {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
   const bw_kernel_delta *kernel;
-  int n_iter;
+  int n_iter, call;   /* iterations; calls of force since begin_step */
+  double beta, share; /* of memory; of what is missing, that an iteration gives */
+  bw_ibm_mdf_ghosts_fn ghosts;
+  void *ghosts_of;
   double cell_volume;
   bw_ibm_mdf__blocks blocks[3];
   bw_ibm_mdf__interpolate_fn interpolate;
@@ -85,6 +88,7 @@ struct bw_ibm_mdf {
   size_t *layer;  /* (m[2] + 1) first marker of each layer of cells in z, and the end */
   double *V, *dV; /* (held,3), (held) */
   double *QdV;    /* (held,3) since begin_step */
+  double *M;      /* (held,3) memory; the first of three NaN: none */
   double *reply;  /* (held,3) in the order received */
 
   /* images: of markers held here for other blocks (or this one, over a periodic side) ... */

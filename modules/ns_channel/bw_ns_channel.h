@@ -114,6 +114,9 @@ bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt) BW_MUST_CHECK;
  * bw_ns_channel_velocity holds u* afterwards, whose interior a body may change. Part of step, for
  * who puts something in between. Collective. */
 void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt);
+/* Ghosts beyond the sides from the velocity inside and in the halos, which are valid: for who has
+ * changed u* next to a side and reads beyond it before project. Local. */
+void bw_ns_channel_ghosts(bw_ns_channel *ns);
 /* The second half: updates halos itself, makes u free of divergence; r = 2 advances the time. A
  * constant flow rate is met exactly after every project, whatever the body took: predict applies
  * the gradient of the sub-step before, project the rest. Collective. */

@@ -113,6 +113,11 @@ void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt)
   predict(ns, r, dt, false);
 }
 
+void bw_ns_channel_ghosts(bw_ns_channel *ns)
+{
+  bw_ns__ghosts_velocity(ns);
+}
+
 /* Uniform change of u that the constant flow rate still needs; sum: this rank's sum u dy. */
 static double flow_rate_shift(bw_ns_channel *ns, double sum)
 {

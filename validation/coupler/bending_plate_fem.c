@@ -83,7 +83,6 @@ static bending_config twin(const plate_kind *kind, int cells, double young, int 
      have to be damped: a twelfth of that */
   c.plate.damping_mean = 470.0 / 12.0 * kind->across * c.plate.density;
   c.coupling.load = load;
-  c.coupling.iterations = 4;
   c.coupling.load_relaxation = 0.03; /* the reaction at 80 cells per height grows with 0.1 */
   return c;
 }

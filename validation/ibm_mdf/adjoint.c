@@ -119,7 +119,7 @@ static bw_status one_kernel(bw_validation *v, set_up *s, bw_kernel_delta_id id)
   double sum[15] = {0.0}, error[3] = {0.0};
   c.kernel = id;
   BW_TRY(bw_ibm_mdf_create(s->grid, &c, &ib));
-  BW_TRY(bw_ibm_mdf_set_markers(ib, s->n, s->X, s->F, s->dV));
+  BW_TRY(bw_ibm_mdf_set_markers(ib, s->n, s->X, s->F, s->dV, NULL));
   for (int d = 0; d < 3; d++)
     for (size_t a = 0; a < s->g->size; a++)
       s->q[d][a] = 0;

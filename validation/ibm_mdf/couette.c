@@ -58,8 +58,7 @@ static bw_status make_fluid(const bw_comm *comm, int cells, motion *m, couette *
                         .h = 1.0 / cells,
                         .nu = NU,
                         .periodic = {true, true, true},
-                        .kernel = BW_KERNEL_ROMA3,
-                        .n_iter = 2};
+                        .body = bw_ibm_mdf_config_default()};
   c->h = box.h;
   BW_TRY(body_flow_box(comm, &box, &c->flow));
   c->flow.dt = 0.5 * bw_ns_channel_dt_max(c->flow.fluid);

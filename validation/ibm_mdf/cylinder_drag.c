@@ -4,7 +4,9 @@
  * Reference  an independent finite-element solution for the same domain (8 d x 4 d, cylinder in
  *            the middle): data/confined_cylinder; FSI's printed figures are reported beside.
  * Measured   force of the markers; momentum balance of a box of 2 d; normal probes on the nominal
- *            surface. Steady: the drag changes by less than 1e-5 per d/U_b. 15 cells across the
+ *            surface. Steady: the drag changes by less than 1e-5 per d/U_b (forces that hardly move
+ *            the fluid, pressure of the inside against the outside, are found within 36 d/U_b only
+ *            and are worth 4e-4 of the drag, 2e-3 where markers are not retracted). 15 cells across the
  *            cylinder at Re_d 20 and 25 and 30 at 20; --full: 60 cells, every kernel and 1 to 8
  *            iterations at 15 and 30 cells, drag against retraction.
  * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e4 eps.
@@ -27,7 +29,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double STEADY = 1.0e-5, LATEST = 60.0, FRICTION_SHARE = 0.35;
+static const double STEADY = 1.0e-5, LATEST = 90.0, FRICTION_SHARE = 0.35;
 
 /* Cd of the reference for a domain. */
 static bw_status reference(const cylinder_config *c, double *Cd)
@@ -85,29 +87,30 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
   BW_TRY(steady_drag(bw_validation_comm(v), c, &d));
   const double over = c->probe_length / c->cells_per_diameter * sqrt(c->reynolds);
   const double second = 0.5 * over * over + 0.05, none = INFINITY, cells = c->cells_per_diameter;
+  const bool no_slip = c->memory > 0.0 || c->n_iter > 1;
   const double round_off = 1.0e4 * BW_REAL_EPSILON; /* sums over 120 faces, 3 sub-steps */
   static const char fem[] = "independent finite elements, data/confined_cylinder";
   const row rows[] = {
       {"Cd_reaction", d.reaction, Cd, claimed ? 0.3 / cells : none, BW_INDEPENDENT_CODE, fem},
       {"Cd_control_volume", d.control_volume, d.reaction, round_off, BW_CONSERVATION,
        "momentum balance of the box against the force of the markers"},
-      {"Cd_probe", d.probe[1], Cd, claimed && c->n_iter > 1 ? FRICTION_SHARE * second : none,
+      {"Cd_probe", d.probe[1], Cd, claimed && no_slip ? FRICTION_SHARE * second : none,
        BW_INDEPENDENT_CODE, fem},
       {"Cd_probe_linear", d.probe[0], Cd, none, BW_INDEPENDENT_CODE, fem},
       {"probe_off", d.probe[1] / d.reaction - 1.0, 0.0,
-       claimed && c->n_iter > 1 && cells >= 30 ? 0.03 : none, BW_CONSERVATION,
+       claimed && no_slip && cells >= 30 ? 0.03 : none, BW_CONSERVATION,
        "three routes to one force: probes against reaction and box"},
       {"slip", d.slip, 0.0, none, BW_ANALYTIC, "no slip, in U_b"}};
   for (size_t q = 0; q < sizeof rows / sizeof *rows; q++) {
     const char *kernel = bw_kernel_delta_get((bw_kernel_delta_id)c->kernel)->name;
-    char claim[96], extra[192];
-    snprintf(claim, sizeof claim, "%s, %d cells, retraction %.2f, N_s %d, %s", rows[q].quantity,
-             c->cells_per_diameter, c->retraction, c->n_iter, kernel);
+    char claim[112], extra[224];
+    snprintf(claim, sizeof claim, "%s, %d cells, retraction %.2f, N_s %d, memory %.2g, %s",
+             rows[q].quantity, c->cells_per_diameter, c->retraction, c->n_iter, c->memory, kernel);
     snprintf(extra, sizeof extra,
              "\"Re_d\": %g, \"cells_per_diameter\": %d, \"retraction\": %g, \"n_iter\": %d, "
-             "\"kernel\": \"%s\", \"upstream\": %g, \"downstream\": %g",
-             c->reynolds, c->cells_per_diameter, c->retraction, c->n_iter, kernel, c->upstream,
-             c->downstream);
+             "\"memory\": %g, \"kernel\": \"%s\", \"upstream\": %g, \"downstream\": %g",
+             c->reynolds, c->cells_per_diameter, c->retraction, c->n_iter, c->memory, kernel,
+             c->upstream, c->downstream);
     bw_validation_row(v, &(bw_claim){claim, rows[q].quantity, rows[q].measured, rows[q].reference,
                                      rows[q].tolerance, rows[q].kind, rows[q].source, extra});
   }
@@ -138,8 +141,8 @@ static bw_status not_retracted(bw_validation *v, cylinder_config c, double error
 
 static bw_status retracted(bw_validation *v, cylinder_config c, double error[2])
 {
-  c.retraction =
-      bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){(bw_kernel_delta_id)c.kernel, c.n_iter});
+  c.retraction = bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){
+      .kernel = (bw_kernel_delta_id)c.kernel, .n_iter = c.n_iter, .memory = c.memory});
   return one_case(v, &c, true, error);
 }
 
@@ -162,10 +165,11 @@ static bw_status sweep(bw_validation *v, cylinder_config c, double step, double 
   return BW_OK;
 }
 
-/* Every kernel and number of iterations, at the retraction of the table and around it. */
+/* Without memory: every kernel and number of iterations, at the retraction of the table and around it. */
 static bw_status kernels(bw_validation *v, cylinder_config c)
 {
   double best = NAN, error[2];
+  c.memory = 0.0;
   for (c.kernel = 0; c.kernel < BW_KERNEL_COUNT; c.kernel++)
     for (c.n_iter = 1; c.n_iter <= 8; c.n_iter *= 2)
       for (c.cells_per_diameter = 15; c.cells_per_diameter <= 30; c.cells_per_diameter *= 2) {

@@ -11,7 +11,8 @@
  * Tolerance  mean: 1 % - the wall felt wanders by some 0.05 h with the place of the markers (0.25
  *            to 0.28 h for Roma's kernel, 0 to 0.25 for the hat; bw_ibm_mdf.h), 0.3 % of d, and
  *            the drag with it and with the blockage. The noise is reported, no claim but that the
- *            wider kernel has the smaller one.
+ *            kernels whose sum of squares is the same everywhere (Roma's, Peskin's) have less of it
+ *            than the hat, whose markers find a different part of their slip in every place.
  * BUILD modules=ns_channel,probe
  * TEST  ranks=1,2 */
 #include "../../cases/cylinder_drag/body_flow.h"
@@ -49,7 +50,8 @@ static void destroy(moving *m)
 static bw_status make(const bw_comm *comm, int cells, bw_kernel_delta_id kernel, double V,
                       moving *m)
 {
-  const bw_ibm_mdf_config body = {kernel, 2};
+  bw_ibm_mdf_config body = bw_ibm_mdf_config_default();
+  body.kernel = kernel;
   double bulk = V + 1.0;
   const body_box box = {.n = {6 * cells, 4 * cells, 1},
                         .h = 1.0 / cells,
@@ -57,8 +59,7 @@ static bw_status make(const bw_comm *comm, int cells, bw_kernel_delta_id kernel,
                         .periodic = {true, true, true},
                         .forcing = BW_FORCING_FLOW_RATE,
                         .forcing_value = bulk,
-                        .kernel = body.kernel,
-                        .n_iter = body.n_iter};
+                        .body = body};
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = 1.0, probe.nu = box.nu, probe.profile = BW_PROBE_QUADRATIC;
   m->h = box.h;
@@ -86,7 +87,7 @@ static bw_status step(moving *m, double V, double Cd[ROUTES])
   body_circle(&m->markers, 0, body_circle_size(0.5 - m->retraction, m->h), centre,
               0.5 - m->retraction, m->h);
   body_circle(&m->wall, 0, around, centre, 0.5, m->h);
-  BW_TRY(body_set_markers(&m->flow, &m->markers));
+  BW_TRY(body_move_markers(&m->flow, &m->markers));
   BW_TRY(body_flow_step(&m->flow));
   Cd[MARKERS] = -scale * bw_ibm_mdf_measure(m->flow.body, u).total_force[0];
   BW_TRY(bw_probe_set_points(m->probe, m->wall.n, m->wall.X, m->wall.N));
@@ -171,22 +172,21 @@ static bw_status one_kernel(bw_validation *v, bw_kernel_delta_id kernel, int cel
 
 static bw_status run(bw_validation *v)
 {
-  const int finest = bw_validation_full(v) ? 32 : 16, most = (int)lround(END * finest / 0.2);
+  const int finest = bw_validation_full(v) ? 32 : 16, longest = (int)lround(END * finest / 0.2);
   double noise[BW_KERNEL_COUNT] = {0.0}, *series = NULL;
   bw_status st =
-      bw_comm_agree(bw_validation_comm(v), BW_ALLOCATE(&series, 2 * ROUTES * (size_t)most));
+      bw_comm_agree(bw_validation_comm(v), BW_ALLOCATE(&series, 2 * ROUTES * (size_t)longest));
   for (int cells = 16; cells <= finest; cells *= 2)
     for (int k = 0; k < BW_KERNEL_COUNT; k++)
       BW_THEN(st, one_kernel(v, (bw_kernel_delta_id)k, cells, (int)lround(END * cells / 0.2),
                              series, &noise[k]));
   bw_release(&series);
   BW_TRY(st);
-  const double order[2] = {noise[BW_KERNEL_PESKIN4] / noise[BW_KERNEL_ROMA3],
-                           noise[BW_KERNEL_ROMA3] / noise[BW_KERNEL_HAT2]};
-  bw_validation_row(v, &(bw_claim){"wider kernels are quieter", "largest_ratio",
-                                   fmax(fmax(order[0], order[1]) - 1.0, 0.0), 0.0, 0.0, BW_ORDER,
-                                   "noise over that of the next narrower kernel, excess over 1",
-                                   NULL});
+  const double most = fmax(noise[BW_KERNEL_PESKIN4], noise[BW_KERNEL_ROMA3]);
+  bw_validation_row(v,
+                    &(bw_claim){"kernels of constant sum of squares are quieter", "largest_ratio",
+                                fmax(most / noise[BW_KERNEL_HAT2] - 1.0, 0.0), 0.0, 0.0, BW_ORDER,
+                                "noise over that of the hat, excess over 1", NULL});
   return BW_OK;
 }
 

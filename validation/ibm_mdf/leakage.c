@@ -35,8 +35,7 @@ static bw_status make(const bw_comm *comm, bw_kernel_delta_id kernel, int n_iter
                         .periodic = {true, true, true},
                         .forcing = BW_FORCING_GRADIENT,
                         .forcing_value = G,
-                        .kernel = kernel,
-                        .n_iter = n_iter};
+                        .body = {.kernel = kernel, .n_iter = n_iter}};
   BW_TRY(body_flow_box(comm, &box, f));
   f->dt = 0.5 * bw_ns_channel_dt_max(f->fluid);
   body_surface s = {0};

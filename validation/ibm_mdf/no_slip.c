@@ -70,12 +70,13 @@ static bw_status slip_after(bw_grid *grid, const marker_set *s, bw_kernel_delta_
   bw_status st = BW_OK;
   c.kernel = kernel;
   c.n_iter = n_iter;
+  c.memory = 0.0;
   for (int d = 0; d < 3; d++)
     BW_THEN(st, bw_field_create(grid, &u[d]));
   for (size_t a = 0; st == BW_OK && a < bw_grid_look(grid)->size; a++)
     u[0][a] = 1;
   BW_THEN(st, bw_ibm_mdf_create(grid, &c, &ib));
-  BW_THEN(st, bw_ibm_mdf_set_markers(ib, mine, s->X, s->V, s->dV));
+  BW_THEN(st, bw_ibm_mdf_set_markers(ib, mine, s->X, s->V, s->dV, NULL));
   if (st == BW_OK) {
     bw_ibm_mdf_force(ib, u, 1.0);
     const bw_ibm_mdf_report r = bw_ibm_mdf_measure(ib, u);

@@ -34,8 +34,7 @@ static bw_status make(const bw_comm *comm, int cells, double a, double gradient,
                         .periodic = {true, true, true},
                         .forcing = BW_FORCING_GRADIENT,
                         .forcing_value = gradient,
-                        .kernel = body.kernel,
-                        .n_iter = body.n_iter};
+                        .body = body};
   BW_TRY(body_flow_box(comm, &box, f));
   f->dt = 0.9 * bw_ns_channel_dt_max(f->fluid);
   body_surface s = {0};

@@ -70,8 +70,7 @@ static bw_status make_flow(const bw_comm *comm, const set_up *b, const bw_ibm_md
                         .periodic = {true, false, false},
                         .forcing = BW_FORCING_FLOW_RATE,
                         .forcing_value = RE,
-                        .kernel = body->kernel,
-                        .n_iter = body->n_iter};
+                        .body = *body};
   BW_TRY(body_flow_box(comm, &box, &s->flow));
   s->flow.dt = b->step * bw_ns_channel_dt_max(s->flow.fluid);
   const int x = along / 2, y = across / 2, off = 3 * b->cells / 4;

@@ -128,13 +128,23 @@ static inline void fixture_make(fixture *f, const bw_comm *comm, const fixture_c
   grid.halo = 2;
   ib.kernel = c->kernel;
   ib.n_iter = c->n_iter;
+  ib.memory = 0.0; /* fixture_remember */
   bw_check_ok(bw_grid_create(comm, &grid, &f->grid));
   f->g = bw_grid_look(f->grid);
   for (int d = 0; d < (c->n[2] == 1 ? 2 : 3); d++)
     bw_check_ok(bw_field_create(f->grid, &f->u[d]));
   bw_check_ok(bw_ibm_mdf_create(f->grid, &ib, &f->ib));
   make_markers(f, comm, total, margin);
-  bw_check_ok(bw_ibm_mdf_set_markers(f->ib, f->n, f->X, f->V, f->dV));
+  bw_check_ok(bw_ibm_mdf_set_markers(f->ib, f->n, f->X, f->V, f->dV, NULL));
+}
+
+/* The same with a memory. */
+static inline void fixture_remember(fixture *f, const fixture_case *c, double memory)
+{
+  const bw_ibm_mdf_config ib = {.kernel = c->kernel, .n_iter = c->n_iter, .memory = memory};
+  bw_ibm_mdf_destroy(&f->ib);
+  bw_check_ok(bw_ibm_mdf_create(f->grid, &ib, &f->ib));
+  bw_check_ok(bw_ibm_mdf_set_markers(f->ib, f->n, f->X, f->V, f->dV, NULL));
 }
 
 static inline void fixture_free(fixture *f)

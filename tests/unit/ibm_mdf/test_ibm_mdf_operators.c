@@ -33,7 +33,7 @@ START_TEST(interpolation_and_spreading_are_adjoint)
       f.X[d] = 0.0;
       f.X[3 + d] = f.g->length[d];
     }
-    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV));
+    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV, NULL));
     for (int c = 0; c < 3 && f.u[c] != NULL; c++)
       bw_check_ok(bw_field_create(f.grid, &q[c]));
     bw_check_ok(BW_ALLOCATE(&U, 3 * f.n));
@@ -128,7 +128,7 @@ START_TEST(nothing_is_written_beyond_walls)
     fixture_make(&f, comm, &closed, FIX_MARKERS, 0.0);
     for (size_t m = 0; m < f.n; m++) /* onto the six sides in turn */
       f.X[3 * m + m % 3] = m % 2 == 0 ? 0.0 : f.g->length[m % 3];
-    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV));
+    bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV, NULL));
     fill_everywhere(&f, unit);
     bw_ibm_mdf_spread(f.ib, f.F, f.u);
     const bw_grid_view *g = f.g;

@@ -92,7 +92,7 @@ static void check_restart_anew(void (*touch)(bw_solid *))
 {
   scene s = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
   scene t = throw_ball(bw_check_world(), plate_config(), ball_config(HEIGHT), BW_PD_FREE, THROW);
-  const double dt = 0.1 * bw_solid_set_dt(s.set);
+  const double dt = 0.1 * bw_solid_assembly_dt(s.set);
   int n = 0;
   while (book(&s).contact < 0.02 && n++ < 4000)
     steps(&s, 1, dt);

@@ -1,0 +1,199 @@
+/* Memory of the forcing in a coupled run: kept per particle, shared by blocks, frozen while a step
+ * is repeated, lost with the first bond.
+ * BUILD modules=coupler,shape
+ * TEST  ranks=1,2,3 */
+#include "cube_scene.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double STEP = 1.0e-3, BETA = 0.2;
+
+/* The cube's coupler anew, free. */
+static void couple(scene *s, double spacing, int iterations)
+{
+  bw_coupler_config config = bw_coupler_config_default();
+  config.rho = RHO;
+  config.nu = 0.05;
+  config.marker_spacing = spacing;
+  config.coupling_iterations = iterations;
+  bw_coupler_destroy(&s->coupler);
+  bw_check_ok(bw_coupler_create(&config, s->fluid, s->solid, &s->coupler));
+  bw_coupler_hold_solid(s->coupler, false);
+}
+
+/* Steps; after each the particles' memory has to be (1 - beta) times that of before plus beta times
+ * what their markers gave in the step: in shares of area of that of the block. The surface of the
+ * step has to be known for it: it is the same before and after. */
+static void check_steps(scene *s, int steps)
+{
+  bw_coupler *c = s->coupler;
+  double *before = NULL, largest = 0.0;
+  bw_check_ok(BW_ALLOCATE(&before, 3 * c->n));
+  for (int q = 0; q < steps; q++) {
+    memcpy(before, c->M, 3 * c->n * sizeof *before);
+    bw_check_ok(bw_coupler_step(c, STEP));
+    bw_coupler__reaction_force(c); /* -rho Q dV */
+    double all[2] = {0.0, 0.0};
+    for (size_t i = 0; i < 3 * c->n; i++)
+      all[0] += before[i], all[1] += c->M[i];
+    for (size_t m = 0; m < c->n_surface; m++)
+      for (size_t d = 0; d < 3; d++) {
+        const size_t p = 3 * (size_t)c->particle[m] + d;
+        const double force = -c->force[3 * m + d] / RHO;
+        if (c->block == 1) bw_check_near(c->M[p], (1.0 - BETA) * before[p] + BETA * force, 1e-10);
+        all[0] += BETA * (force - before[p]);
+        largest = fmax(largest, fabs(c->M[p]));
+      }
+    bw_comm_sum(bw_check_world(), 2, all);
+    bw_check_near(all[1], all[0], 1e-10);
+  }
+  bw_comm_max(bw_check_world(), 1, &largest);
+  ck_assert_double_gt(largest, 1e-6);
+  bw_release(&before);
+}
+
+START_TEST(it_is_kept_per_particle)
+{
+  scene s = build(0.3, 1.0);
+  couple(&s, 0.0, 1);
+  check_steps(&s, 4);
+  destroy(&s);
+}
+END_TEST
+
+/* Members of a block have its memory by their areas. */
+START_TEST(blocks_share_it)
+{
+  scene s = build(0.3, 1.0);
+  couple(&s, 2.0, 1);
+  check_steps(&s, 4);
+  const bw_coupler *c = s.coupler;
+  double sums[2] = {0.0, 0.0};
+  bw_coupler__blocks_memory(s.coupler); /* leaves that of the markers in blocks.force */
+  for (size_t m = 0; m < 3 * c->blocks.n; m++)
+    sums[0] += c->blocks.force[m];
+  for (size_t i = 0; i < 3 * c->n; i++)
+    sums[1] += c->M[i];
+  bw_comm_sum(bw_check_world(), 2, sums);
+  bw_check_near(sums[1], sums[0], 1e-10);
+  destroy(&s);
+}
+END_TEST
+
+/* Every try of a step begins from the memory of before it; the last one is taken up, once. */
+START_TEST(tries_of_a_step_leave_it_alone)
+{
+  scene s = build(0.3, 0.1);
+  couple(&s, 0.0, 20);
+  check_steps(&s, 2);
+  ck_assert_int_gt(s.coupler->iterations, 1);
+  destroy(&s);
+}
+END_TEST
+
+/* A held solid's markers stay with the forcing; what the particles have is the same. */
+START_TEST(a_held_solid_has_one_too)
+{
+  scene s = build(0.3, 1.0);
+  couple(&s, 0.0, 1);
+  bw_coupler_hold_solid(s.coupler, true);
+  check_steps(&s, 4);
+  destroy(&s);
+}
+END_TEST
+
+/* A cut through the cube: whoever lost a bond has no memory from the next step on, the others keep
+ * theirs; markers too were told. */
+START_TEST(broken_particles_have_none)
+{
+  scene s = build(0.3, 1.0);
+  couple(&s, 0.0, 1);
+  check_steps(&s, 2);
+  bw_coupler *c = s.coupler;
+  const double middle = (FIRST + BLOCK / 2) * H;
+  bw_check_ok(bw_solid_precrack(s.solid, (double[3]){middle, 0, 0}, (double[3]){middle, 1, 0},
+                                (double[3]){middle, 0, 1}));
+  bw_check_ok(bw_coupler__follow_surface(c));
+  bw_check_ok(bw_coupler_step(c, STEP));
+  bw_check_ok(bw_coupler_step(c, STEP));
+  uint16_t *broken = NULL;
+  int64_t count[2] = {0, 0};
+  bw_check_ok(BW_ALLOCATE(&broken, c->n));
+  bw_solid_get_broken(s.solid, broken);
+  for (size_t m = 0; m < c->n_surface; m++) {
+    const size_t p = (size_t)c->particle[m];
+    const bool has = c->M[3 * p] != 0.0 || c->M[3 * p + 1] != 0.0 || c->M[3 * p + 2] != 0.0;
+    ck_assert(has == (broken[p] == 0));
+    count[has]++;
+  }
+  bw_comm_sum_int(bw_check_world(), 2, count);
+  ck_assert_int_gt(count[0], 0);
+  ck_assert_int_gt(count[1], 0);
+  bw_release(&broken);
+  destroy(&s);
+}
+END_TEST
+
+/* Fluid of velocity 1 along x that goes through a cube at rest as if it were not there: slip and leak
+ * are the whole of the inflow's speed, 1, and of the flux past the cube's face. For blocks too. */
+START_TEST(slip_and_leak_are_told)
+{
+  for (int blocks = 0; blocks <= 1; blocks++) {
+    scene s = build(0.3, 1.0);
+    couple(&s, blocks ? 2.0 : 0.0, 1);
+    bw_coupler_hold_solid(s.coupler, true);
+    bw_check_ok(bw_coupler_step(s.coupler, STEP));
+    bw_coupler_report r;
+    for (int d = 0; d < 3; d++)
+      for (size_t q = 0; q < bw_grid_look(s.grid)->size; q++)
+        bw_ns_channel_velocity(s.fluid)[d][q] = d == 0;
+    bw_check_ok(bw_coupler_measure(s.coupler, &r));
+    bw_check_near(r.slip, 1.0, 1e-10);
+    bw_check_near(r.leak, 1.0, 1e-10);
+    destroy(&s);
+  }
+}
+END_TEST
+
+/* Said once, when it was so five times running and the start is over. */
+START_TEST(much_slip_is_said_once)
+{
+  scene s = build(0.3, 1.0);
+  char text[512] = "";
+  bw_log_config config = bw_log_config_default();
+  config.err = tmpfile();
+  ck_assert_ptr_nonnull(config.err);
+  bw_log *log = NULL;
+  bw_check_ok(bw_log_create(bw_check_world(), &config, &log));
+  const bw_coupler_report little = {.slip = 0.01, .leak = 0.0}, much = {.leak = 0.03};
+  for (int q = 0; q < 9; q++) /* not in the first hundred steps */
+    bw_coupler_warn_slip(s.coupler, &much, log);
+  s.coupler->steps = 100;
+  for (int q = 0; q < 9; q++)
+    bw_coupler_warn_slip(s.coupler, q == 4 ? &little : &much, log);
+  ck_assert_int_eq(ftell(config.err), 0);
+  bw_coupler_warn_slip(s.coupler, &much, log);
+  const long said = ftell(config.err);
+  for (int q = 0; q < 9; q++)
+    bw_coupler_warn_slip(s.coupler, &much, log);
+  ck_assert_int_eq(ftell(config.err), said);
+  ck_assert((said > 0) == (bw_comm_rank(bw_check_world()) == 0)); /* rank 0 speaks */
+  rewind(config.err);
+  if (said > 0) {
+    ck_assert_ptr_nonnull(fgets(text, sizeof text, config.err));
+    ck_assert_ptr_nonnull(strstr(text, "3.0 %"));
+    ck_assert_ptr_nonnull(strstr(text, "coupling.memory"));
+  }
+  bw_log_destroy(&log);
+  fclose(config.err);
+  destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(it_is_kept_per_particle),        BW_TEST(blocks_share_it),
+    BW_TEST(tries_of_a_step_leave_it_alone), BW_TEST(a_held_solid_has_one_too),
+    BW_TEST(broken_particles_have_none),     BW_TEST(slip_and_leak_are_told),
+    BW_TEST(much_slip_is_said_once)};
+BW_CHECK_MAIN("coupler.memory", tests)

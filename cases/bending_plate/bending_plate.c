@@ -10,8 +10,8 @@ static bw_status after_step(bending_run *p, bending_measure *m)
 {
   const bending_output *out = &p->config->output;
   if (p->step % out->sample_every == 0) BW_TRY(bending_sample(p, m));
-  /* 0 leaves checkpoints and pictures to the end of the run. The checkpoint first: what was paid for
-   * is on disk before a picture may fail. */
+  /* 0 leaves checkpoints and pictures to the end of the run. The checkpoint first: what was paid
+   * for is on disk before a picture may fail. */
   if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)
     BW_TRY(bending_checkpoint(p));
   if (out->picture_every > 0 && p->step % out->picture_every == 0) BW_TRY(bending_picture(p));

@@ -2,8 +2,8 @@
  * time, checkpoints. The case and validation/ns_channel/channel_turbulence.c run this same code.
  *
  * Units: h (full height) and U_b (bulk velocity, held constant), so nu = 1/Re_b. Time advances in
- * equal intervals; the steps within one are chosen from field and time alone, so that what follows a
- * checkpoint (between two steps) does not depend on whether it was read. */
+ * equal intervals; the steps within one are chosen from field and time alone, so that what follows
+ * a checkpoint (between two steps) does not depend on whether it was read. */
 #pragma once
 #include "bw_case.h"
 #include "bw_checkpoint.h"

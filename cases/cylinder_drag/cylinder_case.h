@@ -20,7 +20,8 @@ typedef struct {
 extern const bw_config_field cylinder_case_fields[]; /* its keys */
 cylinder_case cylinder_case_default(void);           /* reynolds is NaN: required */
 
-/* The sizes, the groups and an estimate of the time, as lines of the log. Refused where nobody can wait for the steps. */
+/* The sizes, the groups and an estimate of the time, as lines of the log. Refused where nobody can
+ * wait for the steps. */
 bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c,
                             bw_log *log) BW_MUST_CHECK;
 

@@ -296,7 +296,8 @@ static bw_status check(const specimen_config *c)
   BW_REQUIRE(c->follow.fit_from < c->follow.fit_to, BW_EINPUT,
              "follow.fit_from = %g has to be below follow.fit_to = %g", c->follow.fit_from,
              c->follow.fit_to);
-  /* The tip of a notch in this plate, to a spacing; sections are laid across the crack from there. */
+  /* The tip of a notch in this plate, to a spacing; sections are laid across the crack from
+   * there. */
   const double edge[2] = {c->shape.length, c->shape.height};
   const double ds = c->shape.length / c->shape.particles;
   for (int d = 0; d < 2; d++)

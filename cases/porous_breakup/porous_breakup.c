@@ -75,7 +75,8 @@ static bw_status end_phase(porous_run *p)
   /* The state at the end, whatever the interval is; a row that is there is not repeated. */
   BW_TRY(porous_sample(p));
   /* The checkpoint before pictures and tables, which may fail: the phase is paid for. It belongs to
-   * the beginning of the next phase; the last one to its own end, from which a longer run goes on. */
+   * the beginning of the next phase; the last one to its own end, from which a longer run goes
+   * on. */
   phase_checkpoint(phase, name);
   if (phase != PHASE_BREAKAGE) p->phase++, p->step = 0;
   BW_TRY(porous_checkpoint(p, name, false));
@@ -95,8 +96,8 @@ static bw_status unfinished(const porous_run *p)
   return bw_case_unfinished(p->run, name);
 }
 
-/* The picture and the table that were due when the checkpoint was written, once more: a run that was
- * killed behind the checkpoint does not have them. */
+/* The picture and the table that were due when the checkpoint was written, once more: a run that
+ * was killed behind the checkpoint does not have them. */
 static bw_status draw_again(porous_run *p)
 {
   const int every = p->config->output.picture_every;

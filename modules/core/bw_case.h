@@ -61,7 +61,8 @@ typedef struct bw_case bw_case;
  * the heading. With --check: prints the resolved configuration instead, touches no folder.
  * BW_EUSAGE for a command line not understood (with a hint), BW_EINPUT for the configuration,
  * BW_EINPUT when another run writes into the folder or what it holds may not be replaced (the
- * remedy is named), BW_EIO when it cannot be written. `about` is borrowed until end; `config` is not kept. Collective. */
+ * remedy is named), BW_EIO when it cannot be written. `about` is borrowed until end; `config` is
+ * not kept. Collective. */
 bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_case_about *about,
                         void *config, bw_case **out) BW_MUST_CHECK;
 

@@ -12,8 +12,8 @@ bw_status bw_folder_make(const bw_comm *comm, const char *path) BW_MUST_CHECK;
 bool bw_path_exists(const bw_comm *comm, const char *path);
 
 /* The longest path [bytes] of a file that all ranks write or read together. Open MPI's file layer
- * makes names of its own from it in 256 bytes and aborts the program where they do not fit; PATH.part
- * and the number of a rank are in them. */
+ * makes names of its own from it in 256 bytes and aborts the program where they do not fit;
+ * PATH.part and the number of a rank are in them. */
 #define BW_PATH_LONGEST 235
 
 /* BW_EIO with the length and the remedy for a longer one. Local. */

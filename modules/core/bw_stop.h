@@ -5,8 +5,8 @@
  * A case asks bw_case_stopping instead, which also knows --stop-after.
  * Signals: SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2, at any rank. The first one is a
  * request; a second one, of whatever kind, ends the process at once. Under mpirun send SIGUSR1 or
- * SIGUSR2, which Open MPI passes on to its ranks; a SIGTERM or SIGINT to mpirun itself makes it kill
- * them. srun passes all on (--signal=USR1@300 asks five minutes before the end). */
+ * SIGUSR2, which Open MPI passes on to its ranks; a SIGTERM or SIGINT to mpirun itself makes it
+ * kill them. srun passes all on (--signal=USR1@300 asks five minutes before the end). */
 #pragma once
 #include "bw_comm.h"
 

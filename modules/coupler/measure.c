@@ -13,8 +13,8 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
   }
 }
 
-/* The largest speed that drives the fluid: of inflows, walls, a given flow rate, bodies; the mean of
- * the fluid where nothing of this moves. Collective. */
+/* The largest speed that drives the fluid: of inflows, walls, a given flow rate, bodies; the mean
+ * of the fluid where nothing of this moves. Collective. */
 static double reference_speed(bw_coupler *c)
 {
   const bw_ns_channel_config *fluid = bw_ns_channel_settings(c->fluid);

@@ -176,6 +176,7 @@ static bw_status establish(bw_pd_interface *pi)
 
 static void release_all(bw_pd_interface *p)
 {
+  /* May be half built: what was never allocated is NULL. */
   bw_pd_interface__stencil_release(&p->stencil);
   void **array[] = {(void **)&p->surface,
                     (void **)&p->first,

@@ -6,8 +6,8 @@
  * Measured   force of the markers; momentum balance of a box of 2 d; normal probes on the nominal
  *            surface. Steady: the drag changes by less than 1e-5 per d/U_b (forces that hardly move
  *            the fluid, pressure of the inside against the outside, are found within 36 d/U_b only
- *            and are worth 4e-4 of the drag, 2e-3 where markers are not retracted). 15 cells across the
- *            cylinder at Re_d 20 and 25 and 30 at 20; --full: 60 cells, every kernel and 1 to 8
+ *            and are worth 4e-4 of the drag, 2e-3 where markers are not retracted). 15 cells across
+ *            the cylinder at Re_d 20 and 25 and 30 at 20; --full: 60 cells, every kernel and 1 to 8
  *            iterations at 15 and 30 cells, drag against retraction.
  * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e4 eps.
  *            reaction against the reference: 0.1 h of doubt about where the smeared wall is
@@ -165,7 +165,8 @@ static bw_status sweep(bw_validation *v, cylinder_config c, double step, double 
   return BW_OK;
 }
 
-/* Without memory: every kernel and number of iterations, at the retraction of the table and around it. */
+/* Without memory: every kernel and number of iterations, at the table's retraction and around
+ * it. */
 static bw_status kernels(bw_validation *v, cylinder_config c)
 {
   double best = NAN, error[2];

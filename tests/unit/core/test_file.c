@@ -195,7 +195,8 @@ START_TEST(folders_are_made_with_parents)
 }
 END_TEST
 
-/* Refused in our words before Open MPI's file layer would abort; the longest that is allowed works. */
+/* Refused in our words before Open MPI's file layer would abort; the longest that is allowed
+ * works. */
 START_TEST(paths_that_are_too_long)
 {
   const bw_comm *comm = bw_check_world();

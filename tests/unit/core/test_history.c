@@ -187,8 +187,8 @@ START_TEST(rows_that_cannot_be)
 }
 END_TEST
 
-/* A disk that is full: no row is counted that is not there, no checkpoint may be written that counts
- * one, and nothing is written behind the row that was cut. */
+/* A disk that is full: no row is counted that is not there, no checkpoint may be written that
+ * counts one, and nothing is written behind the row that was cut. */
 START_TEST(a_full_disk)
 {
   const bw_comm *comm = bw_check_world();

@@ -95,8 +95,8 @@ START_TEST(restart_in_the_middle_of_leaving)
 END_TEST
 
 /* A heavy block lies on the floor: no particle in the wall, the wall bears its weight less the
- * buoyancy. It begins there, as a face that comes down flat has a film of fluid to squeeze out, which
- * takes longer the thinner it gets (1/gap^3) where no slip is left. */
+ * buoyancy. It begins there, as a face that comes down flat has a film of fluid to squeeze out,
+ * which takes longer the thinner it gets (1/gap^3) where no slip is left. */
 START_TEST(a_heavy_block_lies_on_the_floor)
 {
   const bodies_set_up set_up = {.length = 16,

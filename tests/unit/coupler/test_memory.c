@@ -135,8 +135,9 @@ START_TEST(broken_particles_have_none)
 }
 END_TEST
 
-/* Fluid of velocity 1 along x that goes through a cube at rest as if it were not there: slip and leak
- * are the whole of the inflow's speed, 1, and of the flux past the cube's face. For blocks too. */
+/* Fluid of velocity 1 along x that goes through a cube at rest as if it were not there: slip and
+ * leak are the whole of the inflow's speed, 1, and of the flux past the cube's face. For blocks
+ * too. */
 START_TEST(slip_and_leak_are_told)
 {
   for (int blocks = 0; blocks <= 1; blocks++) {

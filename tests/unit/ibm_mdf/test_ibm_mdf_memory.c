@@ -113,7 +113,7 @@ START_TEST(memory_belongs_to_the_callers_markers)
       }
       bw_ibm_mdf_begin_step(kept.ib);
       bw_ibm_mdf_memory(handed.ib, M);
-      /* All memories on all ranks; then another share of the markers, from the last to the first. */
+      /* All memories on all ranks; then another share of the markers, last to first. */
       double memory[3 * FIX_MARKERS] = {0.0}, X[3 * FIX_MARKERS], V[3 * FIX_MARKERS];
       double dV[FIX_MARKERS];
       for (size_t m = 0; m < mine; m++)

@@ -1,5 +1,5 @@
-/* assembly_scene.h -- a plate turned by 17 degrees and a ball of another spacing and material above it,
- * in a set: for the tests of contact between bodies. */
+/* assembly_scene.h -- a plate turned by 17 degrees and a ball of another spacing and material above
+ * it, in a set: for the tests of contact between bodies. */
 #pragma once
 #include "bw_solid_assembly.h"
 #include "pd_test.h"

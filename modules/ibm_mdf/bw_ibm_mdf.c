@@ -21,7 +21,10 @@ double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
   /* Without slip: data/forcing_sheet/sheet_displacement.csv, the mean over the normals of a
    * cylinder and that over those of a sphere, which differ by less than 0.01. */
   static const double no_slip[BW_KERNEL_COUNT] = {
-      [BW_KERNEL_ROMA3] = 0.28, [BW_KERNEL_PESKIN4] = 0.39, [BW_KERNEL_HAT2] = 0.19};
+      [BW_KERNEL_ROMA3] = 0.28,
+      [BW_KERNEL_PESKIN4] = 0.39,
+      [BW_KERNEL_HAT2] = 0.19,
+  };
   if (config->memory > 0.0) return no_slip[config->kernel];
   /* The columns double: n_iter from 2, 4, 8 on. */
   int column = 0;

@@ -15,7 +15,7 @@ extern "C" {
 
 enum { BW_PD_SWEEPS = 4 }; /* passes of one evaluation, at most */
 
-/* A key that the law reads from a case file: for --help and the checks. */
+/* A key of the law's options, for lists of what a law can be told (bw_solid_laws_describe). */
 typedef struct {
   const char *name;    /* its word in a case file */
   const char *unit;    /* "" without one */

@@ -109,7 +109,7 @@ const bw_case_args *bw_case_args_of(const bw_case *run)
 
 bw_log *bw_case_log(const bw_case *run)
 {
-  return run->log;
+  return run == NULL ? NULL : run->log;
 }
 
 bw_status bw_case_path(const bw_case *run, const char *name, char **path)

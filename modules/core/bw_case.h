@@ -69,7 +69,8 @@ bw_status bw_case_begin(const bw_comm *comm, int argc, char **argv, const bw_cas
 /* The command line; borrowed, valid until bw_case_end. Local. */
 const bw_case_args *bw_case_args_of(const bw_case *run);
 
-/* The log of the case; borrowed, valid until bw_case_end. Local. */
+/* The log of the case; borrowed, valid until bw_case_end. `run` NULL, of a program that builds a
+ * case's set-up without being one: NULL, which every log function takes and says nothing. Local. */
 bw_log *bw_case_log(const bw_case *run);
 
 /* *path = a file that the run writes into its folder, allocated, owned by the caller (bw_release).

@@ -199,7 +199,7 @@ static bw_status measure_solid(porous_run *p, double row[])
 static double permeability(const porous_run *p, double drop)
 {
   const porous_config *q = p->config;
-  if (p->total_step == 0 || !(drop > 0.0)) return NAN;
+  if (!(drop > 0.0)) return NAN; /* nor before the first step */
   const double U = q->fluid.bulk_velocity, p0 = q->fluid.density * U * U;
   const double mu = q->fluid.density * q->fluid.viscosity;
   return U * p->length * mu / (drop * p0); /* Q/S = U_b: the medium fills the section */
@@ -212,7 +212,7 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   BW_TRY(bw_coupler_measure(p->coupler, &r));
   row[COL_TIME] = bw_ns_channel_time(p->fluid);
   row[COL_PHASE] = p->phase + 1;
-  row[COL_DROP] = p->total_step > 0 ? porous_pressure_drop(p) : NAN;
+  row[COL_DROP] = bw_ns_channel_time(p->fluid) > 0.0 ? porous_pressure_drop(p) : NAN;
   row[COL_PERMEABILITY] = permeability(p, row[COL_DROP]);
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_LEAK] = r.leak;

@@ -220,9 +220,10 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
 void bw_coupler__remember(bw_coupler *c)
 {
   if (c->config.memory == 0.0) return;
-  if (c->block > 1)
+  if (c->block > 1) {
     bw_coupler__blocks_memory(c);
-  else
+    c->markers_moved = true; /* shared out and summed again it rounds, as after a restart */
+  } else
     bw_ibm_mdf_memory(c->ibm, c->marker_M);
   /* What is no surface (any more), or out of the box, has nothing to remember. */
   memset(c->M, 0, 3 * c->n * sizeof *c->M);

@@ -13,14 +13,17 @@ compare() {
     "$out/$1/history.csv" 1e-10 100
 }
 
-# Killed at the end of the second phase, ten steps after its last checkpoint. No clock says when: the
+# Killed in the second phase, after its last checkpoint, at its end at the latest: the
 # file it is to write next is a pipe that nobody reads, at which the run waits until it is killed.
-mkdir "$out/killed"
-mkfifo "$out/killed/checkpoint-deformation.h5.part"
 mpirun -n 2 "$build/bin/porous_breakup" "$case" --out "$out/killed" --quiet \
   --set output.checkpoint_every=30 &
 mpi=$!
-until [ -e "$out/killed/stress-deformation.csv" ]; do # written just before
+until [ -e "$out/killed/run.yaml" ]; do # a folder is the run's own from here on
+  kill -0 $mpi 2>/dev/null || { echo "the run ended before it began"; exit 1; }
+  sleep 0.1
+done
+mkfifo "$out/killed/checkpoint-deformation.h5.part"
+until [ -e "$out/killed/checkpoint-last.h5" ]; do # whole, once it has its name
   kill -0 $mpi 2>/dev/null || { echo "the run ended before it could be killed"; exit 1; }
   sleep 0.1
 done

@@ -11,13 +11,6 @@
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 [ $# -ge 2 ] || { sed -n 's/^# usage: /usage: /p' "$0" >&2; exit 2; }
-work=${BW_SAME:-}
-if [ -z "$work" ]; then
-  work=$(mktemp -d "${TMPDIR:-/tmp}/bw-same.XXXXXX")
-  trap 'rm -rf "$work"' EXIT
-fi
-mkdir -p "$work"
-work=$(cd "$work" && pwd)
 # shellcheck source=tests/support/two_commits.sh
 . "$source/tests/support/two_commits.sh"
 

@@ -1,6 +1,14 @@
-# shellcheck shell=sh disable=SC2154 # $source and $work are those of who sources this
+# shellcheck shell=sh disable=SC2154 # $source is that of who sources this
 # Sourced by tests/same_bits.sh and tests/same_speed.sh: two commits, each with its tree and its build.
-# Before: $work, a folder that may be there from an earlier comparison. Needs git, cmake, python3.
+# Sets $work, a folder that BW_SAME may keep from an earlier comparison. Needs git, cmake, python3.
+
+work=${BW_SAME:-}
+if [ -z "$work" ]; then
+  work=$(mktemp -d "${TMPDIR:-/tmp}/bw-same.XXXXXX")
+  trap 'rm -rf "$work"' EXIT
+fi
+mkdir -p "$work"
+work=$(cd "$work" && pwd)
 
 # The processes of mpirun share the cores; it also runs as root.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

@@ -123,17 +123,3 @@ static inline double upward(const scene *s)
 static const double THROW = 0.15; /* some 0.12 of the plate's wave speed */
 static const double HEIGHT = 3; /* of the ball's middle: its lowest particle is 0.9 over the face */
 static const double FLIGHT = 27; /* there and back again */
-
-static inline void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}

@@ -47,20 +47,6 @@ static inline bw_solid_config two_halves(bw_pd_geometry geometry)
   return with_second(c, 3 * c.rho, 5 * c.E, c.G0);
 }
 
-static inline void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}
-
 /* A bar of two halves, 16 x 5 (x 4). */
 static inline pd_body bar(bool planar)
 {

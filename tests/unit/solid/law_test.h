@@ -5,20 +5,6 @@
 
 static const double ROUND_OFF = 200 * BW_REAL_EPSILON;
 
-static void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}
-
 static void wave(const double X0[3], double u[3])
 {
   for (int k = 0; k < 3; k++)

@@ -143,6 +143,22 @@ static inline void pd_restart_from(const bw_solid *from, bw_solid *to)
   bw_release(&bits);
 }
 
+/* What `get` gives of two bodies, in the order of ids, is the same. Collective. */
+static inline void pd_check_same(const bw_solid *a, const bw_solid *b, pd_getter get,
+                                 double tolerance)
+{
+  const size_t n = (size_t)bw_solid_total(a);
+  double *x = NULL, *y = NULL;
+  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
+  pd_gather(a, get, x);
+  pd_gather(b, get, y);
+  for (size_t q = 0; q < 3 * n; q++)
+    bw_check_near(x[q], y[q], tolerance);
+  bw_release(&x);
+  bw_release(&y);
+}
+
 static inline bw_comm *pd_alone(void)
 {
   bw_comm *self = NULL;

@@ -73,9 +73,9 @@ START_TEST(a_bounce_does_not_depend_on_ranks)
     bw_check_near(a.damping, b.damping, 1e-12 + 1e3 * BW_REAL_EPSILON);
   }
   ck_assert_double_gt(upward(&many), 0);
-  compare(many.plate, one.plate, bw_solid_get_position, 1e-12 + 1e3 * BW_REAL_EPSILON);
-  compare(many.ball, one.ball, bw_solid_get_position, 1e-12 + 1e3 * BW_REAL_EPSILON);
-  compare(many.ball, one.ball, bw_solid_get_velocity, 1e-12 + 1e4 * BW_REAL_EPSILON);
+  pd_check_same(many.plate, one.plate, bw_solid_get_position, 1e-12 + 1e3 * BW_REAL_EPSILON);
+  pd_check_same(many.ball, one.ball, bw_solid_get_position, 1e-12 + 1e3 * BW_REAL_EPSILON);
+  pd_check_same(many.ball, one.ball, bw_solid_get_velocity, 1e-12 + 1e4 * BW_REAL_EPSILON);
   scene_release(&many);
   scene_release(&one);
   bw_comm_destroy(&self);

@@ -18,8 +18,8 @@ START_TEST(a_restart_in_a_bounce_goes_on)
   bw_check_near(energy(&after), energy(&before), 1e3 * BW_REAL_EPSILON);
   steps(&s, 60, dt);
   steps(&t, 60, dt);
-  compare(s.ball, t.ball, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
-  compare(s.plate, t.plate, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
+  pd_check_same(s.ball, t.ball, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
+  pd_check_same(s.plate, t.plate, bw_solid_get_position, 1e4 * BW_REAL_EPSILON);
   scene_release(&s);
   scene_release(&t);
 }
@@ -101,8 +101,8 @@ static void check_restart_anew(void (*touch)(bw_solid *))
   pd_restart_from(s.ball, t.ball);
   steps(&s, 20, dt);
   steps(&t, 20, dt);
-  compare(s.plate, t.plate, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
-  compare(s.ball, t.ball, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+  pd_check_same(s.plate, t.plate, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+  pd_check_same(s.ball, t.ball, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
   scene_release(&s);
   scene_release(&t);
 }

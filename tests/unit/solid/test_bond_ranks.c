@@ -26,20 +26,6 @@ static pd_body holed(void)
   return b;
 }
 
-static void compare(const bw_solid *a, const bw_solid *b, pd_getter get, double tolerance)
-{
-  const size_t n = (size_t)bw_solid_total(a);
-  double *x = NULL, *y = NULL;
-  bw_check_ok(BW_ALLOCATE(&x, 3 * n));
-  bw_check_ok(BW_ALLOCATE(&y, 3 * n));
-  pd_gather(a, get, x);
-  pd_gather(b, get, y);
-  for (size_t q = 0; q < 3 * n; q++)
-    bw_check_near(x[q], y[q], tolerance);
-  bw_release(&x);
-  bw_release(&y);
-}
-
 /* Four ways to run: RK3 or damped Verlet, on a lattice or in a cloud. */
 enum { WAYS = 4 };
 static bw_solid_config breaking(int way)
@@ -68,8 +54,8 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
     const double dt = 0.4 * bw_solid_dt_max(one);
     pd_steps(many, 50, dt);
     pd_steps(one, 50, dt);
-    compare(many, one, bw_solid_get_position,
-            1e-13 + 400 * (BW_REAL_EPSILON > 1e-10) * BW_REAL_EPSILON);
+    pd_check_same(many, one, bw_solid_get_position,
+                  1e-13 + 400 * (BW_REAL_EPSILON > 1e-10) * BW_REAL_EPSILON);
     pd_steps(many, 150, dt);
     pd_steps(one, 150, dt);
     const bw_solid_ledger a = ledger_of(many), b = ledger_of(one);
@@ -77,7 +63,7 @@ START_TEST(same_motion_and_bonds_on_any_number_of_ranks)
     ck_assert_int_eq(a.broken, b.broken);
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.damping, b.damping, 1e3 * BW_REAL_EPSILON);
-    compare(many, one, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
+    pd_check_same(many, one, bw_solid_get_velocity, 1e4 * BW_REAL_EPSILON);
     bw_solid_destroy(&many);
     bw_solid_destroy(&one);
   }
@@ -98,7 +84,7 @@ START_TEST(a_wide_plate_moves_as_its_parts_do)
   pd_set(one, NULL, shake);
   pd_steps(many, 5, 0.4 * bw_solid_dt_max(one));
   pd_steps(one, 5, 0.4 * bw_solid_dt_max(one));
-  compare(many, one, bw_solid_get_velocity, 1e3 * BW_REAL_EPSILON);
+  pd_check_same(many, one, bw_solid_get_velocity, 1e3 * BW_REAL_EPSILON);
   bw_solid_destroy(&many);
   bw_solid_destroy(&one);
   pd_body_release(&body);
@@ -131,8 +117,8 @@ START_TEST(restart_on_another_number_of_ranks)
     bw_check_near(a.fracture, b.fracture, 1e3 * BW_REAL_EPSILON);
     bw_check_near(a.damping, b.damping,
                   1e-3); /* one kick is split anew between bonds and damping */
-    compare(many, one, bw_solid_get_position, 0);
-    compare(many, one, bw_solid_get_velocity, 0);
+    pd_check_same(many, one, bw_solid_get_position, 0);
+    pd_check_same(many, one, bw_solid_get_velocity, 0);
     bw_solid_destroy(&many);
     bw_solid_destroy(&one);
   }

@@ -183,9 +183,9 @@ START_TEST(without_the_cubic_term_it_is_the_bond_law)
   pd_set(b, NULL, shake);
   pd_steps(a, 60, 0.5 * bw_solid_dt_max(b));
   pd_steps(b, 60, 0.5 * bw_solid_dt_max(b));
-  compare(a, b, bw_solid_get_position, ROUND_OFF);
-  compare(a, b, bw_solid_get_velocity, ROUND_OFF);
-  compare(a, b, bw_solid_get_acceleration, 10 * ROUND_OFF);
+  pd_check_same(a, b, bw_solid_get_position, ROUND_OFF);
+  pd_check_same(a, b, bw_solid_get_velocity, ROUND_OFF);
+  pd_check_same(a, b, bw_solid_get_acceleration, 10 * ROUND_OFF);
   const bw_solid_ledger x = ledger_of(a), y = ledger_of(b);
   ck_assert_int_gt(x.broken, 0);
   ck_assert_int_eq(x.broken, y.broken);
@@ -215,11 +215,11 @@ START_TEST(same_on_any_number_of_ranks_and_after_a_restart)
   pd_steps(all, 40, dt);
   pd_steps(one, 40, dt);
   pd_steps(next, 40, dt);
-  compare(all, one, bw_solid_get_position, ROUND_OFF);
+  pd_check_same(all, one, bw_solid_get_position, ROUND_OFF);
   ck_assert_int_eq(ledger_of(all).broken, ledger_of(one).broken);
   bw_check_near(ledger_of(all).fracture, ledger_of(one).fracture, ROUND_OFF);
-  compare(all, next, bw_solid_get_position, 0);
-  compare(all, next, bw_solid_get_velocity, 0);
+  pd_check_same(all, next, bw_solid_get_position, 0);
+  pd_check_same(all, next, bw_solid_get_velocity, 0);
   ck_assert_int_eq(ledger_of(all).broken, ledger_of(next).broken);
   bw_solid_destroy(&all);
   bw_solid_destroy(&one);

@@ -91,7 +91,7 @@ START_TEST(neighbours_on_other_ranks_and_a_checkpoint)
   pd_set(one, NULL, shake);
   pd_steps(all, 50, dt);
   pd_steps(one, 50, dt);
-  compare(all, one, bw_solid_get_position, ROUND_OFF);
+  pd_check_same(all, one, bw_solid_get_position, ROUND_OFF);
   pd_restart_from(all, next);
   /* Written by all, read by each. */
   bw_check_ok(BW_ALLOCATE(&rows, width * n));
@@ -112,10 +112,10 @@ START_TEST(neighbours_on_other_ranks_and_a_checkpoint)
   pd_steps(one, 50, dt);
   pd_steps(next, 50, dt);
   pd_steps(alone, 50, dt);
-  compare(all, one, bw_solid_get_position, ROUND_OFF);
-  compare(all, next, bw_solid_get_position, 0);
-  compare(all, next, bw_solid_get_velocity, 0);
-  compare(all, alone, bw_solid_get_position, ROUND_OFF);
+  pd_check_same(all, one, bw_solid_get_position, ROUND_OFF);
+  pd_check_same(all, next, bw_solid_get_position, 0);
+  pd_check_same(all, next, bw_solid_get_velocity, 0);
+  pd_check_same(all, alone, bw_solid_get_position, ROUND_OFF);
   bw_check_near(ledger_of(all).plastic, ledger_of(one).plastic, ROUND_OFF);
   bw_comm_barrier(bw_check_world()); /* all have read it */
   if (bw_comm_rank(bw_check_world()) == 0) unlink(path);

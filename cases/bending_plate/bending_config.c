@@ -54,13 +54,14 @@ static const bw_config_field time_fields[] = {
       "time step of the fluid; the solid sub-cycles"),
     V(bending_time, release, BW_OPTIONAL, BW_AT_LEAST(0), "s",
       "time until which the plate is held"),
-    V(bending_time, end, BW_REQUIRED, BW_ABOVE(0), "s", "end of the run"), BW_CONFIG_END};
+    V(bending_time, end, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "s", "end of the run"),
+    BW_CONFIG_END};
 static const bw_config_field output_fields[] = {
-    V(bending_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+    V(bending_output, sample_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "steps",
       "steps between rows of history.csv"),
-    V(bending_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+    V(bending_output, picture_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "steps",
       "steps between VTK files; 0: at the end only"),
-    V(bending_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+    V(bending_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "steps",
       "steps between checkpoint-last.h5; 0: at the end only"),
     BW_CONFIG_END};
 const bw_config_field bending_case_fields[] = {

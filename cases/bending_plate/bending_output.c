@@ -177,6 +177,7 @@ bw_status bending_checkpoint(bending_run *p)
   bw_status st = bw_history_sync(p->flow.comm, p->history);
   BW_THEN(st, bw_case_path(p->run, "checkpoint-last.h5", &path));
   BW_THEN(st, bw_checkpoint_create(p->flow.comm, path, &ck));
+  BW_THEN(st, bw_checkpoint_put_case(ck, p->run));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", 2, progress));
   BW_THEN(st, bw_coupler_save(p->flow.coupler, ck));
   if (st == BW_OK) st = bw_checkpoint_close(&ck);

@@ -3,6 +3,7 @@
  * Run:   build/bin/bending_plate cases/bending_plate/bending_plate.yaml --out out/bending
  * BUILD modules=coupler,vtk,shape */
 #include "bending_case.h"
+#include "bw_checkpoint.h"
 #include "bw_stop.h"
 
 /* What is due after a step: samples, pictures, checkpoints. */
@@ -58,7 +59,11 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
   BW_TRY(bending_describe(p));
   /* --check ends here: everything was built, nothing was run. */
   if (args->check) return BW_OK;
-  if (args->restart != NULL) BW_TRY(bending_restart(p, args->restart));
+  if (args->restart != NULL) {
+    BW_TRY(bending_restart(p, args->restart));
+    const double step = p->config->time.step; /* the checkpoint's, too: it may not change */
+    BW_TRY(bw_case_check_end(p->run, "time.end", (double)p->end * step, (double)p->step * step));
+  }
   /* A history that goes on is cut at the time of the checkpoint. */
   BW_TRY(bending_open_history(p));
   /* A run that was killed behind its checkpoint has not drawn the picture that was due. */
@@ -88,6 +93,6 @@ int main(int argc, char **argv)
 {
   bending_case config = bending_case_default();
   const bw_case_about about = {"bending_plate", "an elastic plate bent by a channel flow",
-                               bending_case_fields, sizeof config};
+                               bending_case_fields, sizeof config, bw_checkpoint_read_case};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -78,17 +78,17 @@ static const bw_config_field start_fields[] = {
                    "vortices added to it"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
-    V(box_time, end, BW_REQUIRED, BW_ABOVE(0), "T", "end of the run"),
-    V(box_time, step, BW_OPTIONAL, BW_ABOVE(0), "T",
+    V(box_time, end, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "T", "end of the run"),
+    V(box_time, step, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "T",
       "fixed time step; left out: limit_share decides"),
-    V(box_time, limit_share, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+    V(box_time, limit_share, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "time step over the largest stable one; 0.8 where step is left out, too"),
     BW_CONFIG_END};
 static const bw_config_field output_fields[] = {
     V(box_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "time between rows of history.csv"),
-    V(box_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
+    V(box_output, picture_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T",
       "time between VTK files of fluid.pvd; 0: at the end only"),
-    V(box_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
+    V(box_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T",
       "time between checkpoint.h5; 0: at the end only"),
     BW_CONFIG_END};
 const bw_config_field box_fields[] = {

@@ -5,6 +5,7 @@
  * Run:   mpirun -n 2 build/bin/box_flow cases/box_flow/box_flow.yaml --out out/cavity
  * BUILD modules=ns_channel,vtk,checkpoint */
 #include "box_case.h"
+#include "bw_checkpoint.h"
 #include "bw_number.h"
 #include "bw_stop.h"
 
@@ -68,7 +69,10 @@ static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
   box_describe(b);
   /* --check ends here: built, described, not run. */
   if (args->check) return BW_OK;
-  if (args->restart != NULL) BW_TRY(box_restart(b, args->restart));
+  if (args->restart != NULL) {
+    BW_TRY(box_restart(b, args->restart));
+    BW_TRY(bw_case_check_end(b->run, "time.end", config->time.end, bw_ns_channel_time(b->fluid)));
+  }
   BW_TRY(box_open_history(b));
   /* The first row is the start itself; a restart has it already. */
   if (args->restart == NULL) {
@@ -96,6 +100,6 @@ int main(int argc, char **argv)
 {
   box_config config = box_config_default();
   const bw_case_about about = {"box_flow", "incompressible flow in a box", box_fields,
-                               sizeof config};
+                               sizeof config, bw_checkpoint_read_case};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -99,7 +99,7 @@ bw_status box_advance(box_run *b)
 }
 
 /* ---- checkpoints ---- */
-enum { FIELDS = 4, NUMBERS = 7 };
+enum { FIELDS = 4, NUMBERS = 6 };
 static const char *const field_name[FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 static void list_fields(const box_run *b, bw_real *field[FIELDS])
@@ -113,7 +113,6 @@ bw_status box_checkpoint(box_run *b)
 {
   const double numbers[NUMBERS] = {(double)b->intervals,
                                    (double)b->steps,
-                                   b->config->output.sample_every,
                                    bw_ns_channel_gradient(b->fluid),
                                    b->dt,
                                    bw_ns_channel_time(b->fluid),
@@ -125,7 +124,7 @@ bw_status box_checkpoint(box_run *b)
   bw_status st = bw_history_sync(bw_grid_comm(b->grid), b->history);
   BW_THEN(st, bw_case_path(b->run, "checkpoint.h5", &path));
   BW_THEN(st, bw_checkpoint_create(bw_grid_comm(b->grid), path, &ck));
-  BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "box_flow"));
+  BW_THEN(st, bw_checkpoint_put_case(ck, b->run));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", NUMBERS, numbers));
   /* w does not exist in two dimensions. */
   for (int q = 0; q < FIELDS && st == BW_OK; q++)
@@ -145,10 +144,6 @@ bw_status box_restart(box_run *b, const char *path)
   list_fields(b, field);
   BW_TRY(bw_checkpoint_open(bw_grid_comm(b->grid), path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", NUMBERS, numbers);
-  /* Another interval would mean other steps. */
-  if (st == BW_OK && numbers[2] != b->config->output.sample_every)
-    st = BW_FAIL(BW_EINPUT, "%s was written with output.sample_every = %g, not %g; keep it", path,
-                 numbers[2], b->config->output.sample_every);
   for (int q = 0; q < FIELDS && st == BW_OK; q++)
     if (field[q] != NULL)
       st = bw_checkpoint_get_field(ck, field_name[q], b->grid, q % 3, q < 3, field[q]);
@@ -157,11 +152,11 @@ bw_status box_restart(box_run *b, const char *path)
   if (st != BW_OK) return st;
   /* Fields are read; numbers and halos complete the state. */
   BW_REQUIRE(bw_to_int64(numbers[0], &b->intervals) && bw_to_int64(numbers[1], &b->steps) &&
-                 bw_to_int64(numbers[6], &b->rows),
+                 bw_to_int64(numbers[5], &b->rows),
              BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
-  b->dt = numbers[4];
-  bw_ns_channel_set_gradient(b->fluid, numbers[3]);
-  bw_ns_channel_set_time(b->fluid, numbers[5]);
+  b->dt = numbers[3];
+  bw_ns_channel_set_gradient(b->fluid, numbers[2]);
+  bw_ns_channel_set_time(b->fluid, numbers[4]);
   bw_ns_channel_refresh(b->fluid);
   return BW_OK;
 }

@@ -30,13 +30,14 @@ static const bw_config_field fluid_fields[] = {
 static const bw_config_field time_fields[] = {
     V(channel_time, spin_up, BW_REQUIRED, BW_AT_LEAST(0), "h/U_b",
       "time before the statistics begin"),
-    V(channel_time, statistics, BW_REQUIRED, BW_AT_LEAST(0), "h/U_b", "length of the statistics"),
+    V(channel_time, statistics, BW_REQUIRED | BW_MAY_CHANGE, BW_AT_LEAST(0), "h/U_b",
+      "length of the statistics"),
     V(channel_time, interval, BW_OPTIONAL, BW_ABOVE(0), "h/U_b", "time between samples"),
     V(channel_time, courant_share, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "time step over the largest stable one"),
     BW_CONFIG_END};
 static const bw_config_field output_fields[] = {
-    V(channel_output, checkpoint_every, BW_OPTIONAL, BW_ABOVE(0), "h/U_b",
+    V(channel_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "h/U_b",
       "time between checkpoint.h5 and the profiles so far"),
     BW_CONFIG_END};
 const bw_config_field channel_fields[] = {

@@ -234,7 +234,7 @@ static inline bw_status channel_advance(channel_flow *f)
   return BW_OK;
 }
 
-enum { CHANNEL_PROGRESS = 8 };
+enum { CHANNEL_PROGRESS = 7 };
 static const char *const channel_field_name[4] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 /* Fields, sums and progress to a file. Collective. */
@@ -244,7 +244,6 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
   const bw_real *field[4] = {u[0], u[1], u[2], bw_ns_channel_pressure(f->fluid)};
   const double progress[CHANNEL_PROGRESS] = {(double)f->intervals,
                                              (double)f->steps,
-                                             f->config->interval,
                                              bw_ns_channel_gradient(f->fluid),
                                              bw_ns_channel_time(f->fluid),
                                              f->impulse,
@@ -253,7 +252,7 @@ static inline bw_status channel_save(channel_flow *f, const char *path)
   bw_checkpoint *ck = NULL;
   bw_ns_statistics_get_state(f->statistics, f->state);
   bw_status st = bw_checkpoint_create(bw_grid_comm(f->grid), path, &ck);
-  BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "channel_turbulence"));
+  BW_THEN(st, bw_checkpoint_put_case(ck, f->run));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "statistics",
                                         (int)bw_ns_statistics_state_size(f->statistics), f->state));
@@ -279,13 +278,9 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_open(bw_grid_comm(f->grid), path, &ck));
   bw_status st = bw_checkpoint_get_numbers(ck, "case/progress", CHANNEL_PROGRESS, progress);
-  /* Another interval would mean other steps and other samples. */
-  if (st == BW_OK && fabs(progress[2] / f->config->interval - 1.0) > 1e-12)
-    st = BW_FAIL(BW_EINPUT, "%s was written with samples every %g h/U_b, not %g", path, progress[2],
-                 f->config->interval);
   const bool whole = st == BW_OK && bw_to_int64(progress[0], &f->intervals) &&
-                     bw_to_int64(progress[1], &f->steps) && bw_to_int64(progress[6], &f->part) &&
-                     bw_to_int64(progress[7], &f->rows);
+                     bw_to_int64(progress[1], &f->steps) && bw_to_int64(progress[5], &f->part) &&
+                     bw_to_int64(progress[6], &f->rows);
   if (st == BW_OK && !whole)
     st = BW_FAIL(BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
   if (st == BW_OK && channel_sampling(f)) { /* else nothing was sampled yet */
@@ -305,9 +300,9 @@ static inline bw_status channel_load(channel_flow *f, const char *path)
   bw_checkpoint_abandon(&ck);
   if (st != BW_OK) return st;
   /* Numbers and halos complete the state. */
-  f->impulse = progress[5];
-  bw_ns_channel_set_gradient(f->fluid, progress[3]);
-  bw_ns_channel_set_time(f->fluid, progress[4]);
+  f->impulse = progress[4];
+  bw_ns_channel_set_gradient(f->fluid, progress[2]);
+  bw_ns_channel_set_time(f->fluid, progress[3]);
   bw_ns_channel_refresh(f->fluid);
   return BW_OK;
 }

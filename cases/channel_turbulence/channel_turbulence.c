@@ -94,6 +94,10 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
     bw_stop_install();
     st = args->restart != NULL ? channel_load(&f, args->restart) : channel_start(&f);
     f.run = run;
+    if (args->restart != NULL)
+      BW_THEN(st,
+              bw_case_check_end(run, "time.spin_up + time.statistics",
+                                c->time.spin_up + c->time.statistics, bw_ns_channel_time(f.fluid)));
     BW_THEN(st, channel_open_history(&f, run, &history));
     BW_THEN(st, run_to_end(&f, c, run, history));
     const bw_status closed = bw_history_close(comm, &history);
@@ -107,6 +111,6 @@ int main(int argc, char **argv)
 {
   channel_case config = channel_case_default();
   const bw_case_about about = {"channel_turbulence", "turbulent flow between two walls",
-                               channel_fields, sizeof config};
+                               channel_fields, sizeof config, bw_checkpoint_read_case};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

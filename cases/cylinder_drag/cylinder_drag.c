@@ -69,8 +69,6 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
   bw_history *history = NULL;
   cylinder_flow f;
   bool stopped = false;
-  BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
-             "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = cylinder_create(comm, &c->cylinder, &f);
   BW_THEN(st, cylinder_describe(&f, c, bw_case_log(run)));
   /* --check has built and described everything, and ends. */
@@ -92,6 +90,6 @@ int main(int argc, char **argv)
 {
   cylinder_case config = cylinder_case_default();
   const bw_case_about about = {"cylinder_drag", "the drag of a cylinder in a channel, three ways",
-                               cylinder_case_fields, sizeof config};
+                               cylinder_case_fields, sizeof config, NULL};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

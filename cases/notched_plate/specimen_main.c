@@ -41,8 +41,6 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   bw_history *history = NULL;
   specimen p;
   bool stopped = false;
-  BW_REQUIRE(args->restart == NULL, BW_EUSAGE,
-             "--restart: this case takes seconds and writes no checkpoints; run it from the start");
   bw_status st = specimen_create(comm, config, &p);
   BW_THEN(st, specimen_describe(&p, bw_case_log(run)));
   /* --check has built and described everything, and ends. */
@@ -64,6 +62,6 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
 int specimen_main(int argc, char **argv, const char *name, const char *title)
 {
   specimen_config config = specimen_default();
-  const bw_case_about about = {name, title, specimen_fields, sizeof config};
+  const bw_case_about about = {name, title, specimen_fields, sizeof config, NULL};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

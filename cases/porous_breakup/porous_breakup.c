@@ -4,6 +4,7 @@
  * settled; it deforms, with breakage off and settling damping; breakage on.
  * Run:   mpirun -n 2 build/bin/porous_breakup cases/porous_breakup/porous_breakup.yaml
  * BUILD modules=coupler,shape */
+#include "bw_checkpoint.h"
 #include "bw_stop.h"
 #include "porous_case.h"
 
@@ -111,13 +112,27 @@ static bw_status draw_again(porous_run *p)
   return st;
 }
 
+/* A checkpoint behind the end that is asked for is refused. */
+static bw_status check_end(const porous_run *p)
+{
+  const int64_t steps = porous_phase_of(p->config, p->phase)->steps;
+  char key[64];
+  snprintf(key, sizeof key, "%s.steps", porous_phase_name[p->phase]);
+  /* At its end a phase goes over into the next one; only the last one ends the run. */
+  if (p->phase != PHASE_BREAKAGE && p->step <= steps) return BW_OK;
+  return bw_case_check_end(p->run, key, (double)steps, (double)p->step);
+}
+
 static bw_status run_case(porous_run *p)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
   BW_TRY(porous_build(p));
   BW_TRY(porous_describe(p));
   if (args->check) return BW_OK;
-  if (args->restart != NULL) BW_TRY(porous_restart(p, args->restart));
+  if (args->restart != NULL) {
+    BW_TRY(porous_restart(p, args->restart));
+    BW_TRY(check_end(p));
+  }
   BW_TRY(porous_open_history(p));
   if (args->restart != NULL) BW_TRY(draw_again(p));
   /* The first good state, for a divergence in the first steps. */
@@ -149,6 +164,6 @@ int main(int argc, char **argv)
 {
   porous_config config = porous_config_default();
   const bw_case_about about = {"porous_breakup", "a porous medium that breaks in a channel flow",
-                               porous_fields, sizeof config};
+                               porous_fields, sizeof config, bw_checkpoint_read_case};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

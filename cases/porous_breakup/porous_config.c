@@ -85,23 +85,23 @@ static const bw_config_field medium_fields[] = {
     BW_CONFIG_END};
 
 static const bw_config_field phase_fields[] = {
-    V(porous_phase, time_step, BW_REQUIRED, BW_ABOVE(0), "s",
+    V(porous_phase, time_step, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "s",
       "time step of the fluid; the solid sub-cycles"),
-    V(porous_phase, steps, BW_REQUIRED, BW_AT_LEAST(0), "", "steps at most"),
-    V(porous_phase, settled, BW_OPTIONAL, BW_AT_LEAST(0), "",
+    V(porous_phase, steps, BW_REQUIRED | BW_MAY_CHANGE, BW_AT_LEAST(0), "", "steps at most"),
+    V(porous_phase, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "",
       "relative change of the pressure drop per h/U_b below which the phase ends early; 0: never"),
     V(porous_phase, settling_rate, BW_OPTIONAL, BW_AT_LEAST(0), "1/s",
       "absolute damping of the solid over its density"),
     BW_CONFIG_END};
 
 static const bw_config_field output_fields[] = {
-    V(porous_output, sample_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+    V(porous_output, sample_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "steps",
       "steps between rows of history.csv"),
-    V(porous_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+    V(porous_output, picture_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "steps",
       "steps between VTK files; 0: at the ends of phases only"),
-    V(porous_output, checkpoint_every, BW_OPTIONAL, BW_AT_LEAST(0), "steps",
+    V(porous_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "steps",
       "steps between checkpoint-last.h5; 0: at the ends of phases only"),
-    V(porous_output, keep_every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
+    V(porous_output, keep_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "steps",
       "steps between good states in memory, one of which is written if the run diverges"),
     BW_CONFIG_END};
 

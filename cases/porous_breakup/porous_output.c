@@ -136,7 +136,7 @@ bw_status porous_checkpoint(porous_run *p, const char *name, bool kept)
   bw_status st = bw_history_sync(p->comm, p->history);
   BW_THEN(st, bw_case_path(p->run, name, &path));
   BW_THEN(st, bw_checkpoint_create(p->comm, path, &ck));
-  BW_THEN(st, bw_checkpoint_put_text(ck, "case/name", "porous_breakup"));
+  BW_THEN(st, bw_checkpoint_put_case(ck, p->run));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", N_PROGRESS,
                                         kept ? p->kept_progress : progress));
   /* State and progress belong together: both of now, or both of the last good state. */

@@ -16,6 +16,7 @@
  * After a failed put, close does not rename but fails too.
  * All functions are collective. */
 #pragma once
+#include "bw_case.h"
 #include "bw_grid.h"
 
 BW_BEGIN_DECLS
@@ -53,6 +54,14 @@ bw_status bw_checkpoint_put_text(bw_checkpoint *ck, const char *name,
 
 /* *text, on all ranks, is allocated and owned by the caller (bw_release); NULL after a failure. */
 bw_status bw_checkpoint_get_text(bw_checkpoint *ck, const char *name, char **text) BW_MUST_CHECK;
+
+/* Write whose the checkpoint is: program, version and resolved case of `run`, under "case/program",
+ * "case/version" and "case/parameters". `run` NULL, of a program that is no case: nothing. */
+bw_status bw_checkpoint_put_case(bw_checkpoint *ck, const bw_case *run) BW_MUST_CHECK;
+
+/* The same from the file at PATH: a bw_case_reader. BW_EIO for a file of no case, too. */
+bw_status bw_checkpoint_read_case(const bw_comm *comm, const char *path, char **program,
+                                  char **parameters) BW_MUST_CHECK;
 
 /* Is there an entry of that name? The same answer on all ranks. */
 bool bw_checkpoint_has(bw_checkpoint *ck, const char *name);

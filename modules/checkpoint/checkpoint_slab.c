@@ -1,4 +1,5 @@
 /* One data set: created, written and read by all ranks, each its share; checked on reading. */
+#include "bw_mix.h"
 #include "checkpoint_internal.h"
 
 #include <inttypes.h>
@@ -21,16 +22,6 @@ size_t bw_checkpoint__elements(const bw_checkpoint__slab *slab)
   return n;
 }
 
-/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit in moves every bit out. */
-static uint64_t mix(uint64_t x)
-{
-  x ^= x >> 30;
-  x *= UINT64_C(0xbf58476d1ce4e5b9);
-  x ^= x >> 27;
-  x *= UINT64_C(0x94d049bb133111eb);
-  return x ^ (x >> 31);
-}
-
 /* `bytes` is a constant where this is inlined, so that no copy is left in the loop. */
 static inline uint64_t hash_elements(uint64_t index, size_t n, size_t bytes,
                                      const unsigned char *data)
@@ -41,7 +32,7 @@ static inline uint64_t hash_elements(uint64_t index, size_t n, size_t bytes,
     memcpy(&bits, data + i * bytes, bytes);
     /* The place is part of what is hashed: values in each other's place are noticed. Exclusive or
      * commutes, so that the sum does not depend on who held what. */
-    hash ^= mix(bits + mix(index + i + 1));
+    hash ^= bw_mix(bits + bw_mix(index + i + 1));
   }
   return hash;
 }

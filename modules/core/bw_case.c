@@ -33,11 +33,13 @@ static void release(bw_case **run)
   bw_release(&(*run)->files);
   bw_release(&(*run)->overrides);
   bw_release(&(*run)->out);
+  bw_release(&(*run)->parameters);
+  bw_release(&(*run)->changed);
   bw_log_destroy(&(*run)->log);
   bw_release(run);
 }
 
-static bw_status load(const bw_case *run, void *config)
+static bw_status load(bw_case *run, void *config)
 {
   const bw_case_args *a = &run->args;
   BW_TRY(bw_config_load(a->comm, a->yaml, run->about->fields, a->n_overrides, a->overrides,
@@ -45,7 +47,7 @@ static bw_status load(const bw_case *run, void *config)
   /* Before the folder is touched: a run with a slip in its command line leaves no trace. */
   BW_REQUIRE(a->restart == NULL || bw_path_exists(a->comm, a->restart), BW_EIO,
              "--restart %s: there is no such file", a->restart);
-  return BW_OK;
+  return bw_core__case_identity(run, config);
 }
 
 /* The resolved configuration: printed with --check, recorded otherwise. */
@@ -64,6 +66,7 @@ static bw_status announce(bw_case *run, const void *config)
                 bw_comm_size(a->comm), bw_comm_size(a->comm) == 1 ? "" : "s", BW_REAL_NAME,
                 a->check ? "" : ", results in ", a->check ? ", checked only:" : a->out);
   if (st == BW_OK && a->check) bw_log_info(run->log, "%s", resolved);
+  if (st == BW_OK) bw_core__case_tell_changes(run);
   bw_release(&resolved);
   return st;
 }

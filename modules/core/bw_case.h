@@ -5,7 +5,8 @@
  *   int main(int argc, char **argv)
  *   {
  *     my_case c = my_case_default();
- *     const bw_case_about about = {"porous_breakup", "what it computes", fields, sizeof c};
+ *     const bw_case_about about = {"porous_breakup", "what it computes", fields, sizeof c,
+ *                                  bw_checkpoint_read_case};
  *     return bw_case_main(argc, argv, &about, &c, simulate);
  *   }
  *
@@ -16,7 +17,12 @@
  * run.lock, which ends with the process and is not copied with the folder: a second run is refused
  * and told who holds it. Nothing is replaced without --restart, which goes on with a run of the
  * same case, or --overwrite, which removes what runs of the same case have written (run.files) and
- * begins anew. A folder with files of the user's and no run.yaml is never written into. */
+ * begins anew. A folder with files of the user's and no run.yaml is never written into.
+ *
+ * A restart is the same run. A checkpoint holds the program's name and the whole resolved case
+ * (bw_checkpoint_put_case), the files that it names by the checksum of their content. With
+ * --restart every value that differs is refused with key, both values and the checkpoint, or, where
+ * its row has BW_MAY_CHANGE, listed on the screen and in run.yaml. */
 #pragma once
 #include "bw_config.h"
 #include "bw_history.h"
@@ -30,12 +36,20 @@ const char *bw_version(void);
 /* Commit of those sources; "unknown" where the build could not tell; static storage. Local. */
 const char *bw_commit(void);
 
+/* Reads from a checkpoint whose it is: the program and its parameters (bw_case_program,
+ * bw_case_parameters of the run that wrote it), allocated, the caller's (bw_release), NULL after a
+ * failure. bw_checkpoint_read_case is one. Collective. */
+typedef bw_status bw_case_reader(const bw_comm *comm, const char *path, char **program,
+                                 char **parameters);
+
 /* What a case is. Borrowed by bw_case_begin until bw_case_end. */
 typedef struct {
   const char *name;    /* of the program; the default folder is out/NAME, see bw_case_args.out */
   const char *summary; /* one line for --help */
-  const bw_config_field *fields; /* table of the keys of its case file, see bw_config.h */
-  size_t config_size;            /* bytes of the struct that the table fills */
+  const bw_config_field *fields;   /* table of the keys of its case file, see bw_config.h */
+  size_t config_size;              /* bytes of the struct that the table fills */
+  bw_case_reader *read_checkpoint; /* bw_checkpoint_read_case; NULL: the case writes no checkpoints,
+                                      and --restart is refused */
 } bw_case_about;
 
 /* The command line as it was understood. Texts and arrays live until bw_case_end. */
@@ -57,9 +71,10 @@ typedef struct {
 /* A case that runs: its command line, folder, record and log. */
 typedef struct bw_case bw_case;
 
-/* Read the command line; load and check the configuration; make the folder; write run.yaml; print
- * the heading. With --check: prints the resolved configuration instead, touches no folder.
- * BW_EUSAGE for a command line not understood (with a hint), BW_EINPUT for the configuration,
+/* Read the command line; load and check the configuration; hold a restart against its checkpoint;
+ * make the folder; write run.yaml; print the heading. With --check: prints the resolved
+ * configuration instead, touches no folder. BW_EUSAGE for a command line not understood (with a
+ * hint), BW_EINPUT for the configuration and for a checkpoint of another program or case,
  * BW_EINPUT when another run writes into the folder or what it holds may not be replaced (the
  * remedy is named), BW_EIO when it cannot be written. `about` is borrowed until end; `config` is
  * not kept. Collective. */
@@ -83,6 +98,17 @@ bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUS
  * the file is another one. Without --restart both are not looked at. Collective. */
 bw_status bw_case_history(const bw_case *run, int n, const char *const names[], double restart_time,
                           int64_t restart_rows, bw_history **out) BW_MUST_CHECK;
+
+/* The program's name, and the resolved case as a checkpoint keeps it: a line of text for each
+ * value. Borrowed, valid until bw_case_end; the second is rank 0's alone, "" elsewhere. Local. */
+const char *bw_case_program(const bw_case *run);
+const char *bw_case_parameters(const bw_case *run);
+
+/* After a checkpoint was read that is at `done`, in the unit of `end`, the value of `key`: BW_EINPUT
+ * where it lies beyond the end that is asked for; at the end it is said that the run is complete.
+ * Without --restart nothing. All ranks know the same. Local. */
+bw_status bw_case_check_end(const bw_case *run, const char *key, double end,
+                            double done) BW_MUST_CHECK;
 
 /* Is the run to end early, in good order: by a signal (bw_stop.h) or because the time of
  * --stop-after is over? The same answer on all ranks. Once per step is cheap. Collective. */

@@ -47,10 +47,12 @@ typedef enum {
   BW_CONFIG_TYPE_LIST    /* an array of structs with a count: a list of blocks */
 } bw_config_type;
 
-/* Must a value be given? */
+/* Must a value be given, and may it differ when a run goes on? BW_MAY_CHANGE is added by |. */
 typedef enum {
-  BW_OPTIONAL, /* no: what the struct holds before loading stays */
-  BW_REQUIRED  /* yes, unless the struct holds one before loading: an error by name otherwise */
+  BW_OPTIONAL = 0, /* no: what the struct holds before loading stays */
+  BW_REQUIRED = 1, /* yes, unless the struct holds one before loading: an error by name otherwise */
+  BW_MAY_CHANGE = 2 /* how long, how often to write, what to show: with --restart another value than
+                       the checkpoint's is listed; that of any other key is refused (bw_case.h) */
 } bw_config_need;
 
 /* Which limits of a bw_config_range hold; combined by |. */
@@ -143,7 +145,7 @@ typedef struct bw_config_field bw_config_field;
 struct bw_config_field {
   const char *key;       /* the member's name; NULL ends the table */
   bw_config_type type;   /* what the member is */
-  bw_config_need need;   /* whether a value must be given */
+  bw_config_need need;   /* whether a value must be given, may change; of a LIST for its items */
   size_t offset, size;   /* of the whole member in its struct [bytes] */
   size_t item_size;      /* of one element: double, int, bool, the struct of a list [bytes] */
   size_t flag;           /* MAP: offset of its bool, or BW_CONFIG_NO_FLAG; LIST: of its int count */

@@ -15,6 +15,8 @@ struct bw_case {
   bw_case_args args;
   const char **overrides; /* args.overrides; the texts are argv's */
   char *out;              /* args.out */
+  char *parameters;       /* rank 0: the resolved case as lines (bw_core__config_lines) */
+  char *changed;          /* rank 0: a line for each value that a restart has changed, or NULL */
   bw_log *log;
   bool help, version, recorded; /* recorded: run.yaml was written */
   bool locked;                  /* rank 0: run.lock is held ... */
@@ -28,6 +30,13 @@ bw_status bw_core__case_parse(bw_case *run, int argc, char **argv) BW_MUST_CHECK
 /* Rank 0: what --help and --version say. */
 void bw_core__case_help(const bw_case *run, const void *config);
 void bw_core__case_version(void);
+
+/* run->parameters; with --restart refused where the checkpoint is another program's or another
+ * case's, else run->changed. Collective. */
+bw_status bw_core__case_identity(bw_case *run, const void *config) BW_MUST_CHECK;
+/* What a restart has changed: to the log, into run.yaml's block `run`. Local. */
+void bw_core__case_tell_changes(const bw_case *run);
+void bw_core__case_record_changes(FILE *out, const bw_case *run);
 
 /* The output folder: refused when another run writes into it, or when it holds what may not be
  * replaced; made, locked. Collective. */

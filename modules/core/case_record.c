@@ -40,6 +40,7 @@ static void put_record(FILE *out, const bw_case *run, const char *resolved)
     fputs("  restart: ", out);
     bw_core__put_quoted(out, run->args.restart);
     fputc('\n', out);
+    bw_core__case_record_changes(out, run);
   }
   fprintf(out, "  start: %s\n", start);
 }

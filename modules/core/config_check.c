@@ -122,7 +122,7 @@ static void check_scalar(walk *w, const bw_config_field *f, int id, const char *
     wrong(w, f, id, path); /* a 0 byte inside: "\0" of YAML */
   else if (!bw_core__config_accept(f, value, w->accepted))
     refuse(w, f, id, path, value);
-  else if (text && value[0] == '\0' && f->need == BW_REQUIRED)
+  else if (text && value[0] == '\0' && (f->need & BW_REQUIRED))
     wrong(w, f, id, path);
   bw_release(&file);
 }
@@ -263,7 +263,7 @@ static void check_list(walk *w, const bw_config_field *f, int id, const char *pa
   if (bw_core__config_node(w->source, id)->type != YAML_SEQUENCE_NODE &&
       !bw_core__config_is_null(w->source, id))
     wrong(w, f, id, path);
-  else if (count == 0 && f->need == BW_REQUIRED)
+  else if (count == 0 && (f->need & BW_REQUIRED))
     problem(w, id, "%s: at least one item is needed%s", path, meaning);
   else if (count > most)
     problem(w, id, "%s: at most %d items, %d are given%s", path, most, count, meaning);
@@ -308,7 +308,7 @@ static void check_table(walk *w, const bw_config_field fields[], int id, int pla
     if (value != 0) fprintf(w->accepted, "\"%s\": ", f->key);
     if (f->type == BW_CONFIG_TYPE_MAP)
       check_map(w, f, value, key, path, defaults);
-    else if (value == 0 && f->need == BW_REQUIRED && bw_core__config_unset(f, defaults))
+    else if (value == 0 && (f->need & BW_REQUIRED) && bw_core__config_unset(f, defaults))
       missing(w, f, place, path);
     else if (value != 0 && f->type == BW_CONFIG_TYPE_LIST)
       check_list(w, f, value, path, defaults);

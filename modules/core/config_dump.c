@@ -38,7 +38,7 @@ static void put_item(FILE *out, const bw_config_field *f, const char *at)
   }
 }
 
-static void put_value(FILE *out, const bw_config_field *f, const char *at)
+void bw_core__config_put_value(FILE *out, const bw_config_field *f, const char *at)
 {
   const int length = bw_core__config_length(f);
   if (length > 1) fputc('[', out);
@@ -87,7 +87,7 @@ static void put_table(FILE *out, const bw_config_field fields[], const char *at,
       }
     } else {
       fputc(' ', out);
-      put_value(out, f, member);
+      bw_core__config_put_value(out, f, member);
       fputc('\n', out);
     }
   }
@@ -115,13 +115,14 @@ static void help_table(FILE *out, const bw_config_field fields[], const char *at
     bw_core__config_expected(f, sizeof expected, expected);
     bw_core__config_meaning(f, sizeof meaning, meaning);
     fprintf(out, "  %-32s %s%s", path, expected, meaning);
-    if (f->need == BW_REQUIRED && unset) fputs("; required", out);
+    if ((f->need & BW_REQUIRED) && unset) fputs("; required", out);
     if (f->type == BW_CONFIG_TYPE_MAP && f->flag != BW_CONFIG_NO_FLAG) fputs("; optional", out);
     if (f->type == BW_CONFIG_TYPE_LIST) fprintf(out, "; at most %d", (int)(f->size / f->item_size));
     if (!unset) {
       fputs("; default ", out);
-      put_value(out, f, at + f->offset);
+      bw_core__config_put_value(out, f, at + f->offset);
     }
+    if (f->need & BW_MAY_CHANGE) fputs("; may change with --restart", out);
     fputc('\n', out);
     bw_core__config_join(path, "N", item);
     /* Blocks follow their own line, key by key; items of a list are named by N. */

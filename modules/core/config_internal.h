@@ -74,6 +74,15 @@ void bw_core__config_expected(const bw_config_field *f, size_t size, char *text)
 /* " (kinematic viscosity [m2/s])", or "" when there is neither. */
 void bw_core__config_meaning(const bw_config_field *f, size_t size, char *text);
 
+/* The struct as lines "MARK KEY.PATH = VALUE", one for each value that is set. MARK is = where a
+ * restart has to have the same, ~ where it may change, @ for a file, whose content is told by size
+ * and checksum. *text is the caller's (bw_release), NULL after BW_EMEM. Local; reads files. */
+bw_status bw_core__config_lines(const bw_config_field fields[], const void *config,
+                                char **text) BW_MUST_CHECK;
+
+/* The member at `at` as it stands behind its key. */
+void bw_core__config_put_value(FILE *out, const bw_config_field *f, const char *at);
+
 /* Decimal and finite, with nothing behind it? */
 bool bw_core__config_number(const char *text, double *x);
 /* Is x (0 as written) a size that products can be made of? BW_CONFIG_SMALLEST, BW_CONFIG_LARGEST */

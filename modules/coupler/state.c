@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { N_FIELDS = 4 };
-static const char memory_name[] = "solid/memory_of_forcing";
+static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "solid/body";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 void bw_coupler__state_release(bw_coupler__state *s)
@@ -84,10 +84,34 @@ bw_status bw_coupler_keep(bw_coupler *c)
   return BW_OK;
 }
 
+/* Which body it is: how many particles, and its fingerprint in two halves, which doubles hold. */
+static void body_numbers(const bw_coupler *c, double numbers[3])
+{
+  const uint64_t print = bw_solid_fingerprint(c->solid);
+  numbers[0] = (double)bw_solid_total(c->solid);
+  numbers[1] = (double)(print >> 32);
+  numbers[2] = (double)(print & UINT32_MAX);
+}
+
+static bw_status same_body(const bw_coupler *c, bw_checkpoint *ck)
+{
+  double here[3], there[3];
+  body_numbers(c, here);
+  BW_TRY(bw_checkpoint_get_numbers(ck, body_name, 3, there));
+  BW_REQUIRE(memcmp(here, there, sizeof here) == 0, BW_EINPUT,
+             "coupler: the checkpoint is of another solid: %.0f particles there, %.0f here, or at "
+             "other places; build the one that it was written with",
+             there[0], here[0]);
+  return BW_OK;
+}
+
 static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw_checkpoint *ck)
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
   const int64_t total = bw_solid_total(c->solid), *id = bw_solid_id(c->solid);
+  double body[3];
+  body_numbers(c, body);
+  BW_TRY(bw_checkpoint_put_numbers(ck, body_name, 3, body));
   /* Fields by global cells, particles by id: any number of ranks can read them. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)
@@ -110,6 +134,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
 {
   const bw_grid *grid = bw_ns_channel_grid(c->fluid);
   const int64_t total = bw_solid_total(c->solid), *id = bw_solid_id(c->solid);
+  BW_TRY(same_body(c, ck));
   /* The mirror image of write_state, in the same order. */
   for (int q = 0; q < N_FIELDS; q++)
     if (s->field[q] != NULL)

@@ -281,7 +281,12 @@ size_t bw_solid_bits_bytes(const bw_solid *solid); /* bytes of one row */
 /* The way back; bits of directions in which a particle has no bond are ignored. Collective. */
 bw_status bw_solid_set_bits(bw_solid *solid, const uint8_t bits[]) BW_MUST_CHECK;
 
-enum { BW_SOLID_RESTART_SUMS = 11 }; /* sums of the whole solid in a restart */
+/* A number that tells one body from another: from ids, reference places, kinds and groups of all
+ * particles and the horizon; whether they hold, move or have retired does not count. The same on any
+ * number of ranks. A restart belongs to the body with its number. Collective. */
+uint64_t bw_solid_fingerprint(const bw_solid *solid);
+
+enum { BW_SOLID_RESTART_SUMS = 14 }; /* sums of the whole solid in a restart */
 
 /* Numbers per particle in a row of a restart: 13, and one for each field that the law wants saved.
  * The same on all ranks. Local. */
@@ -289,10 +294,13 @@ size_t bw_solid_restart_row(const bw_solid *solid);
 
 /* Everything else a restart needs: X0-relative displacement, V, acceleration without F, its damping
  * part, 1 when retired (2 more when a state was set and its forces are still to be evaluated), the
- * law's saved fields (n, restart_row), and the ledger's running sums of all ranks (11: damping,
- * fracture, external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them).
+ * law's saved fields (n, restart_row), and the ledger's running sums of all ranks (14: damping,
+ * fracture, external, directed bonds cut by pre-cracks, retired, impulse on walls, force on them,
+ * and the coefficients pair, mean, absolute of the damping in the accelerations).
  * Set bits and rows, in any order, then force and prescribed velocities: the run goes on to the
- * same bits. Both collective. */
+ * same bits. Where the damping is another one by then, as after the end of a settling, the
+ * accelerations are evaluated anew, as they are when bw_solid_set_damping changes it on the way.
+ * Both collective. */
 void bw_solid_get_restart(const bw_solid *solid, double rows[], double sums[]);
 bw_status bw_solid_set_restart(bw_solid *solid, const double rows[],
                                const double sums[]) BW_MUST_CHECK;

@@ -1,4 +1,5 @@
 /* What a checkpoint holds. */
+#include "bw_mix.h"
 #include "solid_internal.h"
 
 #include <string.h>
@@ -51,6 +52,31 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
   return BW_OK;
 }
 
+static uint64_t mix_number(uint64_t hash, double x)
+{
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bw_mix(hash + bits + UINT64_C(0x9e3779b97f4a7c15));
+}
+
+uint64_t bw_solid_fingerprint(const bw_solid *s)
+{
+  const bw_pd_body *pd = s->body;
+  uint64_t all = 0;
+  for (size_t i = 0; i < pd->n; i++) {
+    double X0[3];
+    bw_pd_body_reference(pd, i, X0);
+    uint64_t hash = bw_mix((uint64_t)pd->points.id[i] + 1);
+    for (int k = 0; k < 3; k++)
+      hash = mix_number(hash, X0[k]);
+    hash = bw_mix(hash + (pd->points.kind[i] & ~(unsigned)BW_PD_RETIRED));
+    /* Exclusive or: whoever owns a particle, its part is the same. */
+    all ^= bw_mix(hash + pd->points.group[i]);
+  }
+  bw_comm_xor(pd->comm, 1, &all);
+  return mix_number(all, pd->level->horizon);
+}
+
 size_t bw_solid_restart_row(const bw_solid *s)
 {
   size_t width = BW_SOLID__ROW;
@@ -88,6 +114,23 @@ static void set_fields(bw_solid *s, const double rows[])
   }
 }
 
+/* Behind the running sums: the coefficients of the damping that the accelerations hold. */
+enum { DAMPING = BW_SOLID_RESTART_SUMS - 3 };
+static void get_damping(const bw_solid *s, double damping[3])
+{
+  damping[0] = s->body->damping.pair;
+  damping[1] = s->body->damping.mean;
+  damping[2] = s->body->damping.absolute;
+}
+
+/* Is the damping still that of the rows? */
+static bool damped_alike(const bw_solid *s, const double sums[])
+{
+  double now[3];
+  get_damping(s, now);
+  return memcmp(now, sums + DAMPING, sizeof now) == 0;
+}
+
 void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
 {
   const bw_pd_body *pd = s->body;
@@ -115,7 +158,8 @@ void bw_solid_get_restart(const bw_solid *s, double rows[], double sums[])
       book->retired, book->wall[0],      book->wall[1],  book->wall[2],
       on_walls[0],   on_walls[1],        on_walls[2]};
   memcpy(sums, mine, sizeof mine);
-  bw_comm_sum(pd->comm, BW_SOLID_RESTART_SUMS, sums);
+  bw_comm_sum(pd->comm, DAMPING, sums);
+  get_damping(s, sums + DAMPING);
 }
 
 /* The sums of all ranks are the first one's. */
@@ -162,9 +206,10 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, rows);
   set_sums(s, sums);
-  /* Copies follow; with a given, the state counts as evaluated, unless nobody had evaluated it. */
+  /* Copies follow; with a given, the state counts as evaluated, unless nobody had evaluated it, or
+   * it holds a damping that has ended. */
   bw_pd_body_refresh(pd, true);
-  pd->current = s->restored = !are_stale(s, rows);
+  pd->current = s->restored = !are_stale(s, rows) && damped_alike(s, sums);
   s->loaded = s->contact != NULL || bw_pd_body_damped(pd);
   return BW_OK;
 }

@@ -4,6 +4,7 @@
 #include "bw_check.h"
 #include "bw_file.h"
 #include "bw_folder.h"
+#include "bw_memory.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,9 +16,29 @@ typedef struct {
 } config;
 static const bw_config_field fields[] = {
     BW_CONFIG_VALUE(config, nu, BW_REQUIRED, BW_ABOVE(0), "m2/s", "kinematic viscosity"),
-    BW_CONFIG_VALUE(config, steps, BW_OPTIONAL, BW_AT_LEAST(0), "", "time steps"), BW_CONFIG_END};
-static const bw_case_about about = {"tube", "flow in a tube", fields, sizeof(config)};
-static const bw_case_about other_case = {"plate", "another", fields, sizeof(config)};
+    BW_CONFIG_VALUE(config, steps, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "", "time steps"),
+    BW_CONFIG_END};
+
+/* A checkpoint of these tests is a text: the program's name in a line, then its parameters. */
+static inline bw_status read_text(const bw_comm *comm, const char *path, char **program,
+                                  char **parameters)
+{
+  char *text = NULL;
+  size_t bytes = 0;
+  *program = *parameters = NULL;
+  BW_TRY(bw_file_read_text(comm, path, &bytes, &text));
+  const size_t first = strcspn(text, "\n");
+  bw_check_ok(BW_ALLOCATE(program, bytes + 1));
+  bw_check_ok(BW_ALLOCATE(parameters, bytes + 1));
+  memcpy(*program, text, first);
+  if (first < bytes) memcpy(*parameters, text + first + 1, bytes - first - 1);
+  bw_release(&text);
+  return BW_OK;
+}
+#define TUBE "tube\n= nu = 0.5\n~ steps = 7\n" /* what a run of case_file has written */
+
+static const bw_case_about about = {"tube", "flow in a tube", fields, sizeof(config), read_text};
+static const bw_case_about other_case = {"plate", "another", fields, sizeof(config), read_text};
 
 /* A folder that is new for every test program run, the same on all ranks. */
 static char base[96];

@@ -168,7 +168,7 @@ START_TEST(histories_go_on_in_their_folder)
   for (int q = 0; q < 3; q++)
     bw_history_append(h, (const double[]){q, 0.0});
   close_rows(&h, 3);
-  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
+  bw_check_ok(bw_file_write_text(comm, checkpoint, TUBE));
   bw_check_ok(bw_case_end(comm, &run, BW_OK));
   const char *const here[] = {yaml, "--out", folder, "--quiet", "--restart", checkpoint, NULL};
   bw_check_ok(begin(&about, here, &c, &run));

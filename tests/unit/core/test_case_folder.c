@@ -22,7 +22,7 @@ START_TEST(results_are_not_overwritten)
   bw_check_ok(begin(&about, WORDS(yaml, "--out", folder, "--quiet"), &c, &run));
   bw_check_ok(bw_case_path(run, "checkpoint-1.h5", &checkpoint));
   bw_check_ok(bw_case_path(run, "run-1.yaml", &kept));
-  bw_check_ok(bw_file_write_text(comm, checkpoint, "state"));
+  bw_check_ok(bw_file_write_text(comm, checkpoint, TUBE));
   bw_check_ok(bw_case_end(comm, &run, BW_OK));
   ck_assert(bw_path_exists(comm, kept));
 
@@ -37,7 +37,7 @@ START_TEST(results_are_not_overwritten)
     expect_refusal(&about, WORDS(yaml, "--stop-after", times[q]), BW_EUSAGE,
                    "write a time such as");
   expect_refusal(&other_case, WORDS(yaml, "--out", folder, "--restart", checkpoint), BW_EINPUT,
-                 "holds results of another case than plate");
+                 "written by tube, this is plate");
   bw_check_ok(
       begin(&about, WORDS(yaml, "--out", folder, "--restart", checkpoint, "--quiet"), &c, &run));
   ck_assert_str_eq(bw_case_args_of(run)->restart, checkpoint);
@@ -87,7 +87,9 @@ START_TEST(overwriting_removes_own_files_alone)
   bw_check_ok(bw_file_write_text(comm, own, "my own table"));
   expect_refusal(&about, WORDS(yaml, "--out", folder), BW_EINPUT, "holds history.csv");
   expect_refusal(&about, WORDS(yaml, "--out", folder, "--overwrite"), BW_EINPUT, "no run.yaml");
-  expect_refusal(&about, WORDS(yaml, "--out", folder, "--restart", own), BW_EINPUT, "history.csv");
+  bw_check_ok(bw_file_write_text(comm, own, TUBE));
+  expect_refusal(&about, WORDS(yaml, "--out", folder, "--restart", own), BW_EINPUT,
+                 "holds history.csv");
 }
 END_TEST
 

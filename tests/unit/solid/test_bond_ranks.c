@@ -127,6 +127,61 @@ START_TEST(restart_on_another_number_of_ranks)
 }
 END_TEST
 
+/* A body settles with damping; the next run has none: it goes on as if nobody had stopped. */
+START_TEST(a_settled_state_holds_no_settling_damping)
+{
+  bw_comm *self = pd_alone();
+  pd_body body = pd_box(8, 6, 5);
+  const bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+  const double dt = 0.4 * bw_solid_dt_max(one);
+  pd_set(many, NULL, shake);
+  bw_solid_set_damping(many, 0, 0, 0.1 * c.rho / dt);
+  pd_steps(many, 20, dt);
+  bw_solid_set_damping(one, 0, 0,
+                       0); /* as the run that goes on enters the next phase, then reads */
+  pd_restart_from(many, one);
+  bw_solid_set_damping(many, 0, 0, 0);
+  pd_steps(many, 20, dt);
+  pd_steps(one, 20, dt);
+  pd_check_same(many, one, bw_solid_get_position, 0);
+  pd_check_same(many, one, bw_solid_get_velocity, 0);
+  bw_solid_destroy(&many);
+  bw_solid_destroy(&one);
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+/* The same number on any number of ranks, another one for another place, kind or horizon. */
+START_TEST(a_fingerprint_tells_bodies_apart)
+{
+  bw_comm *self = pd_alone();
+  pd_body body = pd_box(8, 6, 5);
+  bw_solid_config c = pd_soft(BW_PD_3D);
+  bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+  const uint64_t print = bw_solid_fingerprint(many);
+  ck_assert(print == bw_solid_fingerprint(one));
+  pd_set(many, NULL, shake);
+  pd_steps(many, 5, 0.4 * bw_solid_dt_max(one));
+  ck_assert(print == bw_solid_fingerprint(many));
+  bw_solid_destroy(&many);
+  bw_solid_destroy(&one);
+  for (int way = 0; way < 4; way++) {
+    c = pd_soft(BW_PD_3D);
+    if (way == 0) body.kind[7] = BW_PD_PRESCRIBED;
+    if (way == 1) body.kind[7] = BW_PD_FREE, body.site[0] -= 1;
+    if (way == 2) body.site[0] += 1, c.origin[1] = 0.25;
+    if (way == 3) c.horizon_ratio *= 1.001;
+    one = pd_make(self, &c, &body);
+    ck_assert(print != bw_solid_fingerprint(one));
+    bw_solid_destroy(&one);
+  }
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
 /* A wave along x in a bar that is periodic in y and z (also with periods below the horizon) is the
  * wave in the middle of a bulk: no edge is felt. */
 static void along_x(const double X0[3], double v[3])
@@ -217,8 +272,11 @@ START_TEST(orientation_does_not_matter)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
-    BW_TEST(a_wide_plate_moves_as_its_parts_do), BW_TEST(restart_on_another_number_of_ranks),
-    BW_TEST(periods_are_an_endless_body), BW_TEST(orientation_does_not_matter)};
+static const bw_check_test tests[] = {BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
+                                      BW_TEST(a_wide_plate_moves_as_its_parts_do),
+                                      BW_TEST(restart_on_another_number_of_ranks),
+                                      BW_TEST(a_settled_state_holds_no_settling_damping),
+                                      BW_TEST(a_fingerprint_tells_bodies_apart),
+                                      BW_TEST(periods_are_an_endless_body),
+                                      BW_TEST(orientation_does_not_matter)};
 BW_CHECK_MAIN("pd_bond.ranks", tests)

@@ -6,7 +6,8 @@
 
 BW_BEGIN_DECLS
 
-/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit in moves every bit out. Local. */
+/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit in moves every bit out.
+ * Local. */
 static inline uint64_t bw_mix(uint64_t x)
 {
   x ^= x >> 30;

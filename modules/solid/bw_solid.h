@@ -282,8 +282,8 @@ size_t bw_solid_bits_bytes(const bw_solid *solid); /* bytes of one row */
 bw_status bw_solid_set_bits(bw_solid *solid, const uint8_t bits[]) BW_MUST_CHECK;
 
 /* A number that tells one body from another: from ids, reference places, kinds and groups of all
- * particles and the horizon; whether they hold, move or have retired does not count. The same on any
- * number of ranks. A restart belongs to the body with its number. Collective. */
+ * particles and the horizon; whether they hold, move or have retired does not count. The same on
+ * any number of ranks. A restart belongs to the body with its number. Collective. */
 uint64_t bw_solid_fingerprint(const bw_solid *solid);
 
 enum { BW_SOLID_RESTART_SUMS = 14 }; /* sums of the whole solid in a restart */

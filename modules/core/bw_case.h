@@ -105,8 +105,8 @@ const char *bw_case_program(const bw_case *run);
 const char *bw_case_parameters(const bw_case *run);
 
 /* After a checkpoint was read that is at `done`, in the unit of `end`, the value of `key`:
- * BW_EINPUT where it lies beyond the end that is asked for; at the end it is said that the run is complete.
- * Without --restart nothing. All ranks know the same. Local. */
+ * BW_EINPUT where it lies beyond the end that is asked for; at the end it is said that the run is
+ * complete. Without --restart nothing. All ranks know the same. Local. */
 bw_status bw_case_check_end(const bw_case *run, const char *key, double end,
                             double done) BW_MUST_CHECK;
 

@@ -19,6 +19,8 @@ typedef struct {
   bw_real *pressure; /* that acted over the last step, see body_flow_step */
   bw_real *drive[3]; /* acceleration of the fluid at the points of u [L/T^2]; NULL: none */
   double dt;         /* step [T] */
+  double nu;         /* viscosity of markers on the true surface (bw_ibm_mdf_set_normals); 0: they
+                        are retracted */
 } body_flow;
 
 static inline void body_flow_destroy(body_flow *f)
@@ -76,6 +78,7 @@ static inline bw_status body_flow_box(const bw_comm *comm, const body_box *b, bo
   BW_TRY(bw_grid_create(comm, &grid, &f->grid));
   BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
   BW_TRY(bw_ibm_mdf_create(f->grid, &b->body, &f->body));
+  f->nu = b->body.memory > 0.0 ? b->nu : 0.0;
   return body_flow_ready(f, NAN);
 }
 
@@ -136,17 +139,25 @@ static inline bw_status body_surface_alloc(const bw_comm *comm, size_t n, body_s
   return bw_comm_agree(comm, st);
 }
 
+/* What stands on the true surface knows its side. Collective. */
+static inline bw_status body_set_sides(body_flow *f, const body_surface *s)
+{
+  return f->nu > 0.0 ? bw_ibm_mdf_set_normals(f->body, s->N, f->nu) : BW_OK;
+}
+
 /* Makes the surface the markers of the flow: new ones, without a memory. Collective. */
 static inline bw_status body_set_markers(body_flow *f, const body_surface *s)
 {
-  return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, NULL);
+  BW_TRY(bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, NULL));
+  return body_set_sides(f, s);
 }
 
 /* The markers of the flow have moved; what they remember moves with them. Collective. */
 static inline bw_status body_move_markers(body_flow *f, const body_surface *s)
 {
   bw_ibm_mdf_memory(f->body, s->M);
-  return bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, s->M);
+  BW_TRY(bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, s->M));
+  return body_set_sides(f, s);
 }
 
 /* Points about h apart around a circle of radius R. */

@@ -21,7 +21,8 @@ static const bw_config_field cylinder_fields[] = {
     V(cylinder_config, cells_per_diameter, BW_OPTIONAL, BW_FROM_TO(8, 200), "",
       "cells per diameter"),
     V(cylinder_config, retraction, BW_OPTIONAL, BW_FROM_TO(0, 2), "h",
-      "how far inside the surface markers are; left out: the best for kernel and n_iter"),
+      "how far inside the surface markers are; left out: on the true surface (without memory: the "
+      "best for kernel and n_iter)"),
     V(cylinder_config, n_iter, BW_OPTIONAL, BW_FROM_TO(1, 100), "",
       "forcing iterations in each sub-step"),
     V(cylinder_config, memory, BW_OPTIONAL, BW_FROM_TO(0, 0.5), "",
@@ -63,9 +64,10 @@ bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_l
   const double cells = (double)g->n[0] * g->n[1];
   /* 20 ns per cell and sub-step: measured, one core, this case */
   bw_log_info(log,
-              "Re_d = %g, blockage %g, %d x %d cells, retraction %.2f h, dt = %.3g d/U_b\n"
+              "Re_d = %g, blockage %g, %d x %d cells, markers %s %.2f h inside, dt = %.3g d/U_b\n"
               "fields %.1f MB; at most %.0f steps, about %.0f s",
-              c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1], f->config.retraction,
+              c->cylinder.reynolds, c->cylinder.blockage, g->n[0], g->n[1],
+              f->flow.nu > 0.0 ? "on the true surface," : "pulled in,", f->config.retraction,
               f->flow.dt, 8.0 * (double)g->size * sizeof(bw_real) / 1.0e6, steps,
               steps * cells * 3.0 * 20.0e-9);
   return BW_OK;

@@ -2,8 +2,8 @@
  * by three routes. Shared by the case and by the validation of ibm_mdf and probe.
  *
  * Units: diameter d, bulk velocity U_b and density are 1, so nu = 1/Re_d. Two-dimensional; the
- * cylinder is at (upstream, height/2), its surface carried by markers about one spacing apart on
- * a circle pulled in by `retraction` spacings (ERRATA 21). Cd = D/(0.5 rho U_b^2 d). */
+ * cylinder is at (upstream, height/2), its surface carried by markers about one spacing apart: on
+ * the surface itself, or on a circle pulled in by `retraction` spacings (ERRATA 21). Cd = D/(0.5 rho U_b^2 d). */
 #pragma once
 #include "body_flow.h"
 #include "bw_probe.h"
@@ -14,8 +14,9 @@ typedef struct {
   double blockage;             /* d over the channel's height              default 0.25 */
   double upstream, downstream; /* from the centre to inflow and outflow [d]  default 4, 4 */
   int cells_per_diameter;      /*                                          default 15 */
-  double retraction;           /* of the markers, in spacings [-]; NaN: the best
-                                  one known for kernel and n_iter          default NaN */
+  double retraction;           /* of the markers, in spacings [-]; NaN: none, they stand on
+                                  the true surface (without memory: the best one known for
+                                  kernel and n_iter)                       default NaN */
   int n_iter;                  /* forcing iterations                       default 1 */
   double memory;               /* share of the last step in the markers'
                                   memory (bw_ibm_mdf.h), 0: none           default 0.2 */
@@ -130,8 +131,11 @@ static inline bw_status cylinder_make_body(const bw_comm *comm, cylinder_flow *f
   config.n_iter = f->config.n_iter;
   config.memory = f->config.memory;
   BW_TRY(bw_ibm_mdf_create(f->flow.grid, &config, &f->flow.body));
-  /* Markers stand inside the nominal surface (ERRATA 21). */
-  if (isnan(f->config.retraction)) f->config.retraction = bw_ibm_mdf_retraction(&config);
+  /* On the true surface, or inside it (ERRATA 21). */
+  const bool retracted = !isnan(f->config.retraction) || config.memory == 0.0;
+  f->flow.nu = retracted ? 0.0 : 1.0 / f->config.reynolds;
+  if (isnan(f->config.retraction))
+    f->config.retraction = retracted ? bw_ibm_mdf_retraction(&config) : 0.0;
   body_surface markers = {0};
   bw_status st = cylinder_surface(comm, f, 0.5 - f->config.retraction * f->h, &markers);
   BW_THEN(st, body_set_markers(&f->flow, &markers));

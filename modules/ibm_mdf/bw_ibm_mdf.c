@@ -10,29 +10,6 @@ bw_ibm_mdf_config bw_ibm_mdf_config_default(void)
   return (bw_ibm_mdf_config){.kernel = BW_KERNEL_ROMA3, .n_iter = 1, .memory = 0.2};
 }
 
-double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
-{
-  enum { COLUMNS = 4 }; /* 1, 2, 4, 8 iterations and more */
-  static const double table[BW_KERNEL_COUNT][COLUMNS] = {
-      [BW_KERNEL_ROMA3] = {0.33, 0.30, 0.28, 0.28},
-      [BW_KERNEL_PESKIN4] = {0.48, 0.44, 0.42, 0.41},
-      [BW_KERNEL_HAT2] = {0.26, 0.24, 0.23, 0.23},
-  };
-  /* Without slip: data/forcing_sheet/sheet_displacement.csv, the mean over the normals of a
-   * cylinder and that over those of a sphere, which differ by less than 0.01. */
-  static const double no_slip[BW_KERNEL_COUNT] = {
-      [BW_KERNEL_ROMA3] = 0.28,
-      [BW_KERNEL_PESKIN4] = 0.39,
-      [BW_KERNEL_HAT2] = 0.19,
-  };
-  if (config->memory > 0.0) return no_slip[config->kernel];
-  /* The columns double: n_iter from 2, 4, 8 on. */
-  int column = 0;
-  while (column < COLUMNS - 1 && config->n_iter >= 2 << column)
-    column++;
-  return table[config->kernel][column];
-}
-
 bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_ibm_mdf **out)
 {
   const bw_grid_view *g = bw_grid_look(grid);
@@ -64,6 +41,7 @@ bw_status bw_ibm_mdf_create(bw_grid *grid, const bw_ibm_mdf_config *config, bw_i
   if (st != BW_OK) bw_ibm_mdf_destroy(&ib);
   if (st != BW_OK) return st;
   ib->kernel = bw_kernel_delta_get(config->kernel);
+  ib->kernel_id = config->kernel;
   ib->n_iter = config->n_iter;
   ib->beta = config->memory;
   ib->share = 1.0;
@@ -84,11 +62,11 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib)
   bw_exchange_destroy(&b->plan);
   bw_exchange_destroy(&b->image_plan);
   /* All of them may be NULL: the object may be half built. */
-  void *const arrays[] = {
-      &b->sent_from, &b->destination, &b->item,     &b->answer,    &b->received,  &b->order,
-      &b->swap,      &b->key,         &b->key_swap, &b->V,         &b->dV,        &b->QdV,
-      &b->M,         &b->reply,       &b->cast_to,  &b->cast_from, &b->cast_item, &b->cast_F,
-      &b->image,     &b->weights,     &b->nodes,    &b->U};
+  void *const arrays[] = {&b->sent_from, &b->destination, &b->item,   &b->answer,   &b->received,
+                          &b->order,     &b->swap,        &b->key,    &b->key_swap, &b->V,
+                          &b->dV,        &b->QdV,         &b->M,      &b->reply,    &b->cast_to,
+                          &b->cast_from, &b->cast_item,   &b->cast_F, &b->image,    &b->weights,
+                          &b->nodes,     &b->U,           &b->N,      &b->along};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(ib);
@@ -135,6 +113,29 @@ static double velocity_to_force(bw_ibm_mdf *ib, const bw_ibm_mdf__stencils *s, d
   return slip;
 }
 
+/* The same of markers that know their side (bw_ibm_mdf_set_normals): what is missing is V less the
+ * shear's share. The part of it that dQ itself will change is taken at once, so that a step of any
+ * length is stable. */
+static double velocity_to_traction(bw_ibm_mdf *ib, const bw_ibm_mdf__stencils *s, double dt)
+{
+  const double per_volume = ib->share / ib->cell_volume, per_step = ib->share / dt;
+  double slip = 0.0;
+  for (size_t m = s->begin; m < s->end; m++) {
+    const double *N = ib->N + 3 * m, dV = ib->dV[m];
+    const double hold = ib->along[m] / (ib->along[m] + dt);
+    double lack[3];
+    const double across = bw_ibm_mdf__lack(ib, m, lack);
+    for (size_t c = 0; c < 3; c++) {
+      slip += lack[c] * lack[c];
+      /* (1 + along/dt) dQ dt = lack, of what lies in the surface. */
+      lack[c] -= hold * (lack[c] - across * N[c]);
+      ib->QdV[3 * m + c] += lack[c] * dV * per_step;
+      ib->U[3 * m + c] = (bw_real)(lack[c] * dV * per_volume);
+    }
+  }
+  return slip;
+}
+
 /* One iteration of the held markers: interpolate, then spread what is missing. No support is
  * thicker than four layers, so that spreading may follow four layers behind, while the layers are
  * still in the cache: the result is that of one after the other. */
@@ -147,7 +148,7 @@ static double force_held(bw_ibm_mdf *ib, bw_real *const u[3], double dt)
     if (k < ib->g->m[2]) {
       const bw_ibm_mdf__stencils s = stencils(ib, ib->layer[k], ib->layer[k + 1]);
       ib->interpolate(&s, u, ib->U);
-      slip += velocity_to_force(ib, &s, dt);
+      slip += ib->sided ? velocity_to_traction(ib, &s, dt) : velocity_to_force(ib, &s, dt);
     }
     /* POROUS 3.81, 3.82 of a layer that no later marker reads. */
     if (k >= BEHIND) {
@@ -361,9 +362,10 @@ bw_ibm_mdf_report bw_ibm_mdf_measure(bw_ibm_mdf *ib, bw_real *const u[3])
     const double volume = ib->dV[m] / ib->cell_volume;
     most[1] = fmax(most[1], volume);
     most[2] = fmax(most[2], -volume);
+    double lack[3];
+    bw_ibm_mdf__lack(ib, m, lack);
     for (int c = 0; c < 3; c++) {
-      const double lack = ib->V[3 * m + c] - (double)ib->U[3 * m + c];
-      sum[1] += lack * lack;
+      sum[1] += lack[c] * lack[c];
       sum[2 + c] += ib->QdV[3 * m + c];
     }
   }

@@ -82,6 +82,20 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib);
 bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], const double V[],
                                  const double dV[], const double M[]) BW_MUST_CHECK;
 
+/* Markers on the true surface. N (n,3) outward unit normals of the markers just set, in their order
+ * (NaN: this one has none and is forced as ever), nu [L^2/T] viscosity of the fluid.
+ * A sheet of forces bends the velocity: smoothed by the kernel twice, the kink of its tangential
+ * part reads c h [du_t/dn] below the velocity of the surface, c = (1/2) sum phi_i phi_j |i - j|,
+ * that of a flat sheet with this normal (data/forcing_sheet), and the kink is the tangential force,
+ * [du_t/dn] = F_t/(mu A). So the markers want
+ *   U = V - c h^2/nu (Q - (Q.N) N)
+ * and the fluid has V on the surface itself: no retraction, no shear inside the body, and an error
+ * of second order (h/R)^2 on curved surfaces, where retracted markers leave 6 c^2 h^2/a of a
+ * sphere's radius and 4.5 c^2 h^2/a of a cylinder's in Stokes flow. The normal part has no kink.
+ * Valid until the next set_markers. BW_EINPUT without memory, for nu that is not positive and for
+ * normals that are not of length 1, on all ranks. Collective. */
+bw_status bw_ibm_mdf_set_normals(bw_ibm_mdf *ib, const double N[], double nu) BW_MUST_CHECK;
+
 /* Sets the ghosts of the velocity beyond the physical sides of the box from what is inside. */
 typedef void (*bw_ibm_mdf_ghosts_fn)(void *context);
 /* Who forces walled boxes gives the function that does so for his fluid (bw_ns_channel_ghosts):
@@ -119,7 +133,8 @@ void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
 /* What the last step did. */
 typedef struct {
-  double slip_before;    /* rms |V - U| over markers before the iterations of the last force
+  double
+      slip_before; /* rms |V - U| (with normals, of what they want) over markers before the iterations of the last force
                             call, with what memory had spread [L/T] */
   double slip_after;     /* the same after it [L/T]; costs one interpolation */
   double total_force[3]; /* sum of QdV over all markers since begin_step [L^4/T^2] */

@@ -33,6 +33,8 @@ static bw_status reserve_held(bw_ibm_mdf *ib, size_t held)
   IBM_RENEW(&ib->dV, some);
   IBM_RENEW(&ib->QdV, 3 * some);
   IBM_RENEW(&ib->M, 3 * some);
+  IBM_RENEW(&ib->N, 3 * some);
+  IBM_RENEW(&ib->along, some);
   IBM_RENEW(&ib->reply, 3 * some);
   ib->held_room = some;
   return BW_OK;
@@ -173,6 +175,7 @@ static bw_status settle(bw_ibm_mdf *ib)
   bw_ibm_mdf__weigh(ib);
   /* The force of the last step belongs to other markers: M has it, if anybody has. */
   ib->call = 0;
+  ib->sided = false;
   bw_ibm_mdf_begin_step(ib);
   return BW_OK;
 }

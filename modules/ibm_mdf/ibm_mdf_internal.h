@@ -3,6 +3,8 @@
 #include "bw_exchange.h"
 #include "bw_ibm_mdf.h"
 
+#include <math.h>
+
 enum { IBM_CENTRE, IBM_FACE, IBM_PLACES }; /* where nodes sit in one direction */
 enum { IBM_WIDTH = 4 };                    /* weights per direction, padded with zeros */
 enum { IBM_BLOCKS = 5 };                   /* blocks of a line whose halos a support can meet */
@@ -63,6 +65,7 @@ struct bw_ibm_mdf {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
   const bw_kernel_delta *kernel;
+  bw_kernel_delta_id kernel_id;
   int n_iter, call;   /* iterations; calls of force since begin_step */
   double beta, share; /* of memory; of what is missing, that an iteration gives */
   bw_ibm_mdf_ghosts_fn ghosts;
@@ -89,6 +92,9 @@ struct bw_ibm_mdf {
   double *V, *dV; /* (held,3), (held) */
   double *QdV;    /* (held,3) since begin_step */
   double *M;      /* (held,3) memory; the first of three NaN: none */
+  double *N;      /* (held,3) normals, zero where there is none */
+  double *along;  /* (held) displacement h^2/nu [T]: slip per force in the surface */
+  bool sided;     /* are there normals? */
   double *reply;  /* (held,3) in the order received */
 
   /* images: of markers held here for other blocks (or this one, over a periodic side) ... */
@@ -123,6 +129,29 @@ static inline double bw_ibm_mdf__local(const bw_grid_view *g, const double s[3],
 {
   const double local = s[d] - g->lo[d], m = g->m[d];
   return local < 0.0 ? 0.0 : local > m ? m : local;
+}
+
+/* lack (3): what U of held marker m lacks of the velocity that it should read: V, and where it knows
+ * its side, V - along F_t/dV, with F_t the part in the surface of F, the force of this step if its
+ * sub-steps to come bring what memory says. Returns its component along the normal. Local. */
+static inline double bw_ibm_mdf__lack(const bw_ibm_mdf *ib, size_t m, double lack[3])
+{
+  /* 1 less the sum of gamma up to the present sub-step, which is in QdV. */
+  static const double rest[4] = {7.0 / 15, 1.0 / 3, 0.0, 0.0};
+  const double *V = ib->V + 3 * m, *Q = ib->QdV + 3 * m, *M = ib->M + 3 * m, *N = ib->N + 3 * m;
+  double F[3], F_n = 0.0, lack_n = 0.0;
+  for (size_t c = 0; c < 3; c++)
+    lack[c] = V[c] - (double)ib->U[3 * m + c];
+  if (!ib->sided || ib->along[m] == 0.0) return 0.0;
+  for (size_t c = 0; c < 3; c++) {
+    F[c] = (Q[c] + rest[ib->call < 3 ? ib->call : 3] * M[c]) / ib->dV[m];
+    F_n += N[c] * F[c];
+  }
+  for (size_t c = 0; c < 3; c++) {
+    lack[c] -= ib->along[m] * (F[c] - F_n * N[c]);
+    lack_n += N[c] * lack[c];
+  }
+  return lack_n;
 }
 
 /* Which blocks a marker's support can reach, for every place in this one. Local. */

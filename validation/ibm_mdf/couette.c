@@ -26,7 +26,7 @@ static const double CENTRE[2] = {1.2537, 1.2471};
 
 typedef struct {
   double W[2];         /* rates of rotation, inner and outer */
-  double retraction;   /* of the markers; NaN: the best one known */
+  double retraction;   /* of the markers; NaN: none, they stand on the true surface */
   double outside;      /* what shear outside adds to the tolerance [1/h] */
   const char *turning; /* which circle does */
 } motion;
@@ -75,9 +75,8 @@ static void turn(body_surface *s, size_t from, size_t to, double W)
 
 static bw_status make_walls(const bw_comm *comm, const motion *m, couette *c)
 {
-  const bw_ibm_mdf_config config = bw_ibm_mdf_config_default();
-  const double back =
-      c->h * (isnan(m->retraction) ? bw_ibm_mdf_retraction(&config) : m->retraction);
+  const double back = isnan(m->retraction) ? 0.0 : c->h * m->retraction;
+  if (!isnan(m->retraction)) c->flow.nu = 0.0;
   const size_t inner = body_circle_size(R1 - back, c->h), outer = body_circle_size(R2 + back, c->h);
   c->inner = inner;
   BW_TRY(body_surface_alloc(comm, inner + outer, &c->markers));

@@ -1,5 +1,5 @@
-/* Claim: three independent routes give the drag of a confined cylinder, and with the markers
- * pulled in as bw_ibm_mdf_retraction says it is the true one (FSI, table 1; ERRATA 21, 23, 24).
+/* Claim: three independent routes give the drag of a confined cylinder, and with the markers on its
+ * true surface it is the true one (FSI, table 1; ERRATA 21, 23, 24).
  *
  * Reference  an independent finite-element solution for the same domain (8 d x 4 d, cylinder in
  *            the middle): data/confined_cylinder; FSI's printed figures are reported beside.
@@ -10,7 +10,9 @@
  *            the cylinder at Re_d 20 and 25 and 30 at 20; --full: 60 cells, every kernel and 1 to 8
  *            iterations at 15 and 30 cells, drag against retraction.
  * Tolerance  reaction and box: identical up to round-off of the accumulated fluxes, 1e4 eps.
- *            reaction against the reference: 0.1 h of doubt about where the smeared wall is
+ *            reaction with markers on the true surface: 0.3 %, a goal set before; the reference is
+ *            good for 0.1 %, and (h/R)^2 at 15 cells is 1.8 %.
+ *            reaction with retracted markers: 0.1 h of doubt about where the smeared wall is
  *            (Breugem 2012 has 0.2 to 0.4 best, by shape) moves the drag as 0.2 h/d of blockage
  *            and size do, 1.6 % at 15 cells; with errors of the grid 0.3 h/d: 2, 1 and 0.5 %.
  *            Three routes: probes within 3 % of the other two from 30 cells on, a goal set before.
@@ -88,10 +90,11 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
   const double over = c->probe_length / c->cells_per_diameter * sqrt(c->reynolds);
   const double second = 0.5 * over * over + 0.05, none = INFINITY, cells = c->cells_per_diameter;
   const bool no_slip = c->memory > 0.0 || c->n_iter > 1;
+  const double doubt = isnan(c->retraction) ? 0.003 : 0.3 / cells;
   const double round_off = 1.0e4 * BW_REAL_EPSILON; /* sums over 120 faces, 3 sub-steps */
   static const char fem[] = "independent finite elements, data/confined_cylinder";
   const row rows[] = {
-      {"Cd_reaction", d.reaction, Cd, claimed ? 0.3 / cells : none, BW_INDEPENDENT_CODE, fem},
+      {"Cd_reaction", d.reaction, Cd, claimed ? doubt : none, BW_INDEPENDENT_CODE, fem},
       {"Cd_control_volume", d.control_volume, d.reaction, round_off, BW_CONSERVATION,
        "momentum balance of the box against the force of the markers"},
       {"Cd_probe", d.probe[1], Cd, claimed && no_slip ? FRICTION_SHARE * second : none,
@@ -103,14 +106,18 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
       {"slip", d.slip, 0.0, none, BW_ANALYTIC, "no slip, in U_b"}};
   for (size_t q = 0; q < sizeof rows / sizeof *rows; q++) {
     const char *kernel = bw_kernel_delta_get((bw_kernel_delta_id)c->kernel)->name;
-    char claim[112], extra[224];
-    snprintf(claim, sizeof claim, "%s, %d cells, retraction %.2f, N_s %d, memory %.2g, %s",
-             rows[q].quantity, c->cells_per_diameter, c->retraction, c->n_iter, c->memory, kernel);
+    char claim[128], extra[256];
+    const bool on_surface = isnan(c->retraction);
+    const double back = on_surface ? 0.0 : c->retraction;
+    snprintf(claim, sizeof claim, "%s, %d cells, %s %.2f, N_s %d, memory %.2g, %s",
+             rows[q].quantity, c->cells_per_diameter, on_surface ? "true surface" : "retraction",
+             back, c->n_iter, c->memory, kernel);
     snprintf(extra, sizeof extra,
-             "\"Re_d\": %g, \"cells_per_diameter\": %d, \"retraction\": %g, \"n_iter\": %d, "
-             "\"memory\": %g, \"kernel\": \"%s\", \"upstream\": %g, \"downstream\": %g",
-             c->reynolds, c->cells_per_diameter, c->retraction, c->n_iter, c->memory, kernel,
-             c->upstream, c->downstream);
+             "\"Re_d\": %g, \"cells_per_diameter\": %d, \"retraction\": %g, "
+             "\"true_surface\": %s, \"n_iter\": %d, \"memory\": %g, \"kernel\": \"%s\", "
+             "\"upstream\": %g, \"downstream\": %g",
+             c->reynolds, c->cells_per_diameter, back, on_surface ? "true" : "false", c->n_iter,
+             c->memory, kernel, c->upstream, c->downstream);
     bw_validation_row(v, &(bw_claim){claim, rows[q].quantity, rows[q].measured, rows[q].reference,
                                      rows[q].tolerance, rows[q].kind, rows[q].source, extra});
   }
@@ -139,10 +146,12 @@ static bw_status not_retracted(bw_validation *v, cylinder_config c, double error
   return BW_OK;
 }
 
-static bw_status retracted(bw_validation *v, cylinder_config c, double error[2])
+/* As well as we know: on the true surface, or retracted where there is no memory. */
+static bw_status as_known(bw_validation *v, cylinder_config c, double error[2])
 {
-  c.retraction = bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){
-      .kernel = (bw_kernel_delta_id)c.kernel, .n_iter = c.n_iter, .memory = c.memory});
+  c.retraction = c.memory > 0.0 ? NAN
+                                : bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){
+                                      .kernel = (bw_kernel_delta_id)c.kernel, .n_iter = c.n_iter});
   return one_case(v, &c, true, error);
 }
 
@@ -174,7 +183,7 @@ static bw_status kernels(bw_validation *v, cylinder_config c)
   for (c.kernel = 0; c.kernel < BW_KERNEL_COUNT; c.kernel++)
     for (c.n_iter = 1; c.n_iter <= 8; c.n_iter *= 2)
       for (c.cells_per_diameter = 15; c.cells_per_diameter <= 30; c.cells_per_diameter *= 2) {
-        BW_TRY(retracted(v, c, error));
+        BW_TRY(as_known(v, c, error));
         if (c.cells_per_diameter == 15) BW_TRY(sweep(v, c, 0.1, &best));
       }
   return BW_OK;
@@ -194,7 +203,7 @@ static bw_status full(bw_validation *v, cylinder_config c)
   BW_TRY(kernels(v, c));
   for (int q = 0; q < 3; q++) {
     c.cells_per_diameter = 15 << q;
-    BW_TRY(retracted(v, c, with[q]));
+    BW_TRY(as_known(v, c, with[q]));
     BW_TRY(not_retracted(v, c, without[q]));
   }
   for (int q = 0; q < 2; q++) {
@@ -204,9 +213,9 @@ static bw_status full(bw_validation *v, cylinder_config c)
     order_row(v, "the linear profile is first order", with[q][1], with[q + 1][1], 0.3);
   }
   c.reynolds = 25.0;
-  BW_TRY(retracted(v, c, unused));
+  BW_TRY(as_known(v, c, unused));
   c.cells_per_diameter = 15, c.reynolds = 20.0, c.upstream = 10.0, c.downstream = 25.0;
-  return retracted(v, c, unused);
+  return as_known(v, c, unused);
 }
 
 static bw_status run(bw_validation *v)
@@ -216,14 +225,16 @@ static bw_status run(bw_validation *v)
   c.reynolds = 20.0;
   if (bw_validation_full(v)) BW_TRY(full(v, c));
   for (c.reynolds = 20.0; c.reynolds <= 25.0; c.reynolds += 5.0) {
-    BW_TRY(retracted(v, c, error));
+    BW_TRY(as_known(v, c, error));
     BW_TRY(not_retracted(v, c, error));
   }
   c.reynolds = 20.0;
   if (bw_validation_full(v)) return BW_OK;
   BW_TRY(sweep(v, c, 0.2, &best));
   c.cells_per_diameter = 30;
-  return retracted(v, c, error);
+  BW_TRY(as_known(v, c, error));
+  c.reynolds = 25.0;
+  return as_known(v, c, error);
 }
 
 int main(int argc, char **argv)

@@ -29,7 +29,7 @@ typedef struct {
   body_surface markers, wall;
   bw_probe *probe;
   double *traction;
-  double h, retraction;
+  double h;
 } moving;
 
 static void uniform(const double x[3], double t, void *context, double u[3])
@@ -63,11 +63,10 @@ static bw_status make(const bw_comm *comm, int cells, bw_kernel_delta_id kernel,
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = 1.0, probe.nu = box.nu, probe.profile = BW_PROBE_QUADRATIC;
   m->h = box.h;
-  m->retraction = bw_ibm_mdf_retraction(&body) * box.h;
   BW_TRY(body_flow_box(comm, &box, &m->flow));
   m->flow.dt = 0.2 * box.h;
   BW_TRY(bw_ns_channel_set_velocity(m->flow.fluid, uniform, &bulk, 0.0));
-  BW_TRY(body_surface_alloc(comm, body_circle_size(0.5 - m->retraction, m->h), &m->markers));
+  BW_TRY(body_surface_alloc(comm, body_circle_size(0.5, m->h), &m->markers));
   BW_TRY(body_surface_alloc(comm, body_circle_size(0.5, m->h), &m->wall));
   BW_TRY(BW_ALLOCATE(&m->traction, 3 * m->wall.n));
   for (size_t q = 0; q < m->markers.n; q++)
@@ -84,8 +83,7 @@ static bw_status step(moving *m, double V, double Cd[ROUTES])
   const double centre[2] = {START[0] + V * end, START[1]}, scale = 2.0 / m->h;
   const size_t around = body_circle_size(0.5, m->h);
   bw_real *const *u = bw_ns_channel_velocity(m->flow.fluid);
-  body_circle(&m->markers, 0, body_circle_size(0.5 - m->retraction, m->h), centre,
-              0.5 - m->retraction, m->h);
+  body_circle(&m->markers, 0, body_circle_size(0.5, m->h), centre, 0.5, m->h);
   body_circle(&m->wall, 0, around, centre, 0.5, m->h);
   BW_TRY(body_move_markers(&m->flow, &m->markers));
   BW_TRY(body_flow_step(&m->flow));

@@ -62,7 +62,7 @@ static bw_status make(const bw_comm *comm, int cells, swing *s)
   bw_probe_config probe = bw_probe_config_default();
   probe.rho = 1.0, probe.nu = box.nu, probe.profile = BW_PROBE_QUADRATIC;
   s->h = box.h;
-  s->radius = 0.5 - bw_ibm_mdf_retraction(&body) * box.h;
+  s->radius = 0.5; /* markers on the true surface */
   BW_TRY(body_flow_box(comm, &box, &s->flow));
   s->flow.dt = KC / steps_per_period(cells);
   BW_TRY(body_surface_alloc(comm, body_circle_size(s->radius, s->h), &s->markers));

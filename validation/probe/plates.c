@@ -151,7 +151,7 @@ static bw_status make(const bw_comm *comm, scene *s)
   BW_TRY(body_flow_box(comm, &box, &s->flow));
   s->flow.dt = 0.5 * bw_ns_channel_dt_max(s->flow.fluid);
   BW_TRY(fill_fields(s));
-  BW_TRY(plates(comm, s, bw_ibm_mdf_retraction(&body), step, &s->markers));
+  BW_TRY(plates(comm, s, 0.0, step, &s->markers));
   BW_TRY(plates(comm, s, 0.0, step, &s->wall));
   BW_TRY(BW_ALLOCATE(&s->traction, 3 * s->wall.n));
   BW_TRY(BW_ALLOCATE(&s->flag, s->wall.n));

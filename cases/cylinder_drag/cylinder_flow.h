@@ -3,7 +3,8 @@
  *
  * Units: diameter d, bulk velocity U_b and density are 1, so nu = 1/Re_d. Two-dimensional; the
  * cylinder is at (upstream, height/2), its surface carried by markers about one spacing apart: on
- * the surface itself, or on a circle pulled in by `retraction` spacings (ERRATA 21). Cd = D/(0.5 rho U_b^2 d). */
+ * the surface itself, or on a circle pulled in by `retraction` spacings (ERRATA 21).
+ * Cd = D/(0.5 rho U_b^2 d). */
 #pragma once
 #include "body_flow.h"
 #include "bw_probe.h"

@@ -27,8 +27,8 @@ double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
   return table[config->kernel][column];
 }
 
-/* By how many spacings a flat sheet of this normal stops the fluid outside itself: the straight line
- * in n_x^4 + n_y^4 + n_z^4 through data/forcing_sheet/sheet_displacement.csv. */
+/* By how many spacings a flat sheet of this normal stops the fluid outside itself: the straight
+ * line in n_x^4 + n_y^4 + n_z^4 through data/forcing_sheet/sheet_displacement.csv. */
 static double displacement(bw_kernel_delta_id kernel, const double n[3])
 {
   static const double at_zero[BW_KERNEL_COUNT] = {

@@ -131,8 +131,8 @@ static inline double bw_ibm_mdf__local(const bw_grid_view *g, const double s[3],
   return local < 0.0 ? 0.0 : local > m ? m : local;
 }
 
-/* lack (3): what U of held marker m lacks of the velocity that it should read: V, and where it knows
- * its side, V - along F_t/dV, with F_t the part in the surface of F, the force of this step if its
+/* lack (3): what U of held marker m lacks of the velocity that it should read: V, and where it
+ * knows its side, V - along F_t/dV, with F_t the part in the surface of F, the force of this step if its
  * sub-steps to come bring what memory says. Returns its component along the normal. Local. */
 static inline double bw_ibm_mdf__lack(const bw_ibm_mdf *ib, size_t m, double lack[3])
 {

@@ -133,9 +133,8 @@ void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
 /* What the last step did. */
 typedef struct {
-  double
-      slip_before; /* rms |V - U| (with normals, of what they want) over markers before the iterations of the last force
-                            call, with what memory had spread [L/T] */
+  double slip_before;    /* rms |V - U| over markers (with normals: of what they want), before the
+                            iterations of the last force call, with what memory had spread [L/T] */
   double slip_after;     /* the same after it [L/T]; costs one interpolation */
   double total_force[3]; /* sum of QdV over all markers since begin_step [L^4/T^2] */
   int64_t markers;       /* handed over by all ranks */

@@ -133,7 +133,8 @@ static inline double bw_ibm_mdf__local(const bw_grid_view *g, const double s[3],
 
 /* lack (3): what U of held marker m lacks of the velocity that it should read: V, and where it
  * knows its side, V - along F_t/dV. F_t is the part in the surface of F, the force of this step if
- * its sub-steps to come bring what memory says. Returns lack's component along the normal. Local. */
+ * its sub-steps to come bring what memory says. Returns lack's component along the normal.
+ * Local. */
 static inline double bw_ibm_mdf__lack(const bw_ibm_mdf *ib, size_t m, double lack[3])
 {
   /* 1 less the sum of gamma up to the present sub-step, which is in QdV. */

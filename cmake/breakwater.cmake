@@ -3,12 +3,13 @@
 #   BUILD case=porous_breakup                        all sources of that case but its main
 #   TEST  ranks=1,2 timeout=7200 args="--check"      how ctest runs them; every test says its ranks
 include(GNUInstallDirs)
-find_package(MPI REQUIRED COMPONENTS C)
-find_package(PkgConfig REQUIRED)
+include(cmake/mpi.cmake)
+include(cmake/external.cmake)
 
 set(CMAKE_C_STANDARD 11)
 set(CMAKE_C_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 if(NOT CMAKE_BUILD_TYPE)
@@ -19,6 +20,7 @@ add_library(bw_flags INTERFACE)
 target_compile_options(bw_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-psabi # vectors are returned by inline functions alone: no interface depends on how
+  -fno-semantic-interposition # a function of ours is the one of this name, in the shared library too
   -fno-math-errno -fno-trapping-math -fopenmp-simd -fno-common
   $<$<BOOL:${BW_WERROR}>:-Werror> $<$<BOOL:${BW_NATIVE}>:-march=native>
   $<$<CONFIG:Release>:-O3> $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>
@@ -34,47 +36,39 @@ add_custom_target(bw_version BYPRODUCTS ${BW_VERSION_HEADER}
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
           -DOUT=${BW_VERSION_HEADER} -P ${PROJECT_SOURCE_DIR}/cmake/commit.cmake)
 
-# External libraries by short name; looked for only where one is named.
-function(_bw_external name)
-  if(TARGET bw_ext_${name})
-    return()
-  endif()
-  add_library(bw_ext_${name} INTERFACE)
-  if(name STREQUAL "fftw")
-    pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
-    pkg_check_modules(FFTWF REQUIRED IMPORTED_TARGET fftw3f)
-    target_link_libraries(bw_ext_fftw INTERFACE
-      $<IF:$<STREQUAL:${BW_PRECISION},single>,PkgConfig::FFTWF,PkgConfig::FFTW>)
-  elseif(name STREQUAL "hdf5")
-    pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi)
-    target_link_libraries(bw_ext_hdf5 INTERFACE PkgConfig::HDF5)
-  else()
-    string(TOUPPER ${name} upper)
-    pkg_check_modules(${upper} REQUIRED IMPORTED_TARGET ${name})
-    target_link_libraries(bw_ext_${name} INTERFACE PkgConfig::${upper})
-  endif()
-endfunction()
+# Headers are included as "bw_solid.h" or as <breakwater/bw_solid.h>.
+set(BW_INSTALLED_INCLUDES $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/breakwater>)
 
-# bw_module(name [DEPENDS module...] [PRIVATE_LIBS lib...]): modules/<name>/**.c become libbw_<name>.a
+# bw_module(name [DEPENDS module...] [PRIVATE_LIBS lib...] [OPTIONS option...]): modules/<name>/**.c
+# become libbw_<name>.a, compiled with OPTIONS besides. What is installed of it: install.cmake.
 function(bw_module name)
-  cmake_parse_arguments(A "" "" "DEPENDS;PRIVATE_LIBS" ${ARGN})
+  cmake_parse_arguments(A "" "" "DEPENDS;PRIVATE_LIBS;OPTIONS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS modules/${name}/*.c)
   list(TRANSFORM A_DEPENDS PREPEND bw_)
   set(kind PUBLIC)
   if(sources)
+    set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS ${A_OPTIONS})
     add_library(bw_${name} STATIC ${sources})
-    target_link_libraries(bw_${name} PRIVATE bw_flags)
+    target_link_libraries(bw_${name} PRIVATE $<BUILD_INTERFACE:bw_flags> PUBLIC m)
     foreach(lib ${A_PRIVATE_LIBS})
       _bw_external(${lib})
-      target_link_libraries(bw_${name} PRIVATE bw_ext_${lib})
+      target_link_libraries(bw_${name} PRIVATE $<BUILD_INTERFACE:bw_ext_${lib}>
+                                               $<INSTALL_INTERFACE:bw_ext_${lib}>)
     endforeach()
   else()
     add_library(bw_${name} INTERFACE)
     set(kind INTERFACE)
   endif()
-  target_include_directories(bw_${name} ${kind} ${PROJECT_SOURCE_DIR}/modules/${name})
+  target_include_directories(bw_${name} ${kind} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/modules/${name}>
+                             ${BW_INSTALLED_INCLUDES})
   target_link_libraries(bw_${name} ${kind} ${A_DEPENDS} MPI::MPI_C)
+  target_compile_definitions(bw_${name} ${kind} $<$<STREQUAL:${BW_PRECISION},single>:BW_SINGLE>)
+  set_target_properties(bw_${name} PROPERTIES EXPORT_NAME ${name})
   add_library(bw::${name} ALIAS bw_${name})
+  set_property(GLOBAL APPEND PROPERTY BW_MODULES ${name})
+  set_property(GLOBAL APPEND PROPERTY BW_SOURCES ${sources})
+  set_property(GLOBAL APPEND PROPERTY BW_LIBS ${A_PRIVATE_LIBS})
 endfunction()
 
 # bw_stamp(name source): compile this source of a module with the version and commit.
@@ -196,7 +190,11 @@ function(_bw_program target own head)
   if(own)
     list(PREPEND head_modules bw_${own})
   endif()
-  target_link_libraries(${target} PRIVATE ${head_modules} ${head_libs} bw_core bw_flags)
+  list(APPEND head_modules bw_core)
+  if(BW_HWCAPS)
+    set(head_modules breakwater) # of which the dynamic linker takes the one for its processor
+  endif()
+  target_link_libraries(${target} PRIVATE ${head_modules} ${head_libs} bw_flags)
 endfunction()
 
 file(WRITE ${CMAKE_BINARY_DIR}/programs.txt "")
@@ -246,6 +244,7 @@ function(bw_cases)
       file(GLOB others CONFIGURE_DEPENDS ${folder}/*.c)
       list(REMOVE_ITEM others ${head})
       _bw_program(${name} "" ${head} ${others})
+      set_property(GLOBAL APPEND PROPERTY BW_PROGRAMS ${name})
     endif()
   endforeach()
 endfunction()

@@ -1,0 +1,121 @@
+# What `cmake --install` puts into a prefix: programs, the modules as static libraries, all of them
+# in one shared library, headers, case files, a package for find_package(Breakwater) with targets
+# bw::MODULE and bw::breakwater (the shared one), and breakwater.pc. docs/install.md is the page.
+include(CMakePackageConfigHelpers)
+
+get_property(modules GLOBAL PROPERTY BW_MODULES)
+get_property(sources GLOBAL PROPERTY BW_SOURCES)
+get_property(libs GLOBAL PROPERTY BW_LIBS)
+list(REMOVE_DUPLICATES libs)
+list(TRANSFORM modules PREPEND bw_ OUTPUT_VARIABLE targets)
+
+# ---- the shared library -------------------------------------------------------------------------
+
+# _bw_shared(target object...): one library libbreakwater.so of all modules
+function(_bw_shared target)
+  add_library(${target} SHARED ${ARGN})
+  list(TRANSFORM libs REPLACE "(.+)" "$<BUILD_INTERFACE:bw_ext_\\1>" OUTPUT_VARIABLE needed)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:bw_flags> ${needed} PUBLIC MPI::MPI_C m)
+  list(TRANSFORM modules REPLACE "(.+)" "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/modules/\\1>"
+       OUTPUT_VARIABLE folders)
+  target_include_directories(${target} PUBLIC ${folders}
+                             ${BW_INSTALLED_INCLUDES})
+  target_link_options(${target} PRIVATE $<$<NOT:$<BOOL:${BW_SANITIZE}>>:-Wl,-z,defs>) # nothing is left undefined
+  target_compile_definitions(${target} PUBLIC $<$<STREQUAL:${BW_PRECISION},single>:BW_SINGLE>)
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME breakwater LINKER_LANGUAGE C
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+endfunction()
+
+list(TRANSFORM targets REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
+_bw_shared(breakwater ${objects})
+set_target_properties(breakwater PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+add_library(bw::breakwater ALIAS breakwater)
+
+# The dynamic linker looks into glibc-hwcaps/LEVEL beside a library first and takes the highest level
+# that the processor has: AVX2 from x86-64-v3 on, AVX-512 from x86-64-v4 on (ld.so(8), glibc 2.33).
+if(BW_HWCAPS)
+  if(BW_NATIVE)
+    message(FATAL_ERROR " BW_HWCAPS chooses the instructions at start, BW_NATIVE when it is built: "
+            "set one of them")
+  endif()
+  foreach(level x86-64-v3 x86-64-v4)
+    _bw_shared(breakwater-${level} ${sources})
+    add_dependencies(breakwater-${level} bw_version)
+    target_compile_options(breakwater-${level} PRIVATE -march=${level})
+    set_target_properties(breakwater-${level} PROPERTIES
+                          LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/glibc-hwcaps/${level})
+    install(TARGETS breakwater-${level} NAMELINK_SKIP
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level})
+  endforeach()
+endif()
+
+# ---- what is installed --------------------------------------------------------------------------
+
+get_property(programs GLOBAL PROPERTY BW_PROGRAMS)
+if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr") # where the dynamic linker looks by itself
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
+             OUTPUT_VARIABLE to_lib)
+  set_target_properties(${programs} PROPERTIES INSTALL_RPATH "$ORIGIN/${to_lib}")
+endif()
+install(TARGETS ${programs} RUNTIME)
+install(TARGETS ${targets} breakwater EXPORT Breakwater)
+install(EXPORT Breakwater NAMESPACE bw:: FILE BreakwaterTargets.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Breakwater)
+
+# Headers of users, and those that the author of a law includes.
+file(GLOB headers CONFIGURE_DEPENDS modules/*/bw_*.h)
+list(APPEND headers modules/pd_body/pd_body.h modules/pd_body/pd_law.h modules/pd_body/pd_level.h
+     modules/pd_body/pd_springs.h modules/pd_body/pd_walk.h)
+install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/breakwater)
+
+file(GLOB folders CONFIGURE_DEPENDS cases/* scenes/*)
+foreach(folder ${folders})
+  if(IS_DIRECTORY ${folder})
+    cmake_path(GET folder PARENT_PATH kind)
+    cmake_path(GET kind FILENAME kind)
+    install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/breakwater/${kind}
+            FILES_MATCHING PATTERN "*.yaml" PATTERN "README.md")
+  endif()
+endforeach()
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# ---- how other projects find it -----------------------------------------------------------------
+
+configure_package_config_file(cmake/BreakwaterConfig.cmake.in
+  ${CMAKE_BINARY_DIR}/generated/BreakwaterConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Breakwater)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/BreakwaterConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/generated/BreakwaterConfig.cmake
+              ${CMAKE_BINARY_DIR}/generated/BreakwaterConfigVersion.cmake
+              cmake/external.cmake cmake/mpi.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Breakwater)
+
+# Paths of breakwater.pc are relative to where it lies, so that a prefix can be moved.
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE pc_lib)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}
+           OUTPUT_VARIABLE pc_include)
+string(REGEX REPLACE "[^/]+" ".." pc_up "${pc_lib}/pkgconfig")
+set(pc_define "")
+if(BW_PRECISION STREQUAL "single")
+  set(pc_define " -DBW_SINGLE")
+endif()
+configure_file(cmake/breakwater.pc.in ${CMAKE_BINARY_DIR}/generated/breakwater.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/generated/breakwater.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# ---- a Debian package (./run package) -----------------------------------------------------------
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME breakwater)
+set(CPACK_PACKAGE_CONTACT "the Breakwater developers <breakwater@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "fluid flow that bends and breaks solids")
+set(CPACK_PACKAGE_DESCRIPTION "Direct numerical simulation of an incompressible flow, coupled by an
+immersed boundary to solids of peridynamics that crack, branch and shed fragments.")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS openmpi-bin)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL OFF)
+include(CPack)

@@ -44,8 +44,8 @@ if(BW_HWCAPS)
     target_compile_options(breakwater-${level} PRIVATE -march=${level})
     set_target_properties(breakwater-${level} PROPERTIES
                           LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/glibc-hwcaps/${level})
-    install(TARGETS breakwater-${level} NAMELINK_SKIP
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level})
+    install(TARGETS breakwater-${level}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
   endforeach()
 endif()
 
@@ -56,6 +56,7 @@ if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr") # where the dynamic linker looks by
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
              OUTPUT_VARIABLE to_lib)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH "$ORIGIN/${to_lib}")
+  set_target_properties(${programs} breakwater PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
 install(TARGETS ${programs} RUNTIME)
 install(TARGETS ${targets} breakwater EXPORT Breakwater)
@@ -68,6 +69,22 @@ list(APPEND headers modules/pd_body/pd_body.h modules/pd_body/pd_law.h modules/p
      modules/pd_body/pd_springs.h modules/pd_body/pd_walk.h)
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/breakwater)
 
+# A manual page of each program is what it says to --help.
+find_program(HELP2MAN help2man)
+if(HELP2MAN AND NOT BW_SANITIZE)
+  set(pages "")
+  foreach(program ${programs})
+    set(page ${CMAKE_BINARY_DIR}/man/${program}.1)
+    add_custom_command(OUTPUT ${page}.gz DEPENDS ${program}
+      COMMAND ${CMAKE_COMMAND} -E env ${BW_MPI_ENVIRONMENT} ${HELP2MAN} --no-info --output=${page}
+              --name=${program} --version-string=${PROJECT_VERSION} $<TARGET_FILE:${program}>
+      COMMAND gzip -9nf ${page})
+    list(APPEND pages ${page}.gz)
+  endforeach()
+  add_custom_target(man ALL DEPENDS ${pages})
+  install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+endif()
+
 file(GLOB folders CONFIGURE_DEPENDS cases/* scenes/*)
 foreach(folder ${folders})
   if(IS_DIRECTORY ${folder})
@@ -77,7 +94,7 @@ foreach(folder ${folders})
             FILES_MATCHING PATTERN "*.yaml" PATTERN "README.md")
   endif()
 endforeach()
-install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # ---- how other projects find it -----------------------------------------------------------------
 
@@ -110,12 +127,32 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME breakwater)
 set(CPACK_PACKAGE_CONTACT "the Breakwater developers <breakwater@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "fluid flow that bends and breaks solids")
-set(CPACK_PACKAGE_DESCRIPTION "Direct numerical simulation of an incompressible flow, coupled by an
-immersed boundary to solids of peridynamics that crack, branch and shed fragments.")
+set(CPACK_PACKAGE_DESCRIPTION "Direct numerical simulation of an incompressible flow,
+coupled by an immersed boundary to solids of peridynamics
+that crack, branch and shed fragments.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS openmpi-bin)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_DEB_COMPONENT_INSTALL OFF)
+file(WRITE ${CMAKE_BINARY_DIR}/generated/shlibs
+     "libbreakwater ${PROJECT_VERSION_MAJOR} breakwater (>= ${PROJECT_VERSION})\n")
+file(WRITE ${CMAKE_BINARY_DIR}/generated/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/generated/triggers
+    ${CMAKE_BINARY_DIR}/generated/shlibs)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/changelog @ONLY CONTENT
+       "breakwater (@PROJECT_VERSION@) unstable; urgency=low\n\n  * See CHANGELOG.md.\n\n\
+ -- @CPACK_PACKAGE_CONTACT@  Sun, 29 Nov 2026 00:00:00 +0000\n")
+  execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${CMAKE_BINARY_DIR}/generated)
+  install(FILES ${CMAKE_BINARY_DIR}/generated/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  # Debian has the text of the licence itself: the lines above it say which, and why.
+  file(READ LICENSE licence)
+  string(REGEX REPLACE "\n-----.*" "" licence "${licence}")
+  file(WRITE ${CMAKE_BINARY_DIR}/generated/copyright "${licence}\nThe text of the licence is in \
+/usr/share/common-licenses/GPL-3.\n")
+  install(FILES ${CMAKE_BINARY_DIR}/generated/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+else()
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()
 include(CPack)

@@ -305,6 +305,27 @@ static inline const bw_pd_level *bw_pd_body_level(const bw_pd_body *pd, size_t e
   return pd->level;
 }
 
+/* The same of who is at a storage place. */
+static inline const bw_pd_level *bw_pd_body_level_at(const bw_pd_body *pd, int32_t place)
+{
+  const int32_t e = pd->points.occupant[place];
+  return bw_pd_body_level(pd, e < 0 ? 0 : (size_t)e);
+}
+
+/* Mass of a particle of the first group on the first level [M]: that of another one is this times
+ * its weight (bw_pd_body.weight). */
+static inline double bw_pd_body_unit_mass(const bw_pd_body *pd)
+{
+  return pd->config.material[0].rho * pd->level[0].dv;
+}
+
+/* The row that all particles of a block share. */
+static inline const bw_pd_level *bw_pd_body_level_of(const bw_pd_body *pd, const bw_pd_block *block)
+{
+  (void)block;
+  return pd->level;
+}
+
 /* Reference place of an own particle or a copy. */
 static inline void bw_pd_body_reference(const bw_pd_body *pd, size_t e, double X0[3])
 {
@@ -322,10 +343,9 @@ static inline void bw_pd_body_reference(const bw_pd_body *pd, size_t e, double X
 static inline bw_pd_rest bw_pd_body_rest(const bw_pd_body *pd, int direction, int32_t h, int32_t l)
 {
   if (pd->config.disorder > 0) return bw_pd_body_rest_of_cloud(pd, direction, h, l);
-  const double *xi = pd->level->stencil.xi + 3 * direction;
-  const bw_pd_rest rest = {{xi[0], xi[1], xi[2]},
-                           pd->level->stencil.r0[direction],
-                           pd->level->stencil.fraction[direction]};
+  const bw_pd_stencil *s = &bw_pd_body_level_at(pd, h)->stencil;
+  const double *xi = s->xi + 3 * direction;
+  const bw_pd_rest rest = {{xi[0], xi[1], xi[2]}, s->r0[direction], s->fraction[direction]};
   return rest;
 }
 

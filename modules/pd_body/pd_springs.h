@@ -73,7 +73,8 @@ static inline bool bw_pd_springs_breaks(bw_pd_body *pd, bw_pd_block *block)
 static inline double bw_pd_springs_half(const bw_pd_body *pd, const bw_pd_walk *b)
 {
   double y[3];
-  return 0.5 * BW_PD_SPRING(pd, b, bw_pd_walk_present(b, y)).energy * b->weight * pd->level->dv;
+  return 0.5 * BW_PD_SPRING(pd, b, bw_pd_walk_present(b, y)).energy * b->weight *
+         bw_pd_body_level_at(pd, b->h)->dv;
 }
 
 static inline double bw_pd_springs_bond_energy(const bw_pd_body *pd, const bw_pd_block *block,

@@ -58,7 +58,7 @@ static inline void bw_pd_walk_look(bw_pd_walk *b, int lane)
   b->h = b->first + lane;
   b->l = b->slot->base + lane;
   b->rest = bw_pd_body_rest(b->pd, b->slot->direction, b->h, b->l);
-  b->weight = b->rest.fraction * b->pd->level->dv;
+  b->weight = b->rest.fraction * bw_pd_body_level_at(b->pd, b->l)->dv;
 }
 
 /* The next bond; false: there is none. */

@@ -261,9 +261,10 @@ double bw_pd_bond__bond_energy(const bw_pd_body *pd, const bw_pd_block *block,
   /* Half at this end: the other one books the other half. */
   const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
   const double s = bw_pd_body_length(pd, h, slot, lane, rest.xi) / rest.r0 - 1;
-  const double alpha = bw_pd_bond__alpha(pd, block, slot, lane), dv = pd->level->dv;
-  return 0.25 * bw_pd_bond__micromodulus(pd, h, l) * alpha * s * s * rest.r0 * rest.fraction * dv *
-         dv;
+  const double alpha = bw_pd_bond__alpha(pd, block, slot, lane);
+  const double dv_h = bw_pd_body_level_at(pd, h)->dv, dv_l = bw_pd_body_level_at(pd, l)->dv;
+  return 0.25 * bw_pd_bond__micromodulus(pd, h, l) * alpha * s * s * rest.r0 * rest.fraction *
+         dv_h * dv_l;
 }
 
 /* The energy of a block's lanes over their density: in bw_pd_bond__energy. */
@@ -304,7 +305,7 @@ static vec block_energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t 
 double bw_pd_bond__energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t lanes_asked)
 {
   const vec sum = block_energy(pd, block, lanes_asked);
-  const double dv = pd->level->dv;
+  const double dv = bw_pd_body_level_of(pd, block)->dv;
   /* The row's stiffness is over the owner's density, which is put back here. */
   if (block->group != BW_PD_MIXED)
     return 0.25 * pd->config.material[block->group].rho * dv * vec_sum(sum);

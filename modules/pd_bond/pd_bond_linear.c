@@ -21,8 +21,8 @@ static void block_product(const bw_pd_body *pd, const bw_pd_block *block, bw_rea
     double along = 0;
     for (int k = 0; k < 3; k++)
       along += b.rest.xi[k] * ((double)x[k][b.h] - (double)x[k][b.l]);
-    along *= bw_pd_bond__micromodulus(pd, b.h, b.l) * b.rest.fraction * pd->level->dv /
-             (r0 * r0 * r0) * bw_pd_bond__alpha(pd, block, b.slot, b.lane);
+    along *= bw_pd_bond__micromodulus(pd, b.h, b.l) * b.weight / (r0 * r0 * r0) *
+             bw_pd_bond__alpha(pd, block, b.slot, b.lane);
     for (int k = 0; k < 3; k++)
       sum[b.lane][k] += along * b.rest.xi[k];
   }
@@ -47,7 +47,7 @@ void bw_pd_bond__rows(const bw_pd_body *pd, double row[])
       row[bw_pd_walk_owner(&b)] += factor(pd, block, &b) * b.rest.fraction / b.rest.r0;
   }
   for (size_t i = 0; i < pd->n; i++)
-    row[i] *= 0.5 * pd->level->dv;
+    row[i] *= 0.5 * bw_pd_body_level(pd, i)->dv;
   bw_pd_body_fill_rows(pd, row);
 }
 

@@ -258,7 +258,7 @@ double bw_pd_contact_energy(bw_pd_contact *c)
   /* By the mass of the first group, as the weights are. */
   const double energy =
       family_contact(c, false) + other_contact(c, false) + bw_pd_contact__wall_act(c, false);
-  return energy * c->pd->config.material[0].rho * c->pd->level->dv;
+  return energy * bw_pd_body_unit_mass(c->pd);
 }
 
 /* The stiffest pair against the lightest of the two: 1/w of their oscillation. */

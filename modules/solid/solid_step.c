@@ -30,7 +30,7 @@ static void impose(bw_solid *s)
       *v = (bw_real)pd->held.velocity[3 * q + (size_t)k];
       change += weight_of(pd, i) * ((double)*v * (double)*v - before * before);
     }
-  s->book.external += 0.5 * pd->config.material[0].rho * pd->level->dv * change;
+  s->book.external += 0.5 * bw_pd_body_unit_mass(pd) * change;
 }
 
 /* load.damp by all kinds of damping, in the law's sweep where it can. */
@@ -118,7 +118,7 @@ static void prescribed_work(bw_solid *s, double dt)
     for (int k = 0; k < pd->dimension; k++)
       power -= weight * (double)(pd->a[k][i] + pd->load.extra[k][i]) * (double)pd->v[k][i];
   }
-  s->book.external += dt * pd->config.material[0].rho * pd->level->dv * power;
+  s->book.external += dt * bw_pd_body_unit_mass(pd) * power;
 }
 
 /* v += h (a + extra + f) for the free ones; adds to work[]: external, damping, by the mass of the
@@ -161,7 +161,7 @@ static void kick(bw_solid *s, double h)
   else
     kick_all(pd, (bw_real)h, false, true, work);
   /* (before + v) h/2: the mean velocity is in the sum, h and a half are here. */
-  const double scale = 0.5 * h * pd->config.material[0].rho * pd->level->dv;
+  const double scale = 0.5 * h * bw_pd_body_unit_mass(pd);
   s->book.external += scale * work[0];
   if (bw_pd_body_damped(pd)) s->book.damping += scale * work[1];
   if (pd->held.n > 0) prescribed_work(s, h);
@@ -202,9 +202,10 @@ static bool drift(bw_pd_body *pd, double alpha, double beta, bw_real *const befo
 /* The first particle that left; called only when there is one. */
 static bw_status diverged(const bw_pd_body *pd, double dt)
 {
-  const double horizon = pd->level->horizon;
+  double horizon = 0;
   for (size_t i = 0; i < pd->n; i++) {
     /* The sweep only said that there is one; here it gets its name. */
+    horizon = bw_pd_body_level(pd, i)->horizon;
     double v2 = 0, X0[3];
     for (int k = 0; k < 3; k++)
       v2 += (double)pd->v[k][i] * (double)pd->v[k][i];
@@ -261,8 +262,8 @@ static void power(const bw_pd_body *pd, double rate[2])
       external -=
           weight_of(pd, i) * (double)(pd->a[k][i] + pd->load.extra[k][i]) * (double)pd->v[k][i];
     }
-  rate[0] = external * pd->config.material[0].rho * pd->level->dv;
-  rate[1] = damped ? damping * pd->config.material[0].rho * pd->level->dv : 0;
+  rate[0] = external * bw_pd_body_unit_mass(pd);
+  rate[1] = damped ? damping * bw_pd_body_unit_mass(pd) : 0;
 }
 
 static void stage_velocity(bw_solid *s, double alpha, double beta)

@@ -23,7 +23,7 @@ static void block_sums(const bw_pd_body *pd, const bw_pd_block *block, int lane,
     if (!(slot->mask >> lane & 1)) continue;
     const int32_t l = slot->base + lane;
     const bw_pd_rest rest = bw_pd_body_rest(pd, slot->direction, h, l);
-    const double w = rest.fraction * pd->level->dv;
+    const double w = rest.fraction * bw_pd_body_level_at(pd, l)->dv;
     double y[3];
     for (int k = 0; k < 3; k++)
       y[k] = rest.xi[k] + ((double)pd->u[k][l] - (double)pd->u[k][h]);

@@ -1,5 +1,6 @@
 /* solid_internal.h -- the solid: a body, its contact, its integrator and its book. */
 #pragma once
+#include "bw_pd_material.h"
 #include "bw_solid.h"
 #include "pd_law.h"
 

@@ -1,7 +1,7 @@
 /* Bonds are broken at random until none is left.
  *
- * Claim      However few bonds a particle of a state-based body has left, momentum, angular momentum
- *            and the energy book are kept, and nothing is infinite.
+ * Claim      However few bonds a particle of a state-based body has left, momentum, angular
+ *            momentum and the energy book are kept, and nothing is infinite.
  * Reference  conservation of momentum and energy. Without bonds nothing is elastic.
  * Measured   shaken, free clouds of 8 x 6 x 5 and 9 x 7 particles; each of 400 rounds of three
  *            steps cuts a four-hundredth of the bonds, drawn by the places of their ends; the last

@@ -8,10 +8,11 @@
  *            for L/H = 5 in plane stress, the beam of ULPH's Table 1.
  * Measured   linear solve; the force acts on the last column, half a cell before the end, as a
  *            parabola; the tip is extrapolated from the last two columns. The end beyond the load
- *            is straight: u = F a^2 (3 L - a)/(6 E'I) at a = L - ds/2 is what the reference becomes.
+ *            is straight: u = F a^2 (3 L - a)/(6 E'I) at a = L - ds/2 is what the reference
+ *            becomes.
  * Tolerance  those of the claim; they are what the trial of ERRATA-ULPH leaves (2.8 % at 5 layers,
- *            0.7 at 10, 0.5 at 20) with a margin. The short beam: the clamp's place is known to half
- *            a spacing, and the tip to 3 (ds/2)/L besides. Weights of 2 spacings: reported.
+ *            0.7 at 10, 0.5 at 20) with a margin. The short beam: the clamp's place is known to
+ *            half a spacing, and the tip to 3 (ds/2)/L besides. Weights of 2 spacings: reported.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 */
 #include "beam.h"

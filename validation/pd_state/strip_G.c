@@ -1,10 +1,9 @@
 /* What it costs to drive a crack through a strip.
  *
- * Claim      A long crack in a strip whose edges are pulled apart starts at the fracture energy that
- *            was asked for, and needs it all along.
- * Reference  the energy that is released: G = W h, W the energy density far ahead of the crack and h
- *            the height between the grips, exact while the crack is long (Rice 1967; by the
- *            independence of its integral from the path).
+ * Claim      A long crack in a strip whose edges are pulled apart needs the fracture energy that
+ *            was asked for all along its way.
+ * Reference  the energy that is released: G = W h, W the energy density far ahead of the crack and
+ *            h the height between the grips, exact while the crack is long.
  * Measured   plane strain; 24 (full: 36) cells between the grips, three times as long, cracked over
  *            0.45 of its length. At rest (linear solve) the load at which the law breaks its first
  *            bond is found by halving, these bonds are broken, and so on until the crack has

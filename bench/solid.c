@@ -3,9 +3,9 @@
  * Block 48 x 32 x 32, family |xi| < 3.015 ds: bonds on the lattice and as a cloud, the ordinary law
  * and correspondence, and that with 26 neighbours (|xi| < 2 ds). All but the last may break. Rival:
  * LAMMPS, style peri/pmb, on the same block (bench/lammps_block.in), run just before by
- * `./run bench solid` when the executable lmp is there (Debian package lammps). Floor: positions read once and
- * forces written once per particle, and the bond lists read once, at the triad bandwidth of this
- * run.
+ * `./run bench solid` when the executable lmp is there (Debian package lammps). Floor: positions
+ * read once and forces written once per particle, and the bond lists read once, at the triad
+ * bandwidth of this run.
  * BUILD modules=solid,solid_tools,shape
  * TEST ranks=2 */
 #include "bw_bench_solid.h"

@@ -140,7 +140,54 @@ START_TEST(what_it_refuses)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(force_is_the_derivative_of_energy),
+/* A choice of plain numbers, as from a case file: what contradicts itself is named, what does not
+ * is the same body as by the law's own options. */
+START_TEST(a_choice_of_numbers)
+{
+  pd_body body = pd_box(6, 4, 4);
+  bw_solid *a = NULL, *b = NULL;
+  bw_solid_config c = pd_soft(BW_PD_3D), wrong[6];
+  static const char *const named[] = {"poisson_ratio",  "plastic",      "yield_stress",
+                                      "dilation_angle", "breaks: flow", "surface_correction"};
+  c.horizon_ratio = 2;
+  for (int q = 0; q < 6; q++)
+    wrong[q] = c;
+  wrong[0].choice.poisson_ratio = 0.4;
+  wrong[1].choice.plastic = BW_SOLID_J2;
+  for (int q = 2; q < 6; q++)
+    wrong[q].choice.law = BW_SOLID_CORRESPONDENCE;
+  wrong[2].choice.plastic = BW_SOLID_J2;
+  wrong[3].choice.plastic = BW_SOLID_DRUCKER_PRAGER;
+  wrong[3].choice.cohesion = 1, wrong[3].choice.friction_angle = 10;
+  wrong[3].choice.dilation_angle = 20;
+  wrong[4].choice.breaks = BW_PD_STATE_BREAKS_BY_FLOW, wrong[4].choice.limit = 1;
+  wrong[5].surface_correction = BW_PD_SURFACE_TENSOR;
+  for (int q = 0; q < 6; q++) {
+    bw_check_status(bw_solid_create_same(bw_check_world(), &wrong[q], body.n, body.site, NULL, &a),
+                    BW_EINPUT);
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), named[q]));
+  }
+  const bw_pd_state_correspondence_options o = yielding();
+  const bw_solid_config same = with(BW_PD_3D, 0.3, &o);
+  c.choice.law = BW_SOLID_CORRESPONDENCE, c.choice.poisson_ratio = 0.3;
+  c.choice.plastic = BW_SOLID_J2, c.choice.yield_stress = 0.05, c.choice.hardening = 0.3;
+  c.choice.breaks = BW_PD_STATE_BREAKS_BY_FLOW, c.choice.limit = 0.1;
+  a = pd_make(bw_check_world(), &c, &body);
+  b = pd_make(bw_check_world(), &same, &body);
+  pd_set(a, NULL, state_shake);
+  pd_set(b, NULL, state_shake);
+  pd_steps(a, 40, 0.4 * bw_solid_dt_max(b));
+  pd_steps(b, 40, 0.4 * bw_solid_dt_max(b));
+  ck_assert_double_gt(ledger_of(a).plastic, 0);
+  pd_check_same(a, b, bw_solid_get_position, 0);
+  bw_solid_destroy(&a);
+  bw_solid_destroy(&b);
+  pd_body_release(&body);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(a_choice_of_numbers),
+                                      BW_TEST(force_is_the_derivative_of_energy),
                                       BW_TEST(rest_by_relaxation_and_by_the_linear_solve),
                                       BW_TEST(the_book_closes_to_the_order_of_the_integrator),
                                       BW_TEST(same_on_any_number_of_ranks_and_after_a_restart),

@@ -1,9 +1,11 @@
 /* Cost of a peridynamic force evaluation per directed bond, on one rank and on all.
  *
- * Block 48 x 32 x 32, family |xi| < 3.015 ds. Rival: LAMMPS, style peri/pmb, on the same block
- * (bench/lammps_block.in), run just before by `./run bench solid` when the executable lmp is there
- * (Debian package lammps). Floor: positions read once and forces
- * written once per particle, and the bond lists read once, at the triad bandwidth of this run.
+ * Block 48 x 32 x 32, family |xi| < 3.015 ds: bonds on the lattice and as a cloud, the ordinary law
+ * and correspondence, and that with 26 neighbours (|xi| < 2 ds). All but the last may break. Rival:
+ * LAMMPS, style peri/pmb, on the same block (bench/lammps_block.in), run just before by
+ * `./run bench solid` when the executable lmp is there (Debian package lammps). Floor: positions
+ * read once and forces written once per particle, and the bond lists read once, at the triad
+ * bandwidth of this run.
  * BUILD modules=solid,solid_tools,shape
  * TEST ranks=2 */
 #include "bw_bench_solid.h"
@@ -33,20 +35,33 @@ static double lammps(int ranks)
   return ms;
 }
 
-static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, double disorder,
-                         double rival, double triad)
+/* What is timed: bonds, or a state-based law that may break, on the same block. */
+typedef struct {
+  const char *name;
+  int law; /* bw_solid_law_row */
+  double horizon_ratio, disorder;
+} block;
+
+static bw_status measure(bw_bench *b, const bw_comm *comm, const block *what, double rival,
+                         double triad)
 {
-  const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
+  const char *name = what->name;
+  const bw_shape box = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
   bw_solid_config c = bw_solid_config_default();
   bw_solid *pd = NULL;
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0, c.horizon_ratio = 3.015;
-  c.family_reach = BW_PD_REACH_HORIZON;
-  c.disorder = disorder;
+  c.ds = 1e-3, c.rho = 3000, c.E = 1e8, c.G0 = 1.0;
+  c.horizon_ratio = what->horizon_ratio;
+  /* 122 neighbours; of short weights 26, which nothing may break (a correspondence solid). */
+  if (what->horizon_ratio > 2) c.family_reach = BW_PD_REACH_HORIZON;
+  if (what->horizon_ratio < 2) c.G0 = INFINITY;
+  c.disorder = what->disorder;
+  c.choice.law = what->law;
+  if (what->law != BW_SOLID_BOND) c.choice.poisson_ratio = 0.3;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(c.ds, c.origin, false);
-  bw_status st = bw_shape_fill_shared(comm, 1, &block, &lattice, &n, &site, &kind, NULL);
+  bw_status st = bw_shape_fill_shared(comm, 1, &box, &lattice, &n, &site, &kind, NULL);
   bw_solid_ledger e;
   BW_THEN(st, bw_solid_create(comm, &c, &(bw_pd_sites){n, site, kind, NULL}, &pd));
   BW_THEN(st, bw_solid_account(pd, &e));
@@ -63,6 +78,9 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, dou
                                     1e3 * moved / (triad * bw_comm_size(comm))});
     bw_bench_put(b, &(bw_bench_row){name, "ns_per_directed_bond", "ns",
                                     1e9 * seconds * bw_comm_size(comm) / bonds, NULL, NAN, NAN});
+    bw_bench_put(b, &(bw_bench_row){name, "ns_per_particle_step", "ns",
+                                    1e9 * seconds * bw_comm_size(comm) / (double)bw_solid_total(pd),
+                                    NULL, NAN, NAN});
     bw_bench_put(
         b, &(bw_bench_row){name, "bytes_per_directed_bond", "B", bytes / bonds, NULL, NAN, NAN});
   }
@@ -78,13 +96,17 @@ static bw_status run(bw_bench *b)
   const double triad = bw_bench_triad(comm);
   bw_comm *self = NULL;
   bw_status st = bw_comm_self(&self);
-  /* Rank 0 alone: a block on the lattice, then the same as a cloud. */
-  if (bw_comm_rank(comm) == 0)
-    BW_THEN(st, measure(b, self, "block_48x32x32_np1", 0, lammps(1), triad));
-  if (bw_comm_rank(comm) == 0) BW_THEN(st, measure(b, self, "cloud_48x32x32_np1", 0.3, NAN, triad));
+  /* Rank 0 alone: a block on the lattice, the same as a cloud, and by the state-based laws. */
+  static const block alone[] = {{"block_48x32x32_np1", BW_SOLID_BOND, 3.015, 0},
+                                {"cloud_48x32x32_np1", BW_SOLID_BOND, 3.015, 0.3},
+                                {"lps_48x32x32_np1", BW_SOLID_ORDINARY, 3.015, 0},
+                                {"state_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 3.015, 0},
+                                {"state_short_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 1.5, 0}};
+  for (int q = 0; bw_comm_rank(comm) == 0 && q < 5; q++)
+    BW_THEN(st, measure(b, self, &alone[q], q == 0 ? lammps(1) : NAN, triad));
   st = bw_comm_agree(comm, st); /* the others wait here */
-  if (bw_comm_size(comm) == 2)
-    BW_THEN(st, measure(b, comm, "block_48x32x32_np2", 0, lammps(2), triad));
+  const block both = {"block_48x32x32_np2", BW_SOLID_BOND, 3.015, 0};
+  if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, &both, lammps(2), triad));
   bw_comm_destroy(&self);
   return st;
 }

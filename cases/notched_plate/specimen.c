@@ -72,6 +72,7 @@ static bw_solid_config material(const specimen *p)
   c.rho = s->density;
   c.E = s->young_modulus;
   c.G0 = s->fracture_energy;
+  c.choice = s->choice;
   c.surface_correction = (bw_pd_surface_correction)s->surface_correction;
   c.volume_fraction = (bw_pd_volume_fraction)s->volume_fraction;
   c.family_reach = (bw_pd_family_reach)s->family_reach;

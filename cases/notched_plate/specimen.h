@@ -31,6 +31,7 @@ typedef struct {
   int geometry;                          /* bw_pd_geometry       default plane stress */
   double young_modulus, density;         /* [Pa], [kg/m3] */
   double fracture_energy, horizon_ratio; /* G0 [J/m2]; horizon over spacing [-], default 3 */
+  bw_solid_law_choice choice;            /* law and its options  default bonds */
   int surface_correction, volume_fraction, family_reach, integrator; /* enums of bw_solid.h */
   double disorder;   /* of the particles off their sites, in spacings   default 0: a lattice */
   int disorder_seed; /* another one gives another cloud                 default 0 */

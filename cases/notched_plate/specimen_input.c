@@ -25,7 +25,7 @@ static const bw_config_field hole_fields[] = {
     V(specimen_hole, radius, BW_REQUIRED, BW_ABOVE(0), "m", "radius of the hole"), BW_CONFIG_END};
 
 static const bw_config_word geometry_words[] = {
-    {"plane_stress", BW_PD_PLANE_STRESS, "Poisson's ratio 1/3"},
+    {"plane_stress", BW_PD_PLANE_STRESS, "bonds have Poisson's ratio 1/3"},
     {"plane_strain", BW_PD_PLANE_STRAIN, "1/4"},
     {"solid", BW_PD_3D, "three dimensions, 1/4"},
     {NULL, 0, NULL}};
@@ -37,6 +37,7 @@ static const bw_config_field solid_fields[] = {
     V(specimen_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
     V(specimen_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "",
       "horizon over the spacing of the particles"),
+    BW_SOLID_LAW_KEYS(specimen_solid),
     BW_CONFIG_WORD(specimen_solid, surface_correction, BW_OPTIONAL, bw_solid_correction_words,
                    "how bonds near edges are made as stiff as inside"),
     BW_CONFIG_WORD(specimen_solid, volume_fraction, BW_OPTIONAL, bw_solid_fraction_words,
@@ -133,6 +134,7 @@ specimen_config specimen_default(void)
                 .density = NAN,
                 .fracture_energy = NAN,
                 .horizon_ratio = 3.0,
+                .choice = bw_solid_law_choice_default(),
                 .surface_correction = BW_PD_SURFACE_VOLUME,
                 .volume_fraction = BW_PD_FRACTION_DEFAULT,
                 .family_reach = BW_PD_REACH_HALF_CELL,

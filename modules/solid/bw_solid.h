@@ -23,6 +23,7 @@
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
+#include "bw_solid_law.h"
 #include <stdio.h>
 
 #ifdef __cplusplus
@@ -52,11 +53,12 @@ typedef struct {
   bw_pd_material more[BW_PD_GROUPS - 1];       /* of particles of group 1 and above */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
-  const bw_pd_law *law; /* borrowed: a row of bw_solid_laws, or one's own (pd_law.h); NULL
-                           (default): the first row, the bond law */
-  /* Borrowed by create: what that law's header asks for. NULL (default) for bonds, whose options
-   * are surface_correction and calibration below. */
-  const void *law_options;
+  bw_solid_law_choice choice; /* law and its options; of bonds surface_correction and calibration
+                                 below come to them                           default bonds */
+  const bw_pd_law *law;       /* borrowed: a row of bw_solid_laws, or one's own (pd_law.h); NULL
+                                 (default): that of choice */
+  const void *law_options; /* borrowed by create: what that law's header asks for; NULL (default):
+                                 those of choice */
   bw_pd_volume_fraction volume_fraction;       /* Gamma; default exact in 3D, linear in 2D */
   bw_pd_surface_correction surface_correction; /* of the bond law; default volume */
   bw_pd_calibration calibration;               /* of the bond law; default none */
@@ -79,8 +81,7 @@ typedef struct {
 /* The defaults; ds, rho and E are still to be set. Local. */
 bw_solid_config bw_solid_config_default(void);
 
-/* The laws that a case file can name, ends with NULL; the first one is that of config.law =
- * NULL. */
+/* The laws that a case file can name, in the order of bw_solid_law_row, ends with NULL. */
 extern const bw_pd_law *const bw_solid_laws[];
 const bw_pd_law *bw_solid_law_by_name(const char *name); /* NULL: there is none. Local. */
 void bw_solid_laws_describe(FILE *out); /* each law and the keys it reads, a line each. Local. */

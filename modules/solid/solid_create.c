@@ -18,6 +18,7 @@ bw_solid_config bw_solid_config_default(void)
                        .volume_fraction = BW_PD_FRACTION_DEFAULT,
                        .surface_correction = BW_PD_SURFACE_VOLUME,
                        .integrator = BW_SOLID_VERLET,
+                       .choice = bw_solid_law_choice_default(),
                        .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (int g = 0; g < BW_PD_GROUPS; g++)
     for (int h = 0; h < BW_PD_GROUPS; h++)
@@ -37,6 +38,12 @@ static bw_status check_config(const bw_solid_config *c)
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
                "solid: %s = %g must be zero or positive", name[q], value[q]);
+  BW_TRY(bw_solid_law_check(&c->choice));
+  const bool bonds = c->law == NULL && c->choice.law == BW_SOLID_BOND;
+  BW_REQUIRE(bonds || c->law != NULL || c->surface_correction <= BW_PD_SURFACE_VOLUME, BW_EINPUT,
+             "solid: surface_correction = %d is of bonds; families at faces are whole in a "
+             "state-based law, leave it out",
+             (int)c->surface_correction);
   /* A particle may meet another one and its image, but not itself. */
   for (int a = 0; a < 3; a++)
     BW_REQUIRE(c->period[a] == 0 || !c->contact || c->period[a] / c->ds > 3.5, BW_EINPUT,
@@ -56,6 +63,8 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
                          .disorder_seed = c->disorder_seed,
                          .n_group = 1 + c->n_more,
                          .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
+  /* Two ways to say it: the number beside E, or that of the choice. */
+  if (isnan(c->nu)) b.material[0].nu = c->choice.poisson_ratio;
   /* Group 0 is the configuration's own material; `more` follow it. */
   memcpy(b.origin, c->origin, sizeof b.origin);
   memcpy(b.axes, c->axes, sizeof b.axes);
@@ -83,10 +92,10 @@ static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *give
 {
   bw_solid_config *c = &s->config;
   const bw_pd_body_config body = body_config(c);
-  const bw_pd_bond_options bonds = {c->surface_correction, c->calibration};
-  const bw_pd_law *law = c->law != NULL ? c->law : bw_solid_laws[0];
-  const void *options = c->law_options;
-  if (options == NULL && law == &bw_pd_bond_law) options = &bonds;
+  const bw_pd_law *law = c->law != NULL ? c->law : bw_solid_laws[c->choice.law];
+  bw_solid_options store;
+  const void *options =
+      c->law_options != NULL ? c->law_options : bw_solid__law_options(c, law, &store);
   BW_TRY(bw_pd_body_create(comm, &body, law, options, given, &s->body));
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;

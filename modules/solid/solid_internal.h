@@ -1,5 +1,6 @@
 /* solid_internal.h -- the solid: a body, its contact, its integrator and its book. */
 #pragma once
+#include "bw_pd_material.h"
 #include "bw_solid.h"
 #include "pd_law.h"
 
@@ -40,6 +41,16 @@ void bw_solid__land(bw_solid *s, double dt);
 void bw_solid__end(bw_solid *s);
 /* Forces at the present u (and v for damping). Collective. */
 bw_status bw_solid__evaluate(bw_solid *s, bool check) BW_MUST_CHECK;
+
+/* solid_law.c: room for the options of a law of the table. */
+typedef union {
+  bw_pd_bond_options bond;
+  bw_pd_state_ordinary_options ordinary;
+  bw_pd_state_correspondence_options correspondence;
+} bw_solid_options;
+/* The law's options by `choice`, in `store`; NULL for a law that is not of the table. */
+const void *bw_solid__law_options(const bw_solid_config *config, const bw_pd_law *law,
+                                  bw_solid_options *store);
 
 /* solid_retire.c */
 void bw_solid__retire_rows(bw_solid *s, const double rows[]); /* of a restart; Collective */

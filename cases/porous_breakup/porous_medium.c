@@ -1,5 +1,5 @@
-/* Which sites are the medium: a box with pores taken out, or a body from a file cut to the box; with
- * a slab behind each wall that holds it. */
+/* Which sites are the medium: a box with pores taken out, or a body from a file cut to the box;
+ * with a slab behind each wall that holds it. */
 #include "bw_memory.h"
 #include "bw_shape_pack.h"
 #include "bw_shape_way.h"

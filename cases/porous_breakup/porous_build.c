@@ -36,10 +36,10 @@ static void measure_length(porous_run *p, int64_t n, const int32_t site[])
   const double ds = p->config->domain.length[1] / p->config->domain.cells[1];
   /* Without a slab, which has every plane: centres between front and back. */
   double first = ceil(m->front / ds - 0.5), last = floor((m->front + m->length) / ds - 0.5);
-  if (m->clamped_layers > 0) {
+  if (porous_clamps(m) != 0) {
     first = HUGE_VAL, last = -HUGE_VAL;
     for (int64_t k = 0; k < n; k++) {
-      if (site[3 * k + 1] >= 0) continue;
+      if (site[3 * k + 1] >= 0 && site[3 * k + 1] < p->config->domain.cells[1]) continue;
       first = fmin(first, site[3 * k]), last = fmax(last, site[3 * k]);
     }
     /* Each rank has its part of the sites. */
@@ -211,7 +211,9 @@ bw_status porous_describe(porous_run *p)
   const porous_config *q = p->config;
   bw_log *log = bw_case_log(p->run);
   const double h = q->domain.length[1], U = q->fluid.bulk_velocity, rho = q->fluid.density;
-  const double clamped = (double)q->medium.clamped_layers *
+  const int walls = porous_clamps(&q->medium);
+  const double clamped = ((walls & CLAMP_FLOOR ? 1.0 : 0.0) + (walls & CLAMP_CEILING ? 1.0 : 0.0)) *
+                         (double)q->medium.clamped_layers *
                          round(p->length / q->domain.length[1] * q->domain.cells[1]) *
                          q->domain.cells[2];
   const int64_t total = bw_solid_total(p->solid);
@@ -221,7 +223,7 @@ bw_status porous_describe(porous_run *p)
               bw_comm_size(p->comm));
   /* Then the groups that the physics depends on, and each phase's step against its limit. */
   bw_log_info(log,
-              "medium     %lld particles in the channel, %lld with the clamped layer; "
+              "medium     %lld particles in the channel, %lld with the clamped layers; "
               "horizon/spacing %g",
               (long long)(total - (int64_t)clamped), (long long)total, q->solid.horizon_ratio);
   bw_log_info(log,

@@ -38,6 +38,8 @@ typedef struct {
   char file[1024]; /* STL */
   double scale;    /* a unit of length of the file [m]                     default 1 */
 } porous_surface;
+/* Walls that may hold the medium. */
+enum { CLAMP_FLOOR = 1, CLAMP_CEILING = 2, CLAMP_BOTH = CLAMP_FLOOR | CLAMP_CEILING };
 /* The medium: a box with pores on a lattice, or one of random, image and surface. */
 typedef struct {
   int lattice;                             /* bw_shape_kind of the pores     default pores_sc */
@@ -48,7 +50,8 @@ typedef struct {
   porous_random random;
   porous_image image;
   porous_surface surface;
-  int clamped_layers; /* particles under the lower wall that hold it      default 3 */
+  int clamped;        /* porous_clamp bits: which walls hold it           default floor */
+  int clamped_layers; /* particles behind each of them that hold it       default 3 */
 } porous_medium;
 /* One of the three phases. */
 typedef struct {
@@ -87,6 +90,9 @@ extern const char *const porous_phase_name[PHASE_COUNT];
  * flows through. Collective. */
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
+
+/* Which walls hold the medium, as bits; 0: none. Local. */
+int porous_clamps(const porous_medium *m);
 
 /* ---- the objects of a run (porous_build.c) ---- */
 enum { N_PROGRESS = 6 }; /* numbers of a checkpoint: phase, steps, settling check, rows */

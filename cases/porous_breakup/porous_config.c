@@ -43,6 +43,10 @@ static const bw_config_word lattice_words[] = {
     {"pores_bcc", BW_SHAPE_PORES_BCC, "body-centred cubic"},
     {"pores_fcc", BW_SHAPE_PORES_FCC, "face-centred cubic"},
     {NULL, 0, NULL}};
+static const bw_config_word clamp_words[] = {{"floor", CLAMP_FLOOR, "the lower wall"},
+                                             {"ceiling", CLAMP_CEILING, "the upper wall"},
+                                             {"both", CLAMP_BOTH, "both, as in POROUS 6.2"},
+                                             {NULL, 0, NULL}};
 static const bw_config_field random_fields[] = {
     V(porous_random, radius, BW_REQUIRED, BW_ABOVE(0), "m",
       "smallest and largest radius of the pores"),
@@ -80,8 +84,10 @@ static const bw_config_field medium_fields[] = {
         "instead of a lattice: voxels, the first one's corner at front, floor and z = 0"),
     BW_CONFIG_MAP_IF(porous_medium, surface, has_surface, surface_fields,
                      "instead of a lattice: a body, its box's corner at front, floor and z = 0"),
+    BW_CONFIG_WORD(porous_medium, clamped, BW_OPTIONAL, clamp_words,
+                   "which of the channel's walls hold the medium"),
     V(porous_medium, clamped_layers, BW_OPTIONAL, BW_FROM_TO(0, 16), "",
-      "layers of particles under the lower wall that hold the medium"),
+      "layers of particles behind each of these walls that hold the medium"),
     BW_CONFIG_END};
 
 static const bw_config_field phase_fields[] = {
@@ -142,6 +148,7 @@ porous_config porous_config_default(void)
                                     .random = {.radius = {NAN, NAN}, .porosity = NAN, .seed = 1},
                                     .image = {.solid = {NAN, NAN}, .voxel = NAN},
                                     .surface = {.scale = 1.0},
+                                    .clamped = CLAMP_FLOOR,
                                     .clamped_layers = 3},
                          .coupling = bw_coupler_config_default(),
                          .flow = phase,

@@ -111,7 +111,8 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
       d2 += (x[d] - X0[3 * i + d]) * (x[d] - X0[3 * i + d]);
     most[1] = fmax(most[1], d2);
     /* From here on the medium alone. */
-    if (X0[3 * i + 1] < 0.0) continue; /* the clamped layer is not part of the medium */
+    /* The clamped layers are not part of the medium. */
+    if (X0[3 * i + 1] < 0.0 || X0[3 * i + 1] > L[1]) continue;
     sums[0] += x[0] > lower && x[0] < upper && x[1] > 0.0 && x[1] < L[1];
     sums[1] += damage[i];
     sums[2] += 1.0;
@@ -125,28 +126,47 @@ static void measure_particles(porous_run *p, const double X[], const double X0[]
   row[COL_DISPLACEMENT] = sqrt(most[1]) / L[1];
 }
 
-/* Pieces that the clamped layer does not hold. Its first particle is the first of all (lowest in y,
- * then z), so that the held piece is the one with label 0; without a layer the largest is left out.
- */
-static bw_status measure_fragments(porous_run *p, double row[])
+/* The labels of the pieces that the walls hold, floor and ceiling: the same one until a crack parts
+ * them. A slab is one piece, as its bonds do not break. Without a slab the largest piece counts as
+ * held. Collective. */
+static void find_held(porous_run *p, const bw_pd_fragments *all, const int64_t label[],
+                      int64_t held[2])
+{
+  const size_t n = bw_solid_count(p->solid);
+  const uint8_t *kind = bw_solid_kind(p->solid);
+  const double most = (double)bw_solid_total(p->solid);
+  double smallest = most, largest = -1.0; /* label of a held particle, over all ranks */
+  for (size_t i = 0; i < n; i++) {
+    if (!(kind[i] & BW_PD_PRESCRIBED)) continue;
+    smallest = fmin(smallest, (double)label[i]);
+    largest = fmax(largest, (double)label[i]);
+  }
+  bw_comm_min(p->comm, 1, &smallest);
+  bw_comm_max(p->comm, 1, &largest);
+  held[0] = (int64_t)smallest, held[1] = (int64_t)largest;
+  if (largest < 0.0) held[0] = held[1] = all->total > 0 ? all->largest[0].label : 0;
+}
+
+/* Pieces that no wall holds. label (n): scratch. */
+static bw_status measure_fragments(porous_run *p, int64_t label[], double row[])
 {
   bw_pd_fragments all;
-  BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &all));
-  /* The piece that is held is no fragment: the one with particle 0 in it, or else the largest. */
-  const bool clamped = p->config->medium.clamped_layers > 0;
-  const int64_t held = clamped || all.total == 0 ? 0 : all.largest[0].label;
+  int64_t held[2];
+  BW_TRY(bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), label, &all));
+  find_held(p, &all, label, held);
   double detached = 0.0, most[2] = {0.0, 0.0}; /* most particles, highest speed */
   /* How much has come off, the largest and the fastest piece: of this rank's, then of all. */
   for (size_t q = 0; q < all.n; q++) {
     const double *v = all.own[q].velocity;
-    if (all.own[q].label == held) continue;
+    if (all.own[q].label == held[0] || all.own[q].label == held[1]) continue;
     detached += (double)all.own[q].particles;
     most[0] = fmax(most[0], (double)all.own[q].particles);
     most[1] = fmax(most[1], sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   }
   bw_comm_sum(p->comm, 1, &detached);
   bw_comm_max(p->comm, 2, most);
-  row[COL_FRAGMENTS] = all.total > 0 ? (double)(all.total - 1) : 0.0;
+  const double kept = held[0] == held[1] ? 1.0 : 2.0;
+  row[COL_FRAGMENTS] = fmax(0.0, (double)all.total - kept);
   row[COL_DETACHED] = detached / (double)bw_solid_total(p->solid);
   row[COL_LARGEST] = most[0];
   row[COL_FRAGMENT_SPEED] = most[1] / p->config->fluid.bulk_velocity;
@@ -167,7 +187,9 @@ static bw_status measure_solid(porous_run *p, double row[])
                 e.closest);
   p->warned = p->warned || e.closest < BW_SOLID_TOO_CLOSE;
   double *X = NULL, *X0 = NULL, *damage = NULL;
+  int64_t *label = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&label, n));
   BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&damage, n));
   st = bw_comm_agree(p->comm, st);
@@ -186,11 +208,12 @@ static bw_status measure_solid(porous_run *p, double row[])
     row[COL_EXTERNAL] = e.external;
     for (int d = 0; d < 3; d++)
       row[COL_WALLS + d] = e.wall[d];
-    st = measure_fragments(p, row);
+    st = measure_fragments(p, label, row);
   }
   bw_release(&X);
   bw_release(&X0);
   bw_release(&damage);
+  bw_release(&label);
   return st;
 }
 

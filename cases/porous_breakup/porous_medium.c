@@ -1,5 +1,5 @@
-/* Which sites are the medium: a box with pores taken out, or a body from a file cut to the box; on
- * a slab under the lower wall that holds it. */
+/* Which sites are the medium: a box with pores taken out, or a body from a file cut to the box;
+ * with a slab behind each wall that holds it. */
 #include "bw_memory.h"
 #include "bw_shape_pack.h"
 #include "bw_shape_way.h"
@@ -15,6 +15,8 @@ typedef struct {
   char key[1100]; /* that decides how much of it is pores, with its value: for messages */
 } medium_body;
 
+enum { SLABS = 2 }; /* at most */
+
 static double spacing(const porous_config *q)
 {
   return q->domain.length[1] / q->domain.cells[1];
@@ -28,11 +30,18 @@ static bw_shape box_of(const porous_config *q)
                     .upper = {m->front + m->length, q->domain.length[1], q->domain.length[2]}};
 }
 
-static bw_shape slab_of(const porous_config *q)
+int porous_clamps(const porous_medium *m)
 {
+  return m->clamped_layers > 0 ? m->clamped : 0;
+}
+
+/* Behind the floor or the ceiling. */
+static bw_shape slab_of(const porous_config *q, int wall)
+{
+  const double thick = q->medium.clamped_layers * spacing(q), height = q->domain.length[1];
   bw_shape slab = box_of(q);
-  slab.lower[1] = -q->medium.clamped_layers * spacing(q);
-  slab.upper[1] = 0.0;
+  slab.lower[1] = wall == CLAMP_FLOOR ? -thick : height;
+  slab.upper[1] = wall == CLAMP_FLOOR ? 0.0 : height + thick;
   slab.particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE;
   return slab;
 }
@@ -56,7 +65,7 @@ static bw_status lattice(const porous_config *q, medium_body *b)
 {
   const porous_medium *m = &q->medium;
   BW_TRY(check_lattice(q));
-  BW_TRY(BW_ALLOCATE(&b->shape, 3));
+  BW_TRY(BW_ALLOCATE(&b->shape, 2 + SLABS));
   /* A box, less spheres on the sites of a lattice. */
   b->shape[0] = box_of(q);
   b->shape[1] = (bw_shape){.kind = (bw_shape_kind)m->lattice,
@@ -94,8 +103,8 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
   }
   snprintf(b->key, sizeof b->key, "medium.random.porosity = %g", r->porosity);
   BW_TRY(bw_shape_pack_spheres(&c, &balls, &count, &ball));
-  const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 2);
-  /* A box, less all balls; room for the slab that may follow. */
+  const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 1 + SLABS);
+  /* A box, less all balls; room for the slabs that may follow. */
   if (st == BW_OK) {
     b->shape[0] = box;
     for (int k = 0; k < count; k++) {
@@ -111,7 +120,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
 /* The mask, put where the medium is and cut to its box. */
 static bw_status cut_mask(const porous_config *q, medium_body *b)
 {
-  BW_TRY(BW_ALLOCATE(&b->shape, 3));
+  BW_TRY(BW_ALLOCATE(&b->shape, 2 + SLABS));
   b->shape[1] = box_of(q);
   for (int d = 0; d < 3; d++)
     b->mask->lower[d] = b->shape[1].lower[d];
@@ -175,8 +184,8 @@ static bw_status check_way(const bw_comm *comm, const porous_config *q, const ch
   const bw_shape_way_box channel = {
       .cells = {cells[0], cells[1], cells[2]}, .axis = 0, .periodic = {false, false, true}};
   bw_shape_way way;
-  /* Particles sit on the fluid's cells: a site is a cell. The slab under the wall lies outside the
-   * channel and is left out. */
+  /* Particles sit on the fluid's cells: a site is a cell. Slabs behind the walls lie outside the
+   * channel and are left out. */
   BW_TRY(bw_shape_find_way(comm, &channel, n, site, &way));
   BW_REQUIRE(way.through, BW_EINPUT,
              "%s: nothing flows through, as no way one cell (%g m) wide joins inflow and "
@@ -191,15 +200,16 @@ static bw_status fill(const bw_comm *comm, const porous_config *q, medium_body *
 {
   static const double origin[3] = {0.0, 0.0, 0.0};
   const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
-  /* The slab comes last: it is under the box and takes nothing from it. */
-  if (q->medium.clamped_layers > 0) b->shape[b->count++] = slab_of(q);
+  /* The slabs come last: they are beyond the box and take nothing from it. */
+  for (int wall = CLAMP_FLOOR; wall <= CLAMP_CEILING; wall++)
+    if (porous_clamps(&q->medium) & wall) b->shape[b->count++] = slab_of(q, wall);
   BW_TRY(bw_shape_fill_shared(comm, b->count, b->shape, &lattice, n, site, kind, NULL));
-  int64_t above = 0;
-  /* The slab alone is no medium. */
+  int64_t within = 0;
+  /* Slabs alone are no medium. */
   for (int64_t k = 0; k < *n; k++)
-    above += (*site)[3 * k + 1] >= 0;
-  bw_comm_sum_int(comm, 1, &above);
-  BW_REQUIRE(above > 0, BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores",
+    within += (*site)[3 * k + 1] >= 0 && (*site)[3 * k + 1] < q->domain.cells[1];
+  bw_comm_sum_int(comm, 1, &within);
+  BW_REQUIRE(within > 0, BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores",
              b->key, spacing(q));
   return BW_OK;
 }

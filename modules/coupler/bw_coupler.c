@@ -18,6 +18,7 @@ bw_coupler_config bw_coupler_config_default(void)
                              .probe_profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
                              .load_relaxation = 0.1,
+                             .virtual_mass = 1.0,
                              .coupling_iterations = 1,
                              .coupling_residual = 1e-4};
 }
@@ -31,6 +32,8 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
              "coupler: solid_safety = %g: must lie in (0, 1]", q->solid_safety);
   BW_REQUIRE(q->load_relaxation > 0.0 && q->load_relaxation <= 1.0, BW_EINPUT,
              "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
+  BW_REQUIRE(q->virtual_mass >= 0.0 && q->virtual_mass <= 100.0, BW_EINPUT,
+             "coupler: virtual_mass = %g: must lie in [0, 100]", q->virtual_mass);
   BW_REQUIRE(q->coupling_iterations >= 1, BW_EINPUT,
              "coupler: coupling_iterations = %d: at least 1 (explicit)", q->coupling_iterations);
   BW_REQUIRE(q->coupling_residual > 0.0, BW_EINPUT,

@@ -15,6 +15,22 @@
  * plain explicit scheme. The late load feeds the shortest waves of the lattice: give the solid some
  * damping_mean.
  *
+ * Motions faster than the step. The fluid sees one sample of the surface's velocity per step. An
+ * elastic mode of frequency omega, theta = omega dt, whose surface has mass m and added mass G,
+ * goes by z^2 - 2 z cos theta + 1 + (sin theta/theta) (z - 1)^2 H(z)/(m z) = 0 with
+ * H = w G/(1 - (1 - w)/z), so that it grows by (1 - cos theta)/(theta m) Im(H e^{-i theta}) a step:
+ * about -(w G/2m) sin theta/theta. Modes with pi < theta < 2 pi, which look like slower ones that
+ * run backwards, are fed, and so are those next to pi, where the late answer swings with the step:
+ * most of all thin tips, which carry the most fluid for their own mass. A virtual mass m_v on the
+ * solid's side stops it: through the step the surface feels F' - (m_v/dt) (V - V_n), V_n what the
+ * fluid was told, which takes (m_v/2m) (1 - sin theta/theta) from every mode whatever theta is.
+ * What it takes is owed: its mean joins the next load before that is relaxed, so that nothing is
+ * lost of a steady load or a steady acceleration. (That feeds slow modes by w/2 of what the relaxed
+ * load takes from them. No passive scheme can vanish for steady acceleration: its impedance would
+ * have a double zero.) m_v = virtual_mass w rho A h, A the particle's area: in one step neither
+ * markers nor probes reach farther than about a cell, so that tips have as much as they need.
+ * Measured: validation, coupler.fast_modes.
+ *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
  * velocity is that of a quasi-Newton step (IQN-ILS, iterate.c); what earlier tries do not tell is
@@ -93,6 +109,7 @@ typedef struct {
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
   bw_coupler_load_kind load; /*                                             default probes */
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
+  double virtual_mass;       /* of the surface, over w rho A h; 0: none [-]   default 1 */
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
   double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
                                 that ends the iteration [-]             default 1e-4 */

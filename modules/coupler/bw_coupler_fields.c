@@ -35,6 +35,9 @@ const bw_config_field bw_coupler_fields[] = {
     WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "share of the new fluid load in each step; 1: plain explicit coupling"),
+    V(OURS, virtual_mass, BW_OPTIONAL, BW_FROM_TO(0, 100), "",
+      "virtual mass of the surface, over load_relaxation x density x area x cell, which keeps "
+      "motions faster than the step from being fed; 0: none"),
     V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",
       "repetitions of a step at most; 1: explicit coupling"),
     V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",

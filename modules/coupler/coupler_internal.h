@@ -56,12 +56,12 @@ struct bw_coupler {
   bw_ibm_mdf *ibm;
   bw_probe *probe;
   bool held;
-  size_t n;                /* particles of this rank */
-  int64_t *id;             /* (n) theirs */
-  int64_t revision;        /* of the solid that the arrays below are for */
-  double h;                /* grid spacing [L] */
-  double *F;               /* (n,3) fluid load on particles [M/(L^2 T^2)] */
-  double *M;               /* (n,3) memory of the particles' markers [L^4/T^2] */
+  size_t n;         /* particles of this rank */
+  int64_t *id;      /* (n) theirs */
+  int64_t revision; /* of the solid that the arrays below are for */
+  double h;         /* grid spacing [L] */
+  double *F; /* (n,3) load on particles during a step, else what it takes over [M/(L^2 T^2)] */
+  double *M; /* (n,3) memory of the particles' markers [L^4/T^2] */
   uint16_t *broken;        /* (n) broken bonds of each particle ... */
   int64_t events;          /* ... when the solid had counted so many */
   double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
@@ -174,7 +174,11 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s) B
 /* Phases of a step, and the step that repeats them (step.c, iterate.c). Collective. */
 bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
-bw_status bw_coupler__advance_solid(bw_coupler *c, double dt) BW_MUST_CHECK;
+bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
+/* virtual_mass.c: the drag of the step to come, after V_before is known; what is carried over to
+ * the next load after it. Local. */
+bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
+void bw_coupler__carry_over(bw_coupler *c, double dt, double relaxation);
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);

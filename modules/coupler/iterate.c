@@ -187,7 +187,7 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
     BW_TRY(give_guess(c));
     BW_TRY(bw_coupler__advance_fluid(c, dt));
     BW_TRY(bw_coupler__load_solid(c, dt, 1.0));
-    BW_TRY(bw_coupler__advance_solid(c, dt));
+    BW_TRY(bw_coupler__advance_solid(c, dt, 1.0));
     /* Does the surface move as the fluid was told? */
     c->residual = compare(c, dt);
     if (c->residual <= c->config.coupling_residual) break;

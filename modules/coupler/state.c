@@ -7,6 +7,7 @@
 
 enum { N_FIELDS = 4 };
 static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "solid/body";
+static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
 void bw_coupler__state_release(bw_coupler__state *s)
@@ -124,7 +125,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
-  BW_TRY(bw_checkpoint_put_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
+  BW_TRY(bw_checkpoint_put_table(ck, load_name, total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
@@ -147,7 +148,12 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
   BW_TRY(
       bw_checkpoint_get_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
-  BW_TRY(bw_checkpoint_get_table(ck, "solid/load", total, c->n, id, 3, BW_CK_DOUBLE, s->F));
+  /* Older files have the load itself, all but w of which is taken over. */
+  const bool old = !bw_checkpoint_has(ck, load_name);
+  BW_TRY(bw_checkpoint_get_table(ck, old ? old_load_name : load_name, total, c->n, id, 3,
+                                 BW_CK_DOUBLE, s->F));
+  for (size_t i = 0; old && i < 3 * c->n; i++)
+    s->F[i] *= 1.0 - c->config.load_relaxation;
   /* Files from before the memory go on without: it fills within some steps. */
   memset(s->M, 0, 3 * c->n * sizeof *s->M);
   if (bw_checkpoint_has(ck, memory_name))

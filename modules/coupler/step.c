@@ -113,7 +113,7 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
 }
 
 /* Solid sub-cycled until it has caught up with the fluid, POROUS 3.47-3.49. */
-bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
+bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
 {
   const int n = bw_coupler_substeps(c, dt);
   /* Contact may have become so stiff on the way. */
@@ -122,10 +122,12 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt)
   bw_timer_start(c->timer, BW_PART_SOLID);
   /* The surface's acceleration over the step will be told from it. */
   bw_solid_get_velocity(c->solid, c->V_before);
+  BW_THEN(st, bw_coupler__resist(c, dt, relaxation));
   for (int q = 0; q < n; q++)
     BW_THEN(st, bw_solid_step(c->solid, dt / n));
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
+  bw_coupler__carry_over(c, dt, relaxation);
   bw_timer_stop(c->timer, BW_PART_SOLID);
   return st;
 }
@@ -173,8 +175,9 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
     BW_TRY(bw_coupler__iterate(c, dt));
   } else {
     BW_TRY(bw_coupler__advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */
-    BW_TRY(bw_coupler__load_solid(c, dt, c->config.load_relaxation)); /* stress of the new flow */
-    BW_TRY(bw_coupler__advance_solid(c, dt));                         /* X, V, bonds at t + dt */
+    const double w = c->config.load_relaxation;
+    BW_TRY(bw_coupler__load_solid(c, dt, w));    /* stress of the new flow */
+    BW_TRY(bw_coupler__advance_solid(c, dt, w)); /* X, V, bonds at t + dt */
   }
   bw_coupler__remember(c);       /* what the markers needed, for the next step */
   BW_TRY(bw_coupler__let_go(c)); /* pieces that have passed an outflow */

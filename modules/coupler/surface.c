@@ -316,14 +316,15 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
     c->work.given += dt * c->force[q] * c->marker_V[q];
 }
 
-/* Power of the load on the particles as they move at the beginning of the step. */
-static double power(bw_coupler *c)
+/* Power of the load that the particles do not feel in this step, as they move at its beginning. */
+static double power_held_back(bw_coupler *c)
 {
+  const double volume = bw_solid_volume(c->solid);
   double *V = c->X, sum = 0.0; /* scratch */
   bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < 3 * c->n; i++)
-    sum += c->F[i] * V[i];
-  return sum * bw_solid_volume(c->solid);
+    sum += (c->load[i] - volume * c->F[i]) * V[i];
+  return sum;
 }
 
 /* c->load: the surface points' forces, which act `depth` inside the nominal surface, on the
@@ -349,13 +350,12 @@ void bw_coupler__carry_force(bw_coupler *c, double depth)
 }
 
 /* F_h = t A_h / V_h: POROUS 3.96 with the sign of ERRATA 10, relaxed (bw_coupler.h):
- * F' <- (1 - w) F' + w F keeps F - F' = (1 - w)/w (F' - F' before) back, which is booked. */
+ * F' <- (1 - w) F' + w F, whose first part the step before has left in c->F; what F' keeps back of
+ * F is booked. */
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
 {
   const double w = relaxation, volume = bw_solid_volume(c->solid);
-  /* Power before and after give what of the new load is held back. */
-  const double before = c->config.count_work ? power(c) : 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)
-    c->F[i] = (1.0 - w) * c->F[i] + w * c->load[i] / volume;
-  if (c->config.count_work) c->work.late += dt * (1.0 - w) / w * (power(c) - before);
+    c->F[i] += w * c->load[i] / volume;
+  if (c->config.count_work) c->work.late += dt * power_held_back(c);
 }

@@ -138,6 +138,17 @@ bw_status bw_solid_retire(bw_solid *solid, const bool gone[]) BW_MUST_CHECK;
 /* External force density F of the next steps (n,3) [M/(L^2 T^2)]; copied. Local. */
 void bw_solid_set_force(bw_solid *solid, const double F[]);
 
+/* A drag of the next steps, on n own particles, each named once: the force density -k (v - V), with
+ * v of the beginning of each step, beside that of set_force; where k dt exceeds the density no more
+ * than what takes all of v - V within the step. particle (n), k (n) >= 0 [M/(L^3 T)], V (n,3)
+ * [L/T]; copied, n = 0: none. Its work is booked as external. Held and retired particles feel none.
+ * BW_EMEM. Local. */
+bw_status bw_solid_set_drag(bw_solid *solid, size_t n, const int32_t particle[], const double k[],
+                            const double V[]) BW_MUST_CHECK;
+/* What it did since it was set, of this rank: impulse (count, 3) <- per volume [M/(L^2 T)]; returns
+ * its work [M L^2/T^2]. Local. */
+double bw_solid_get_drag(const bw_solid *solid, double impulse[]);
+
 /* Velocity of the prescribed particles (n,3) [L/T] (rows of others ignored), from the next step
  * on; copied. set_state and set_restart give them the velocity of their rows. Local. */
 void bw_solid_set_prescribed(bw_solid *solid, const double V[]);

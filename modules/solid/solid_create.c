@@ -141,6 +141,7 @@ void bw_solid_destroy(bw_solid **solid)
   if (s == NULL) return;
   bw_pd_contact_destroy(&s->contact);
   bw_pd_body_destroy(&s->body);
+  bw_solid__drag_release(&s->drag);
   bw_release(&s->retired);
   for (int k = 0; k < 3; k++) {
     bw_release(&s->v_before[k]);

@@ -18,6 +18,15 @@ typedef struct {
   int64_t precracked; /* bonds cut by pre-cracks, from both ends */
 } bw_solid_book;
 
+/* bw_solid_set_drag, of the particles that can move. */
+typedef struct {
+  size_t n;               /* of them */
+  int32_t *particle;      /* (n) own particles */
+  double *k, *towards;    /* (n) [M/(L^3 T)], (n,3) [L/T] */
+  double *before, *other; /* (n,3) v and f at the beginning of a step, without the drag */
+  double *impulse, work;  /* (n,3) [M/(L^2 T)], [M L^2/T^2]: since it was set */
+} bw_solid__drag;
+
 struct bw_solid {
   bw_solid_config config; /* as it was asked for, defaults resolved */
   bw_pd_body *body;
@@ -29,6 +38,7 @@ struct bw_solid {
   int64_t shared; /* evaluated when a set added its contact last; -1: not yet, 0: in no set */
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
+  bw_solid__drag drag;
   bw_solid_book book;
 };
 
@@ -51,6 +61,11 @@ typedef union {
 /* The law's options by `choice`, in `store`; NULL for a law that is not of the table. */
 const void *bw_solid__law_options(const bw_solid_config *config, const bw_pd_law *law,
                                   bw_solid_options *store);
+/* solid_drag.c: the drag joins the external force at the beginning of a step of dt and leaves it at
+ * its end. Local. */
+void bw_solid__drag_on(bw_solid *s, double dt);
+void bw_solid__drag_off(bw_solid *s, double dt);
+void bw_solid__drag_release(bw_solid__drag *d);
 
 /* solid_retire.c */
 void bw_solid__retire_rows(bw_solid *s, const double rows[]); /* of a restart; Collective */

@@ -225,6 +225,7 @@ static bw_status diverged(const bw_pd_body *pd, double dt)
 
 bw_status bw_solid__leap(bw_solid *s, double dt)
 {
+  bw_solid__drag_on(s, dt);
   kick(s, 0.5 * dt);
   /* v is at the half step, u still at the beginning. */
   return drift(s->body, dt, 0, s->body->v) ? BW_OK : diverged(s->body, dt);
@@ -234,6 +235,7 @@ void bw_solid__land(bw_solid *s, double dt)
 {
   /* u is at the end, a and extra too; v follows. */
   kick(s, 0.5 * dt);
+  bw_solid__drag_off(s, dt);
 }
 
 static bw_status step_verlet(bw_solid *s, double dt)
@@ -294,6 +296,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
   bw_pd_body *pd = s->body;
   double before[2] = {0}, rate[2], wall_now[3], wall_before[3] = {0};
   bw_status st = BW_OK;
+  bw_solid__drag_on(s, dt);
   for (int r = 0; r < 3; r++) {
     /* The ledger is integrated with the same weights as the motion (ERRATA 5). */
     power(pd, rate);
@@ -312,6 +315,7 @@ static bw_status step_rk3(bw_solid *s, double dt)
     const bw_status seen = bw_solid__evaluate(s, r == 2);
     st = st == BW_OK ? seen : st;
   }
+  bw_solid__drag_off(s, dt);
   return st;
 }
 

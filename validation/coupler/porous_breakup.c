@@ -131,7 +131,7 @@ static bw_status coarse_runs(bw_validation *v, porous_run *p, const char *path)
   BW_TRY(bw_coupler_save(p->coupler, ck));
   BW_TRY(bw_checkpoint_close(&ck));
   const double ds = q->domain.length[1] / q->domain.cells[1];
-  o.particles = (double)bw_solid_total(p->solid) - (double)q->medium.clamped_layers *
+  o.particles = (double)bw_solid_total(p->solid) - 2.0 * (double)q->medium.clamped_layers *
                                                        round(q->medium.length / ds) *
                                                        q->domain.cells[2];
   for (int s = 0; s < 3; s++) {

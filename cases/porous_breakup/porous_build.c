@@ -97,7 +97,7 @@ static bw_status build_solid(porous_run *p)
   int64_t n = 0;
   int32_t *site = NULL;
   uint8_t *kind = NULL;
-  bw_status st = porous_medium_sites(p->comm, q, &n, &site, &kind);
+  bw_status st = porous_medium_sites(p->comm, q, p->run, &n, &site, &kind);
   if (st == BW_OK) measure_length(p, n, site);
   /* Each rank gives its part; the solid brings every particle to the rank that owns it. */
   BW_THEN(st, bw_solid_create(p->comm, &solid, &(bw_pd_sites){n, site, kind, NULL}, &p->solid));

@@ -29,9 +29,14 @@ typedef struct {
 } porous_random;
 /* A medium from voxels. */
 typedef struct {
-  char file[1024]; /* NRRD or MetaImage */
-  double solid[2]; /* smallest and largest value of a solid voxel */
-  double voxel;    /* its edge [m]; NaN: as the file says */
+  char file[1024];   /* NRRD, MetaImage, TIFF, npy; a folder or pattern of TIFF; raw with `size` */
+  double solid[2];   /* smallest and largest value of a solid voxel */
+  double voxel;      /* its edge [m]; NaN: not given */
+  double spacing[3]; /* its three edges [m]; NaN: not given */
+  int unit;          /* of the file's own spacings, a row of porous_units; INT_MIN: as it says */
+  int size[3], type, byte_order, skip; /* of a raw file; size INT_MIN: it is none */
+  int from[3], to[3]; /* voxels that count, first and behind the last; INT_MIN: all */
+  bool flip[3];       /* the last voxel along x, y, z comes first */
 } porous_image;
 /* A medium from a closed surface. */
 typedef struct {
@@ -87,8 +92,8 @@ extern const char *const porous_phase_name[PHASE_COUNT];
 /* ---- the medium (porous_medium.c) ---- */
 /* This rank's part of its particles on sites of the grid's cells, with the slab that holds it:
  * site (n,3), kind (n), the caller's (bw_release). Refused when nothing is left of it or nothing
- * flows through. Collective. */
-bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
+ * flows through. With --check the log gets what it is like. Collective. */
+bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_case *run, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
 /* Which walls hold the medium, as bits; 0: none. Local. */

@@ -1,7 +1,7 @@
 /* The keys of porous_breakup.yaml and their defaults. */
 #include "bw_coupler_fields.h"
 #include "bw_solid_words.h"
-#include "porous_case.h"
+#include "porous_body.h"
 
 #include <limits.h>
 #include <math.h>
@@ -55,11 +55,48 @@ static const bw_config_field random_fields[] = {
     V(porous_random, seed, BW_OPTIONAL, BW_AT_LEAST(0), "",
       "number of the medium; another one gives another medium"),
     BW_CONFIG_END};
+static const bw_config_word unit_words[] = {{"m", 0, NULL},  {"cm", 1, NULL}, {"mm", 2, NULL},
+                                            {"um", 3, NULL}, {"nm", 4, NULL}, {NULL, 0, NULL}};
+const double porous_units[] = {1.0, 1e-2, 1e-3, 1e-6, 1e-9};
+static const bw_config_word type_words[] = {{"uint8", BW_SHAPE_VOXEL_U8, NULL},
+                                            {"int8", BW_SHAPE_VOXEL_I8, NULL},
+                                            {"uint16", BW_SHAPE_VOXEL_U16, NULL},
+                                            {"int16", BW_SHAPE_VOXEL_I16, NULL},
+                                            {"uint32", BW_SHAPE_VOXEL_U32, NULL},
+                                            {"int32", BW_SHAPE_VOXEL_I32, NULL},
+                                            {"uint64", BW_SHAPE_VOXEL_U64, NULL},
+                                            {"int64", BW_SHAPE_VOXEL_I64, NULL},
+                                            {"float32", BW_SHAPE_VOXEL_F32, NULL},
+                                            {"float64", BW_SHAPE_VOXEL_F64, NULL},
+                                            {NULL, 0, NULL}};
+static const bw_config_word order_words[] = {
+    {"little", 0, "the least byte of a number comes first"},
+    {"big", 1, "the largest comes first"},
+    {NULL, 0, NULL}};
 static const bw_config_field image_fields[] = {
-    V(porous_image, file, BW_REQUIRED, BW_FILE, "", "path of an NRRD or MetaImage file"),
+    V(porous_image, file, BW_REQUIRED, BW_FILE, "",
+      "path of an NRRD, MetaImage, TIFF or npy file, of a folder or pattern of TIFF files, or of a "
+      "raw one"),
     V(porous_image, solid, BW_REQUIRED, BW_ANY, "", "smallest and largest value of a solid voxel"),
     V(porous_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "m",
-      "edge of a voxel; left out: as the file says"),
+      "edge of a voxel that is a cube; left out: as the file says"),
+    V(porous_image, spacing, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "edges of a voxel along x, y, z; left out: as the file says"),
+    BW_CONFIG_WORD(porous_image, unit, BW_OPTIONAL, unit_words,
+                   "unit of the spacings in the file; left out: as the file says, else m"),
+    V(porous_image, size, BW_OPTIONAL, BW_AT_LEAST(1), "",
+      "voxels along x, y, z of a raw file, x fastest"),
+    BW_CONFIG_WORD(porous_image, type, BW_OPTIONAL, type_words, "numbers of a raw file"),
+    BW_CONFIG_WORD(porous_image, byte_order, BW_OPTIONAL, order_words,
+                   "order of bytes in a number of a raw file"),
+    V(porous_image, skip, BW_OPTIONAL, BW_AT_LEAST(0), "bytes",
+      "bytes of a raw file before its numbers"),
+    V(porous_image, from, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "first voxel along x, y, z that counts, from 0"),
+    V(porous_image, to, BW_OPTIONAL, BW_AT_LEAST(1), "",
+      "voxel along x, y, z before which it ends; left out: all count"),
+    V(porous_image, flip, BW_OPTIONAL, BW_ANY, "",
+      "whether the voxels along x, y, z come in reverse"),
     BW_CONFIG_END};
 static const bw_config_field surface_fields[] = {
     V(porous_surface, file, BW_REQUIRED, BW_FILE, "", "path of an STL file with a closed surface"),
@@ -146,7 +183,14 @@ porous_config porous_config_default(void)
                                     .radius_over_pitch = NAN,
                                     .offset = {0.5, 0.5, 0.5},
                                     .random = {.radius = {NAN, NAN}, .porosity = NAN, .seed = 1},
-                                    .image = {.solid = {NAN, NAN}, .voxel = NAN},
+                                    .image = {.solid = {NAN, NAN},
+                                              .voxel = NAN,
+                                              .spacing = {NAN, NAN, NAN},
+                                              .unit = unset,
+                                              .size = {unset, unset, unset},
+                                              .type = unset,
+                                              .from = {unset, unset, unset},
+                                              .to = {unset, unset, unset}},
                                     .surface = {.scale = 1.0},
                                     .clamped = CLAMP_FLOOR,
                                     .clamped_layers = 3},

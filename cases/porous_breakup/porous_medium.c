@@ -3,31 +3,14 @@
 #include "bw_memory.h"
 #include "bw_shape_pack.h"
 #include "bw_shape_way.h"
-#include "porous_case.h"
+#include "porous_body.h"
 
 #include <math.h>
 #include <stdio.h>
 
-typedef struct {
-  int count;
-  bw_shape *shape;
-  bw_shape_mask *mask;
-  char key[1100]; /* that decides how much of it is pores, with its value: for messages */
-} medium_body;
-
-enum { SLABS = 2 }; /* at most */
-
 static double spacing(const porous_config *q)
 {
   return q->domain.length[1] / q->domain.cells[1];
-}
-
-static bw_shape box_of(const porous_config *q)
-{
-  const porous_medium *m = &q->medium;
-  return (bw_shape){.kind = BW_SHAPE_BOX,
-                    .lower = {m->front, 0.0, 0.0},
-                    .upper = {m->front + m->length, q->domain.length[1], q->domain.length[2]}};
 }
 
 int porous_clamps(const porous_medium *m)
@@ -39,7 +22,7 @@ int porous_clamps(const porous_medium *m)
 static bw_shape slab_of(const porous_config *q, int wall)
 {
   const double thick = q->medium.clamped_layers * spacing(q), height = q->domain.length[1];
-  bw_shape slab = box_of(q);
+  bw_shape slab = porous_box(q);
   slab.lower[1] = wall == CLAMP_FLOOR ? -thick : height;
   slab.upper[1] = wall == CLAMP_FLOOR ? 0.0 : height + thick;
   slab.particle_kind = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE;
@@ -61,13 +44,13 @@ static bw_status check_lattice(const porous_config *q)
   return BW_OK;
 }
 
-static bw_status lattice(const porous_config *q, medium_body *b)
+static bw_status lattice(const porous_config *q, porous_body *b)
 {
   const porous_medium *m = &q->medium;
   BW_TRY(check_lattice(q));
-  BW_TRY(BW_ALLOCATE(&b->shape, 2 + SLABS));
+  BW_TRY(BW_ALLOCATE(&b->shape, 2 + POROUS_SLABS));
   /* A box, less spheres on the sites of a lattice. */
-  b->shape[0] = box_of(q);
+  b->shape[0] = porous_box(q);
   b->shape[1] = (bw_shape){.kind = (bw_shape_kind)m->lattice,
                            .remove = true,
                            .radius = m->radius_over_pitch * m->pitch,
@@ -82,10 +65,10 @@ static bw_status lattice(const porous_config *q, medium_body *b)
 
 /* Balls at independent places: a place is in none of them with probability exp(-sum of volumes per
  * volume). Those whose centre is outside the box reach in as well. */
-static bw_status random_pores(const porous_config *q, medium_body *b)
+static bw_status random_pores(const porous_config *q, porous_body *b)
 {
   const porous_random *r = &q->medium.random;
-  const bw_shape box = box_of(q);
+  const bw_shape box = porous_box(q);
   bw_shape_pack_config c = bw_shape_pack_config_default();
   bw_shape *ball = NULL;
   int balls = 0, count = 0;
@@ -103,7 +86,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
   }
   snprintf(b->key, sizeof b->key, "medium.random.porosity = %g", r->porosity);
   BW_TRY(bw_shape_pack_spheres(&c, &balls, &count, &ball));
-  const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 1 + SLABS);
+  const bw_status st = BW_ALLOCATE(&b->shape, (size_t)count + 1 + POROUS_SLABS);
   /* A box, less all balls; room for the slabs that may follow. */
   if (st == BW_OK) {
     b->shape[0] = box;
@@ -117,50 +100,7 @@ static bw_status random_pores(const porous_config *q, medium_body *b)
   return st;
 }
 
-/* The mask, put where the medium is and cut to its box. */
-static bw_status cut_mask(const porous_config *q, medium_body *b)
-{
-  BW_TRY(BW_ALLOCATE(&b->shape, 2 + SLABS));
-  b->shape[1] = box_of(q);
-  for (int d = 0; d < 3; d++)
-    b->mask->lower[d] = b->shape[1].lower[d];
-  b->shape[0] = (bw_shape){.kind = BW_SHAPE_MASK, .mask = b->mask};
-  b->shape[1].remove = b->shape[1].outside = true;
-  b->count = 2;
-  return BW_OK;
-}
-
-static bw_status image(const porous_config *q, medium_body *b)
-{
-  static const char axis[3] = {'x', 'y', 'z'};
-  const porous_image *m = &q->medium.image;
-  const bw_shape box = box_of(q);
-  snprintf(b->key, sizeof b->key, "medium.image.solid = [%g, %g] of %s", m->solid[0], m->solid[1],
-           m->file);
-  BW_TRY(bw_shape_mask_open_image(m->file, m->solid[0], m->solid[1], &b->mask));
-  /* An image smaller than the medium would leave a part of it empty. */
-  for (int d = 0; d < 3; d++) {
-    if (!isnan(m->voxel)) b->mask->spacing[d] = m->voxel;
-    const double have = b->mask->spacing[d] * (double)b->mask->size[d];
-    const double need = box.upper[d] - box.lower[d];
-    BW_REQUIRE(have >= need * (1.0 - 1e-9), BW_EINPUT,
-               "medium.image: %s is %g m along %c (%lld voxels of %g m), the medium %g m; the rest "
-               "would be empty: take voxels of %g m (medium.image.voxel) or a smaller medium",
-               m->file, have, axis[d], (long long)b->mask->size[d], b->mask->spacing[d], need,
-               need / (double)b->mask->size[d]);
-  }
-  return cut_mask(q, b);
-}
-
-static bw_status surface(const porous_config *q, medium_body *b)
-{
-  const porous_surface *m = &q->medium.surface;
-  snprintf(b->key, sizeof b->key, "medium.surface.scale = %g of %s", m->scale, m->file);
-  BW_TRY(bw_shape_mask_read_stl(m->file, m->scale, spacing(q), &b->mask));
-  return cut_mask(q, b);
-}
-
-typedef bw_status (*medium_way)(const porous_config *q, medium_body *b);
+typedef bw_status (*medium_way)(const porous_config *q, porous_body *b);
 
 static bw_status choose(const porous_medium *m, medium_way *way)
 {
@@ -172,7 +112,10 @@ static bw_status choose(const porous_medium *m, medium_way *way)
       "medium: %d of pitch with radius_over_pitch, random, image and surface are given; give "
       "one",
       given);
-  *way = m->has_random ? random_pores : m->has_image ? image : m->has_surface ? surface : lattice;
+  *way = m->has_random    ? random_pores
+         : m->has_image   ? porous_image_body
+         : m->has_surface ? porous_surface_body
+                          : lattice;
   return BW_OK;
 }
 
@@ -195,7 +138,7 @@ static bw_status check_way(const bw_comm *comm, const porous_config *q, const ch
 }
 
 /* This rank's part of the body. Collective. */
-static bw_status fill(const bw_comm *comm, const porous_config *q, medium_body *b, int64_t *n,
+static bw_status fill(const bw_comm *comm, const porous_config *q, porous_body *b, int64_t *n,
                       int32_t **site, uint8_t **kind)
 {
   static const double origin[3] = {0.0, 0.0, 0.0};
@@ -214,18 +157,21 @@ static bw_status fill(const bw_comm *comm, const porous_config *q, medium_body *
   return BW_OK;
 }
 
-bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
+bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_case *run, int64_t *n,
                               int32_t **site, uint8_t **kind)
 {
   medium_way way = NULL;
-  medium_body body = {0};
+  porous_body body = {0};
   *site = NULL, *kind = NULL;
   /* All ranks describe the same body, of which each fills a part. */
   bw_status st = choose(&q->medium, &way);
   BW_THEN(st, way(q, &body));
   st = bw_comm_agree(comm, st); /* a file may fail on one rank alone */
+  /* What the file holds is told first, as it may be the reason why nothing is left of it. */
+  if (st == BW_OK && bw_case_args_of(run)->check) st = porous_tell_mask(comm, q, &body, run);
   BW_THEN(st, fill(comm, q, &body, n, site, kind));
   BW_THEN(st, check_way(comm, q, body.key, *n, *site));
+  if (st == BW_OK && bw_case_args_of(run)->check) st = porous_tell_pores(comm, q, *n, *site, run);
   bw_release(&body.shape);
   bw_shape_mask_destroy(&body.mask);
   return st;

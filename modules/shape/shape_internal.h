@@ -117,13 +117,3 @@ typedef struct {
 /* Checks all and finds the range. Errors as bw_shape_range. Local. */
 bw_status bw_shape__region_make(int count, const bw_shape shape[], const bw_shape_lattice *lattice,
                                 bw_shape__region *region) BW_MUST_CHECK;
-
-/* A mask of which nothing is held yet; `path` names it in messages. Local. */
-bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const double lower[3],
-                                const double spacing[3], bw_shape_mask **out) BW_MUST_CHECK;
-/* Room for these layers in place of those held, all of them empty. Local. */
-bw_status bw_shape__mask_room(const char *path, int64_t first, int64_t layers,
-                              bw_shape_mask *mask) BW_MUST_CHECK;
-/* A mask that was opened with status `st`, with all of its layers and without its file; destroyed
- * after a failure. Local. */
-bw_status bw_shape__mask_all(bw_status st, bw_shape_mask **mask) BW_MUST_CHECK;

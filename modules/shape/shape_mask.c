@@ -1,21 +1,17 @@
-/* Masks, and voxels of any type from a file. */
+/* Masks: cells that are held, layers that are fetched, pieces of an image. */
 #include "bw_memory.h"
 #include "shape_internal.h"
+#include "shape_source.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-/* From where and how an open mask reads its layers. */
-struct bw_shape_source {
-  char *path;
-  bw_shape_voxels v;
-  double low, high;
-};
 
 static void close_source(bw_shape_mask *mask)
 {
-  if (mask->source != NULL) bw_release(&mask->source->path);
+  bw_shape_source *from = mask->source;
+  if (from == NULL) return;
+  if (from->reader != NULL && from->reader->destroy != NULL) from->reader->destroy(from->state);
+  bw_release(&from->path);
   bw_release(&mask->source);
 }
 
@@ -47,22 +43,31 @@ bw_status bw_shape__mask_create(const char *path, const int64_t size[3], const d
   memcpy(mask->size, size, sizeof mask->size);
   memcpy(mask->lower, lower, sizeof mask->lower);
   memcpy(mask->spacing, spacing, sizeof mask->spacing);
+  mask->about = (bw_shape_about){.format = "raw", .has_spacing = true, .unit = NAN};
   *out = mask;
   return BW_OK;
 }
 
-bw_status bw_shape__mask_room(const char *path, int64_t first, int64_t layers, bw_shape_mask *mask)
+bw_status bw_shape__source_create(const char *path, const bw_shape_voxels *v, double low,
+                                  double high, const bw_shape__reader *reader, void *state,
+                                  bw_shape_mask **out)
 {
-  const double cells = (double)layers * (double)mask->size[0] * (double)mask->size[1];
-  BW_REQUIRE(cells < 1e11, BW_EINPUT, "%s: %g cells are more than fit into memory", path, cells);
-  /* Layers held before go first: there is never room for both. */
-  bw_release(&mask->solid);
-  mask->first = mask->held = 0;
-  BW_TRY(BW_ALLOCATE(&mask->solid, (size_t)cells));
-  mask->first = first;
-  mask->held = layers;
-  return BW_OK;
+  const size_t room = strlen(path) + 1;
+  bw_status st = bw_shape__mask_create(path, v->size, v->lower, v->spacing, out);
+  BW_THEN(st, BW_ALLOCATE(&(*out)->source, 1));
+  if (st == BW_OK) {
+    *(*out)->source =
+        (bw_shape_source){.v = *v, .low = low, .high = high, .reader = reader, .state = state};
+    st = BW_ALLOCATE(&(*out)->source->path, room);
+  } else if (reader->destroy != NULL) {
+    reader->destroy(state); /* nobody else knows of it yet */
+  }
+  if (st == BW_OK) memcpy((*out)->source->path, path, room);
+  if (st != BW_OK) bw_shape_mask_destroy(out);
+  return st;
 }
+
+/* ---- what is held ---- */
 
 bool bw_shape_mask_at(const bw_shape_mask *m, int dims, const double x[3])
 {
@@ -77,167 +82,35 @@ bool bw_shape_mask_at(const bw_shape_mask *m, int dims, const double x[3])
   return m->solid[at[0] + m->size[0] * (at[1] + m->size[1] * (at[2] - m->first))] != 0;
 }
 
-static const size_t BYTES[BW_SHAPE_VOXEL_COUNT] = {1, 1, 2, 2, 4, 4, 4, 8};
-
-/* One number of `type`, in this machine's byte order. */
-static double number(bw_shape_voxel_type type, const unsigned char *from)
+/* Room for these layers in place of those held, all of them empty. */
+static bw_status make_room(int64_t first, int64_t layers, bw_shape_mask *mask)
 {
-  union {
-    uint8_t u8;
-    int8_t i8;
-    uint16_t u16;
-    int16_t i16;
-    uint32_t u32;
-    int32_t i32;
-    float f32;
-    double f64;
-  } x;
-  /* Copied, not cast: a row of voxels need not be aligned. */
-  memcpy(&x, from, BYTES[type]);
-  switch (type) {
-  case BW_SHAPE_VOXEL_U8:
-    return x.u8;
-  case BW_SHAPE_VOXEL_I8:
-    return x.i8;
-  case BW_SHAPE_VOXEL_U16:
-    return x.u16;
-  case BW_SHAPE_VOXEL_I16:
-    return x.i16;
-  case BW_SHAPE_VOXEL_U32:
-    return x.u32;
-  case BW_SHAPE_VOXEL_I32:
-    return x.i32;
-  case BW_SHAPE_VOXEL_F32:
-    return (double)x.f32;
-  default:
-    return x.f64;
-  }
-}
-
-static bool machine_is_big(void)
-{
-  const uint16_t one = 1;
-  unsigned char first;
-  memcpy(&first, &one, 1);
-  return first == 0;
-}
-
-/* One row of voxels to a row of the mask. */
-static void threshold(const bw_shape_voxels *v, double low, double high, unsigned char *row,
-                      uint8_t *solid)
-{
-  const size_t bytes = BYTES[v->type];
-  /* Bytes are turned in place; the row is read once and not needed again. */
-  const bool swap = v->big_endian != machine_is_big();
-  for (int64_t i = 0; i < v->size[0]; i++) {
-    unsigned char *one = row + (size_t)i * bytes;
-    for (size_t a = 0; swap && a < bytes / 2; a++) {
-      const unsigned char t = one[a];
-      one[a] = one[bytes - 1 - a], one[bytes - 1 - a] = t;
-    }
-    const double value = number(v->type, one);
-    solid[i] = value >= low && value <= high;
-  }
-}
-
-static size_t bytes_of_row(const bw_shape_voxels *v)
-{
-  return (size_t)v->size[0] * BYTES[v->type];
-}
-
-/* Rows of voxels from the place in the file that comes next, to the layers of the mask. */
-static bw_status read_rows(FILE *file, const bw_shape_source *from, int64_t rows, uint8_t *solid)
-{
-  unsigned char *row = NULL;
-  const size_t bytes = bytes_of_row(&from->v);
-  BW_TRY(BW_ALLOCATE(&row, bytes));
-  bw_status st = BW_OK;
-  for (int64_t q = 0; q < rows && st == BW_OK; q++) {
-    if (fread(row, 1, bytes, file) == bytes)
-      threshold(&from->v, from->low, from->high, row, solid + q * from->v.size[0]);
-    else
-      st = BW_FAIL(BW_EIO, "%s: cannot be read on; it has become shorter, or the disk fails",
-                   from->path);
-  }
-  bw_release(&row);
-  return st;
+  const double cells = (double)layers * (double)mask->size[0] * (double)mask->size[1];
+  BW_REQUIRE(cells < 1e11, BW_EINPUT, "%s: %g cells are more than fit into memory",
+             mask->source->path, cells);
+  /* Layers held before go first: there is never room for both. */
+  bw_release(&mask->solid);
+  mask->first = mask->held = 0;
+  BW_TRY(BW_ALLOCATE(&mask->solid, (size_t)cells));
+  mask->first = first;
+  mask->held = layers;
+  return BW_OK;
 }
 
 bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
 {
-  const bw_shape_source *from = mask->source;
+  bw_shape_source *from = mask->source;
   BW_REQUIRE(first >= 0 && layers >= 0 && first <= mask->size[2] - layers, BW_EINPUT,
              "mask: there are no layers %lld .. %lld of %lld", (long long)first,
              (long long)(first + layers), (long long)mask->size[2]);
   /* What is asked for may be here already. */
   if (first >= mask->first && first + layers <= mask->first + mask->held) return BW_OK;
-  BW_TRY(bw_shape__mask_room(from->path, first, layers, mask));
-  FILE *file = fopen(from->path, "rb");
-  BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", from->path);
-  /* From the first of these layers on: the file's other layers are not touched. */
-  const int64_t row = first * mask->size[1], rows = layers * mask->size[1];
-  const int64_t at = from->v.skip + row * (int64_t)bytes_of_row(&from->v);
-  bw_status st = fseeko(file, (off_t)at, SEEK_SET) == 0
-                     ? BW_OK
-                     : BW_FAIL(BW_EIO, "%s: has no byte %lld", from->path, (long long)at);
-  BW_THEN(st, read_rows(file, from, rows, mask->solid));
-  fclose(file);
+  BW_TRY(make_room(first, layers, mask));
+  /* The same layers as the file numbers them; its other ones are not touched. */
+  const int64_t at = from->first[2] + (from->flipped[2] ? mask->size[2] - first - layers : first);
+  const bw_status st = from->reader->read(from, at, at + layers, mask);
   /* Half read is not held. */
   if (st != BW_OK) mask->held = 0;
-  return st;
-}
-
-/* Exactly as many bytes as the voxels need, or a message that says which way it differs. */
-static bw_status check_length(FILE *file, const char *path, const bw_shape_voxels *v)
-{
-  /* The length tells whether size, type and skip are those of the file. */
-  const bool sought = fseeko(file, 0, SEEK_END) == 0;
-  const int64_t length = sought ? (int64_t)ftello(file) : -1;
-  BW_REQUIRE(length >= 0, BW_EIO, "%s: its length cannot be told; is it a file?", path);
-  const int64_t row = (int64_t)bytes_of_row(v), rows = v->size[1] * v->size[2];
-  const int64_t have = length > v->skip ? length - v->skip : 0;
-  BW_REQUIRE(have / row >= rows, BW_EIO,
-             "%s: ends after %lld of %lld rows of %lld voxels; size or type is not that of "
-             "the file",
-             path, (long long)(have / row), (long long)rows, (long long)v->size[0]);
-  BW_REQUIRE(have == rows * row, BW_EIO,
-             "%s: goes on after %lld x %lld x %lld voxels of %zu bytes; size, type or skip is "
-             "not that of the file",
-             path, (long long)v->size[0], (long long)v->size[1], (long long)v->size[2],
-             BYTES[v->type]);
-  return BW_OK;
-}
-
-static bw_status remember(const char *path, const bw_shape_voxels *v, double low, double high,
-                          bw_shape_mask *mask)
-{
-  const size_t room = strlen(path) + 1;
-  BW_TRY(BW_ALLOCATE(&mask->source, 1));
-  BW_TRY(BW_ALLOCATE(&mask->source->path, room));
-  memcpy(mask->source->path, path, room);
-  mask->source->v = *v;
-  mask->source->low = low;
-  mask->source->high = high;
-  return BW_OK;
-}
-
-bw_status bw_shape_mask_open_raw(const char *path, const bw_shape_voxels *v, double low,
-                                 double high, bw_shape_mask **out)
-{
-  *out = NULL;
-  BW_REQUIRE((unsigned)v->type < BW_SHAPE_VOXEL_COUNT, BW_EINPUT, "%s: voxel type %d is unknown",
-             path, (int)v->type);
-  BW_REQUIRE(low <= high, BW_EINPUT, "%s: no value lies between low = %g and high = %g", path, low,
-             high);
-  BW_REQUIRE(v->skip >= 0, BW_EINPUT, "%s: skip = %lld is negative", path, (long long)v->skip);
-  FILE *file = fopen(path, "rb");
-  BW_REQUIRE(file != NULL, BW_EIO, "%s: cannot be opened", path);
-  /* No layer is read yet: who needs some asks for them (bw_shape_mask_hold). */
-  bw_status st = bw_shape__mask_create(path, v->size, v->lower, v->spacing, out);
-  BW_THEN(st, check_length(file, path, v));
-  BW_THEN(st, remember(path, v, low, high, *out));
-  fclose(file);
-  if (st != BW_OK) bw_shape_mask_destroy(out);
   return st;
 }
 
@@ -252,8 +125,90 @@ bw_status bw_shape__mask_all(bw_status st, bw_shape_mask **mask)
   return st;
 }
 
-bw_status bw_shape_mask_read_raw(const char *path, const bw_shape_voxels *v, double low,
-                                 double high, bw_shape_mask **out)
+/* ---- pieces ---- */
+
+bw_status bw_shape_mask_crop(bw_shape_mask *mask, const int64_t from[3], const int64_t to[3])
 {
-  return bw_shape__mask_all(bw_shape_mask_open_raw(path, v, low, high, out), out);
+  BW_REQUIRE(mask->source != NULL, BW_EINPUT, "mask: only an open one can be cropped");
+  for (int d = 0; d < 3; d++)
+    BW_REQUIRE(from[d] >= 0 && from[d] < to[d] && to[d] <= mask->size[d], BW_EINPUT,
+               "%s: crop from %lld to %lld in direction %d; it has voxels 0 .. %lld",
+               mask->source->path, (long long)from[d], (long long)to[d], d,
+               (long long)mask->size[d]);
+  for (int d = 0; d < 3; d++) {
+    mask->source->first[d] += mask->source->flipped[d] ? mask->size[d] - to[d] : from[d];
+    mask->lower[d] += (double)from[d] * mask->spacing[d];
+    mask->size[d] = to[d] - from[d];
+  }
+  mask->first = mask->held = 0;
+  return BW_OK;
+}
+
+bw_status bw_shape_mask_flip(bw_shape_mask *mask, int axis)
+{
+  BW_REQUIRE(mask->source != NULL, BW_EINPUT, "mask: only an open one can be flipped");
+  BW_REQUIRE(axis >= 0 && axis <= 2, BW_EINPUT, "mask: axis = %d has to be 0, 1 or 2", axis);
+  mask->source->flipped[axis] = !mask->source->flipped[axis];
+  mask->first = mask->held = 0;
+  return BW_OK;
+}
+
+/* ---- how much of it is solid ---- */
+
+/* The part of cell `at` along direction d that lies within lower .. upper. */
+static double part_within(const bw_shape_mask *m, int d, int64_t at, double lower, double upper)
+{
+  const double a = m->lower[d] + (double)at * m->spacing[d], b = a + m->spacing[d];
+  return fmax(0.0, (fmin(b, upper) - fmax(a, lower)) / m->spacing[d]);
+}
+
+/* Solid cells of the layers held, and the same weighted by their part within the box, both in
+ * cells; part[] has room for size[0]. */
+static void add_held(const bw_shape_mask *m, const double lower[3], const double upper[3],
+                     double part[], bw_shape_solid *sum)
+{
+  for (int64_t i = 0; i < m->size[0]; i++)
+    part[i] = part_within(m, 0, i, lower[0], upper[0]);
+  const uint8_t *row = m->solid;
+  for (int64_t k = m->first; k < m->first + m->held; k++)
+    for (int64_t j = 0; j < m->size[1]; j++, row += m->size[0]) {
+      const double share =
+          part_within(m, 1, j, lower[1], upper[1]) * part_within(m, 2, k, lower[2], upper[2]);
+      double inside = 0.0;
+      int64_t solid = 0;
+      for (int64_t i = 0; i < m->size[0]; i++) {
+        solid += row[i];
+        inside += row[i] * part[i];
+      }
+      sum->volume += (double)solid;
+      sum->inside += share * inside;
+    }
+}
+
+bw_status bw_shape_mask_measure(bw_shape_mask *mask, int64_t first, int64_t layers,
+                                const double lower[3], const double upper[3], bw_shape_solid *solid)
+{
+  /* So many layers at a time that they take some megabytes, and one at least. */
+  const int64_t many = (int64_t)(4e6 / (double)mask->size[0] / (double)mask->size[1]) + 1;
+  bw_shape_solid sum = {0};
+  double *part = NULL;
+  *solid = sum;
+  BW_TRY(BW_ALLOCATE(&part, (size_t)mask->size[0]));
+  bw_status st = BW_OK;
+  /* What holds all of its layers is looked at where it lies. */
+  const int64_t step = mask->source == NULL ? layers : many;
+  for (int64_t k = first; k < first + layers && st == BW_OK; k += step) {
+    const int64_t some = k + step < first + layers ? step : first + layers - k;
+    st = bw_shape_mask_hold(mask, k, some);
+    bw_shape_mask held = *mask;
+    if (st != BW_OK) break;
+    /* More may be held than is asked for here. */
+    held.solid += (k - held.first) * held.size[0] * held.size[1];
+    held.first = k, held.held = some;
+    add_held(&held, lower, upper, part, &sum);
+  }
+  bw_release(&part);
+  const double cell = mask->spacing[0] * mask->spacing[1] * mask->spacing[2];
+  *solid = (bw_shape_solid){.volume = cell * sum.volume, .inside = cell * sum.inside};
+  return st;
 }

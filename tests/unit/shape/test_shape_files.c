@@ -55,7 +55,7 @@ static void check_cells(const bw_shape_mask *m, const double lower[3], const dou
 /* Every type in both byte orders, after three bytes of something else. */
 START_TEST(raw_voxels_of_every_type)
 {
-  const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  const size_t bytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   for (int type = 0; type < BW_SHAPE_VOXEL_COUNT; type++)
     for (int big = 0; big < 2; big++) {
       unsigned char data[8 * CELLS], one[8];
@@ -150,7 +150,7 @@ START_TEST(bad_images_are_refused_by_name)
   refuse("short.nrrd", NRRD_START "encoding: raw\n\n", CELLS - 1, "ends after 3 of 4 rows");
   refuse("long.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n", CELLS,
          "goes on");
-  refuse("zip.nrrd", NRRD_START "encoding: gzip\n\n", CELLS, "gzip");
+  refuse("zip.nrrd", NRRD_START "encoding: gzip\n\n", CELLS, "damaged");
   refuse("turned.nrrd", NRRD_START "space directions: (0,1,0) (1,0,0) (0,0,1)\n\n", CELLS, "axes");
   refuse("type.nrrd", "NRRD0004\ntype: block\ndimension: 3\nsizes: 3 2 2\n\n", CELLS, "block");
   refuse("lacks.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\n\n", CELLS, "size");
@@ -159,7 +159,7 @@ START_TEST(bad_images_are_refused_by_name)
          CELLS, "order");
   refuse("skip.nrrd", NRRD_START "line skip: 2\nencoding: raw\n\n", CELLS, "line skip");
   refuse("mins.nrrd", NRRD_START "axis mins: 0 0 0\nencoding: raw\n\n", CELLS, "axis mins");
-  refuse("back.nrrd", NRRD_START "byte skip: -1\nencoding: raw\n\n", CELLS, "byte skip");
+  refuse("back.nrrd", NRRD_START "byte skip: -2\nencoding: raw\n\n", CELLS, "byte skip");
   refuse("endian.nrrd", NRRD_START "endian: middle\nencoding: raw\n\n", CELLS, "middle");
   refuse("flat.nrrd", NRRD_START "spacings: 1 0 1\nencoding: raw\n\n", CELLS, "spacing 0");
   refuse("where.nrrd", NRRD_START "space origin: (0,nan,0)\nencoding: raw\n\n", CELLS, "origin");
@@ -172,7 +172,10 @@ START_TEST(bad_images_are_refused_by_name)
          "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n", 5,
          "ends after 1 of 4 rows");
   refuse("zero.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 0 2\n\n", CELLS, "0 voxels");
-  refuse("comp.mhd", "NDims = 3\nDimSize = 3 2 2\nCompressedData = True\n", CELLS, "compressed");
+  refuse("comp.mha",
+         "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nCompressedData = True\n"
+         "ElementDataFile = LOCAL\n",
+         CELLS, "damaged");
   refuse("rgb.mhd", "NDims = 3\nElementNumberOfChannels = 3\n", CELLS, "3 numbers");
   refuse("gone.mhd",
          "NDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = gone.mhd.absent\n",
@@ -229,11 +232,11 @@ START_TEST(wrong_layouts_are_refused_by_name)
 }
 END_TEST
 
-/* Corners of a tetrahedron 0, (a,0,0), (0,b,0), (0,0,c), outward or not: parity does not care. */
+/* A tetrahedron 0, (a,0,0), (0,b,0), (0,0,c), corners counterclockwise seen from outside. */
 static void tetrahedron(float a, float b, float c, int faces, const char *name, bool text)
 {
   const float p[4][3] = {{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}};
-  const int face[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   FILE *file = fopen(path_of(name), "wb");
   ck_assert_ptr_nonnull(file);
   const char head[80] = "solid in name only";
@@ -312,6 +315,7 @@ START_TEST(bad_surfaces_are_refused_by_name)
   refuse_surface(1, 0.5, BW_EINPUT, "not closed");
   refuse_surface(0, 0.5, BW_EINPUT, "scale = 0");
   refuse_surface(1, -0.5, BW_EINPUT, "spacing = -0.5");
+  tetrahedron(7, 5, 6, 4, "bad.stl", false);
   refuse_surface(1, 1e-4, BW_EINPUT, "more than fit into memory");
   refuse_surface(1e9, 0.5, BW_EINPUT, "is scale = 1e+09 right?");
   tetrahedron(7, NAN, 6, 4, "bad.stl", false);

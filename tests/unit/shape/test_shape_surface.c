@@ -320,7 +320,7 @@ START_TEST(surfaces_that_are_none_are_refused)
   int64_t n;
   double *p, *m, *a;
   uint8_t cell = 1;
-  bw_shape_mask mask = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}, 0, 1, &cell, NULL};
+  bw_shape_mask mask = {.size = {1, 1, 1}, .spacing = {1, 1, 1}, .held = 1, .solid = &cell};
   const bw_shape image = {.kind = BW_SHAPE_MASK, .mask = &mask}, box = BOX(.upper = {1, 1, 1});
   const bw_shape endless = TUBE(.radius = 1, .axis = 2);
   bw_shape none[2] = {box, BOX(.lower = {-1, -1, -1}, .upper = {2, 2, 2}, .remove = true)};

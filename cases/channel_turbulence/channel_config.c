@@ -15,9 +15,8 @@ static const bw_config_field domain_fields[] = {
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {
     {"explicit", BW_VISCOUS_EXPLICIT, "third order in time"},
-    {"implicit_y", BW_VISCOUS_IMPLICIT_Y,
-     "Crank-Nicolson in y: thin cells at the walls cost no steps"},
-    {"implicit", BW_VISCOUS_IMPLICIT, "Crank-Nicolson in all directions"},
+    {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "implicit in y: thin cells at the walls cost no steps"},
+    {"implicit", BW_VISCOUS_IMPLICIT, "implicit in all directions"},
     {0}};
 static const bw_config_field fluid_fields[] = {
     V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE(0), "",

@@ -62,12 +62,14 @@ typedef enum {
   BW_FORCING_GRADIENT   /* a given uniform gradient */
 } bw_ns_forcing;
 
-/* How the viscous term advances in time; implicit parts by Crank-Nicolson in each sub-step, which
- * is second order in time. */
+/* How the viscous term advances in time. Implicit parts weigh the old velocity of a sub-step with
+ * 17/60, 0, 1/6 of dt and the new one with 1/4, 2/15, 1/6: second order in time, and what is stiff
+ * is gone within a step (ERRATA 38). */
 typedef enum {
   BW_VISCOUS_EXPLICIT,   /* all by RK3: third order, the step limited by dx^2/nu */
   BW_VISCOUS_IMPLICIT_Y, /* implicit in y: thin cells at walls do not limit the step */
-  BW_VISCOUS_IMPLICIT    /* implicit in all directions: only convection limits the step */
+  BW_VISCOUS_IMPLICIT    /* implicit in all directions: convection limits the step, and where the
+                            Reynolds number of the box is of order 1 that short waves decay */
 } bw_ns_viscous;
 
 /* Everything that a flow is. */
@@ -98,12 +100,18 @@ void bw_ns_channel_destroy(bw_ns_channel **ns);
 bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
                                      double t) BW_MUST_CHECK;
 
-/* Largest stable dt of the present field [T]: with c = max sum_i |u_i|/dx_i and
- * a = 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term (without z in 2D),
- *   dt = 1 / sqrt((c/sqrt(3))^2 + (a/2.5127)^2),
- * an ellipse inside the stability region of this RK3; with implicit y 2.41 in place of 2.5127
- * (ERRATA 37). INFINITY when nothing limits it: fluid at rest, all implicit. ERRATA 22 has the
- * viscous part with 1.65 instead of 2.5127. Collective. */
+/* Largest dt that the present field allows [T]:
+ *   dt = 1 / sqrt((c/sqrt(3))^2 + g/(sqrt(3) dx) + (a/2.5127)^2),
+ * an ellipse inside the stability region of this RK3, without z in 2D.
+ * c: the largest rate of convection, of all cells half of sum_i (|u_i below| + |u_i above|)/dx_i,
+ *    the same whichever way the stream goes; of all walls and inflows sum_i |u_i|/dx_i, and of a
+ *    given flow rate U/dx, as the fluid may be at rest yet.
+ * g: the given gradient, which may add g dt to the velocity.
+ * a: 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term; with implicit y 2.47
+ *    in place of 2.5127 (ERRATA 37; ERRATA 22 has the viscous part with 1.65).
+ * With all of the viscous term implicit a = 0, and dt ends where the waves that are short in two or
+ * three directions would no longer decay as fast as the one that fills the box (some L dx/nu).
+ * Collective. */
 double bw_ns_channel_dt_max(bw_ns_channel *ns);
 
 /* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,

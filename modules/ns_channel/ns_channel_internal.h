@@ -33,8 +33,8 @@ typedef struct {
   bw_real *dy[3];        /* implicit in y: like fy, the difference quotients */
   int tile;              /* rows in y per tile */
   bw_real nu;            /* 0 where all of the viscous term is implicit */
-  bw_ns_viscous viscous; /* implicit in y: half of that here with weight kappa */
-  bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = gamma dt nu/2 */
+  bw_ns_viscous viscous; /* implicit in y: a part of that here with weight kappa */
+  bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = old dt nu */
   bw_real source;                             /* dt gamma g */
 } bw_ns_sweep;
 
@@ -85,16 +85,19 @@ struct bw_ns_channel {
   double applied;     /* mean gradient of the last finished step */
   double applying;    /* the same of the step in progress */
   bool impulsive;     /* velocity was just set: its bulk need not be the wanted one */
-  double courant;     /* this rank's max sum |u_i|/dx_i [1/T]; NaN when not finite */
+  double courant;     /* this rank's largest rate of convection [1/T]; NaN when not finite */
   bool courant_known; /* courant_all is that of the present field */
   double courant_all;
   double viscous_rate; /* largest eigenvalue of the explicit viscous operator [1/T] */
+  double damping_step; /* all implicit: longest step that damps short waves [T], else INFINITY */
   bw_ns_box box;
   bw_ns_cost cost;
 };
 
 extern const double bw_ns__alpha[BW_NS_STAGES], bw_ns__beta[BW_NS_STAGES],
     bw_ns__gamma[BW_NS_STAGES], bw_ns__end[BW_NS_STAGES]; /* end: time after the sub-step / dt */
+/* Implicit terms: weights of the old and the new velocity in a sub-step; their sum is gamma. */
+extern const double bw_ns__old[BW_NS_STAGES], bw_ns__new[BW_NS_STAGES];
 
 /* ns_config.c */
 bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config *c);
@@ -111,11 +114,15 @@ void bw_ns__momentum_place(bw_ns_sweep *s, bw_real *scratch);
 /* f <- scale div u; returns this rank's sum u dy (per cell of dx = dz = 1) when asked. */
 double bw_ns__divergence(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
                          double scale, bool sum, bw_real *f);
-/* u <- u - scale grad phi (+ shift in x), p <- p + phi; with `courant` the largest
- * sum |u_i|/dx_i, NaN when something is not finite (else 0). */
+/* u <- u - scale grad phi (+ shift in x), p <- p + phi; with `courant` (and the faces below the
+ * first cells) the largest half of sum (|u_i below| + |u_i above|)/dx_i, NaN when something is not
+ * finite (else 0). */
 double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
                       bw_real *p, const bw_real *phi, double scale, double shift, bool courant);
 double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3]);
+
+/* ns_limit.c: what is known of the step before there is a field. Collective. */
+void bw_ns__limits_create(bw_ns_channel *ns);
 
 /* ns_boundary.c */
 bw_status bw_ns__planes_create(bw_ns_channel *ns);
@@ -170,8 +177,8 @@ void bw_ns__lines_solve_divided(const bw_ns_channel *ns, const bw_ns_lines *q, b
 double bw_ns__ghost_sign(const bw_ns_channel *ns, int d, int s);
 
 /* ns_implicit.c: u <- (1 - kappa D_yy)^-1 u. Collective. */
-void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt);
+void bw_ns__implicit_solve(bw_ns_channel *ns, double kappa);
 
-/* ns_factored.c: u <- u*, from the sweep's change in `increment`; sides have mean values until
- * the faces are set. Collective. */
-void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt);
+/* ns_factored.c: u <- u* of sub-step r, from the sweep's change in `increment`; sides have mean
+ * values until the faces are set. Collective. */
+void bw_ns__factored_solve(bw_ns_channel *ns, int r, double dt);

@@ -56,6 +56,11 @@ static void report(cylinder_flow *f, bw_log *log)
               "  probes, parabola to wall  %.4f\nslip at the markers %.1e U_b",
               bw_ns_channel_time(f->flow.fluid), d.reaction, d.control_volume, d.probe[0],
               d.probe[1], d.slip);
+  if (d.slip > 0.02)
+    bw_log_warn(log,
+                "slip at the markers is %.1f %% of U_b: the drag comes out too low; take a memory "
+                "(cylinder.memory: 0.2), more iterations, or smaller steps",
+                100.0 * d.slip);
 }
 
 static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)

@@ -102,4 +102,15 @@ for blockage in 0.6 0.8; do
 done
 grep -q "warning.*gaps between cylinder and walls" "$out/blocked-0.8.txt" ||
   { echo "FAIL narrow gaps are not told"; failed=1; }
+
+# A surface that leaks is told on the screen, in the history and in run.yaml.
+run leak porous_breakup "$source/tests/support/porous_small.yaml" --quiet --set coupling.memory=0 \
+  --set coupling.iterations=1 --set flow.steps=110 --set deformation.steps=0 \
+  --set breakage.steps=0 --set output.sample_every=2 --set output.checkpoint_every=0
+for file in "$out/leak.txt" "$out/leak/run.yaml"; do
+  grep -q "% of it passes through the surface" "$file" ||
+    { echo "FAIL the leak is not told in $file"; failed=1; }
+done
+awk -v leak="$(value leak leak_over_flux_past)" 'BEGIN { exit !(leak > 0.02) }' ||
+  { echo "FAIL the history has no leak"; failed=1; }
 exit $failed

@@ -101,6 +101,7 @@ static bw_status local_create(bw_ns_channel *ns)
 {
   BW_TRY(metrics_create(ns));
   BW_TRY(fields_create(ns));
+  BW_TRY(bw_ns__eddy_create(ns));
   return bw_ns__planes_create(ns);
 }
 
@@ -141,6 +142,7 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
   /* Every member may still be NULL: create calls this for an object that is half built. */
   bw_poisson_destroy(&ns->poisson);
   bw_ns__planes_destroy(ns);
+  bw_ns__eddy_destroy(ns);
   for (int c = 0; c < 3; c++) {
     bw_release(&ns->u[c]);
     bw_release(&ns->R[c]);
@@ -164,6 +166,11 @@ bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns)
 bw_real *bw_ns_channel_pressure(bw_ns_channel *ns)
 {
   return ns->p;
+}
+
+const bw_real *bw_ns_channel_eddy_viscosity(const bw_ns_channel *ns)
+{
+  return ns->eddy.nu;
 }
 
 bw_grid *bw_ns_channel_grid(bw_ns_channel *ns)

@@ -64,6 +64,12 @@ typedef struct {
   double force[3];    /* of the last step, this rank's share */
 } bw_ns_box;
 
+/* Eddies that no cell resolves (ns_eddy.c); all NULL without a model. */
+typedef struct {
+  bw_real *nu, *force[3]; /* at centres; on faces, of the present sub-step */
+  double rate;            /* this rank's largest 4 nu_t sum 1/dx_i^2 [1/T] */
+} bw_ns_eddies;
+
 struct bw_ns_channel {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
@@ -81,14 +87,15 @@ struct bw_ns_channel {
   bw_real *increment[3]; /* implicit: u* - u; the first is phi, free until the projection */
   bw_real *lanes;        /* (n0, BW_NS_LANES) */
   double time;
-  double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
-  double applied;     /* mean gradient of the last finished step */
-  double applying;    /* the same of the step in progress */
-  bool impulsive;     /* velocity was just set: its bulk need not be the wanted one */
+  double gradient; /* flow rate: gradient the next predict starts from [L/T^2] */
+  double applied;  /* mean gradient of the last finished step */
+  double applying; /* the same of the step in progress */
+  bool impulsive;  /* velocity was just set: its bulk need not be the wanted one */
+  bw_ns_eddies eddy;
   double courant;     /* this rank's largest rate of convection [1/T]; NaN when not finite */
   bool courant_known; /* courant_all is that of the present field */
-  double courant_all;
-  double viscous_rate; /* largest eigenvalue of the explicit viscous operator [1/T] */
+  double courant_all, eddy_all; /* of all ranks */
+  double viscous_rate;          /* largest eigenvalue of the explicit viscous operator [1/T] */
   double damping_step; /* all implicit: longest step that damps short waves [T], else INFINITY */
   bw_ns_box box;
   bw_ns_cost cost;
@@ -130,6 +137,7 @@ void bw_ns__planes_destroy(bw_ns_channel *ns);
 void bw_ns__faces(bw_ns_channel *ns);           /* planes -> normal velocity on the faces. Local. */
 void bw_ns__ghosts_velocity(bw_ns_channel *ns); /* beyond physical boundaries. Local. */
 void bw_ns__ghosts_scalar(bw_ns_channel *ns, bw_real *p);
+void bw_ns__ghosts_eddy(bw_ns_channel *ns, bw_real *nu); /* odd at walls: zero there */
 bw_ns_walk bw_ns__walk(const bw_ns_channel *ns, int d, int s, int index); /* layer `index` of d */
 int bw_ns__face_index(const bw_ns_channel *ns, int d, int s); /* of the side's own face */
 
@@ -175,6 +183,14 @@ void bw_ns__lines_solve(const bw_ns_lines *q, int width, ptrdiff_t pitch, bw_rea
 void bw_ns__lines_solve_divided(const bw_ns_channel *ns, const bw_ns_lines *q, bw_real *u);
 /* Ghost of a component along side (d, s) = sign u + G (ns_boundary.c). */
 double bw_ns__ghost_sign(const bw_ns_channel *ns, int d, int s);
+
+/* ns_eddy.c. All do nothing without a model; collective: update. */
+bw_status bw_ns__eddy_create(bw_ns_channel *ns);
+void bw_ns__eddy_destroy(bw_ns_channel *ns);
+void bw_ns__eddy_update(bw_ns_channel *ns);                     /* nu_t of the present velocity */
+void bw_ns__eddy_force(bw_ns_channel *ns);                      /* before the sweep changes u */
+void bw_ns__eddy_add(bw_ns_channel *ns, int r, double dt);      /* ... and after it */
+void bw_ns__eddy_stress(const bw_ns_channel *ns, double sum[]); /* over x, z: [0..n1], at faces */
 
 /* ns_implicit.c: u <- (1 - kappa D_yy)^-1 u. Collective. */
 void bw_ns__implicit_solve(bw_ns_channel *ns, double kappa);

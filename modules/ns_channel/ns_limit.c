@@ -8,11 +8,12 @@
  * |1 + z + z^2/2 + z^3/6| <= 1. The ellipse through both lies inside the stability region. */
 static const double imaginary_limit = 1.7320508;
 
-/* An implicit term in y takes a little of the real axis: with its rate anything from 0 on, the
- * largest multiplier of all modes on and within the ellipse is 1 up to 2.47 (ERRATA 37). */
+/* An implicit term takes a little of the real axis from what is explicit beside it: with its rate
+ * anything from 0 on, the largest multiplier of all modes on and within the ellipse is 1 up to 2.47
+ * (ERRATA 37). */
 static double real_limit(const bw_ns_channel *ns)
 {
-  return ns->config.viscous == BW_VISCOUS_IMPLICIT_Y ? 2.47 : 2.5127453;
+  return ns->config.viscous == BW_VISCOUS_EXPLICIT ? 2.5127453 : 2.47;
 }
 
 /* ---- viscosity ---- */
@@ -154,9 +155,11 @@ static double courant_everywhere(bw_ns_channel *ns)
   if (ns->courant_known) return ns->courant_all;
   /* A maximum drops NaN, so whether all is finite travels as a number of its own. */
   const bool finite = isfinite(ns->courant);
-  double worst[2] = {finite ? fmax(ns->courant, prescribed_rate(ns)) : 0.0, finite ? 0.0 : 1.0};
-  bw_comm_max(ns->comm, 2, worst);
+  double worst[3] = {finite ? fmax(ns->courant, prescribed_rate(ns)) : 0.0, finite ? 0.0 : 1.0,
+                     ns->eddy.rate};
+  bw_comm_max(ns->comm, 3, worst);
   ns->courant_all = worst[1] > 0.0 ? (double)NAN : worst[0];
+  ns->eddy_all = worst[2];
   ns->courant_known = true;
   return ns->courant_all;
 }
@@ -172,10 +175,17 @@ static double convective(bw_ns_channel *ns)
   return c * c / (imaginary_limit * imaginary_limit) + push;
 }
 
+/* 1/dt by what is explicit of the viscous term and of an eddy viscosity, whose rate has become
+ * known with the Courant number. */
+static double diffusive(const bw_ns_channel *ns)
+{
+  return (ns->viscous_rate + ns->eddy_all) / real_limit(ns);
+}
+
 double bw_ns_channel_dt_max(bw_ns_channel *ns)
 {
-  const double v = ns->viscous_rate / real_limit(ns);
-  return fmin(1.0 / sqrt(convective(ns) + v * v), ns->damping_step);
+  const double c = convective(ns), v = diffusive(ns);
+  return fmin(1.0 / sqrt(c + v * v), ns->damping_step);
 }
 
 /* ---- the check around a step ---- */
@@ -220,6 +230,6 @@ bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt)
              "ns_channel: dt = %g at t = %g is over the limit %g (convective %g, with the speed of "
              "walls and inflows; viscous %g); use a step below it",
              dt, ns->time, limit, 1.0 / sqrt(convective(ns)),
-             fmin(real_limit(ns) / ns->viscous_rate, ns->damping_step));
+             fmin(1.0 / diffusive(ns), ns->damping_step));
   return BW_OK;
 }

@@ -81,7 +81,9 @@ static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
   if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, bw_ns__old[r] * dt);
   lap(&mark, &ns->cost.boundary);
   /* u is u* afterwards, but for what is implicit and for faces on sides. */
+  bw_ns__eddy_force(ns);
   bw_ns__momentum_sweep(s, r);
+  bw_ns__eddy_add(ns, r, dt);
   /* The solve in y takes the new v on the sides as its boundary values. */
   if (viscous == BW_VISCOUS_IMPLICIT_Y) {
     bw_ns__faces(ns);
@@ -163,6 +165,8 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   velocity_halos(ns);
   pressure_halos(ns);
   lap(&mark, &ns->cost.halo);
+  bw_ns__eddy_update(ns);
+  lap(&mark, &ns->cost.momentum);
   ns->cost.substeps++;
   /* The step ends with the third sub-step: its balance, mean gradient and time. */
   if (r < BW_NS_STAGES - 1) return;
@@ -198,6 +202,7 @@ void bw_ns_channel_refresh(bw_ns_channel *ns)
   all_halos(ns);
   /* What a step would have left behind is found anew, to the same bits. */
   ns->courant = bw_ns__courant(ns->g, &ns->metrics, ns->u);
+  bw_ns__eddy_update(ns);
   ns->courant_known = false;
   ns->box.known = false;
 }

@@ -32,10 +32,13 @@ void box_describe(box_run *b)
   const bw_grid_view *g = bw_grid_look(b->grid);
   const double cells = (double)g->n[0] * g->n[1] * g->n[2];
   const double limit = bw_ns_channel_dt_max(b->fluid);
-  /* The step at the start; later ones follow the field. */
-  const double dt =
-      isnan(b->config->time.step) ? b->config->time.limit_share * limit : b->config->time.step;
-  const double steps = b->config->time.end / dt;
+  /* The step at the start, at the speed of walls and inflows; later ones follow the field. */
+  const box_time *time = &b->config->time;
+  const double longest = isnan(time->step) ? time->limit_share * limit : time->step;
+  /* Each interval between rows takes whole steps. */
+  const double each = ceil(b->config->output.sample_every / longest * (1.0 - 1e-12));
+  const double dt = b->config->output.sample_every / each;
+  const double steps = each * (double)box_intervals(b->config);
   bw_log_info(log, "%d x %d x %d cells of %g x %g x %g, %s", g->n[0], g->n[1], g->n[2],
               g->spacing[0], g->spacing[1], g->spacing[2],
               g->n[2] == 1 ? "two-dimensional" : "three-dimensional");
@@ -47,8 +50,9 @@ void box_describe(box_run *b)
   bw_log_info(log, "pressure: no side fixes its level; its mean over the box is kept at 0");
   /* 30 ns per cell and sub-step: one core of a server, in between 2D and 3D */
   bw_log_info(log,
-              "largest stable step at the start %.3g, this run's %.3g: about %.0f steps, %.2g s on "
-              "one core\nfields %.1f MB on this rank",
+              "largest stable step at the start, walls and inflows counted, %.3g, this run's %.3g: "
+              "about %.0f steps, more where the flow gets faster, %.2g s on one core\n"
+              "fields %.1f MB on this rank",
               limit, dt, steps, steps * cells * 3.0 * 30e-9,
               (double)bw_ns_channel_cost(b->fluid).bytes / 1e6);
 }

@@ -60,8 +60,8 @@ bw_status box_start_field(box_run *b)
   return bw_ns_channel_set_velocity(b->fluid, start_velocity, &start, 0.0);
 }
 
-/* As few steps as the limit allows, of equal length over what is left of the interval. At least
- * one: at rest an implicit viscous term sets no limit. */
+/* As few steps as the limit allows, of equal length over what is left of the interval; at least
+ * one, as the interval may be short. */
 static bw_status steps_left(const box_run *b, double span, int64_t *left)
 {
   const box_time *time = &b->config->time;

@@ -15,6 +15,7 @@ typedef struct {
   double reynolds;     /* U_b h/nu [-] */
   double perturbation; /* of the first velocity [U_b]                default 0.2 */
   int viscous;         /* bw_ns_viscous                              default explicit */
+  int eddy;            /* bw_ns_eddy                                 default none */
 } channel_fluid;
 typedef struct {
   double spin_up;       /* before the statistics [h/U_b] */

@@ -15,9 +15,12 @@ static const bw_config_field domain_fields[] = {
     BW_CONFIG_END};
 static const bw_config_word viscous_words[] = {
     {"explicit", BW_VISCOUS_EXPLICIT, "third order in time"},
-    {"implicit_y", BW_VISCOUS_IMPLICIT_Y,
-     "Crank-Nicolson in y: thin cells at the walls cost no steps"},
-    {"implicit", BW_VISCOUS_IMPLICIT, "Crank-Nicolson in all directions"},
+    {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "implicit in y: thin cells at the walls cost no steps"},
+    {"implicit", BW_VISCOUS_IMPLICIT, "implicit in all directions"},
+    {0}};
+static const bw_config_word eddy_words[] = {
+    {"none", BW_EDDY_NONE, "direct numerical simulation"},
+    {"wale", BW_EDDY_WALE, "WALE, C = 0.325, for cells too coarse for the eddies"},
     {0}};
 static const bw_config_field fluid_fields[] = {
     V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE(0), "",
@@ -26,6 +29,8 @@ static const bw_config_field fluid_fields[] = {
       "size of the rolls, waves and noise on the laminar profile at the start"),
     BW_CONFIG_WORD(channel_fluid, viscous, BW_OPTIONAL, viscous_words,
                    "how the viscous term advances in time"),
+    BW_CONFIG_WORD(channel_fluid, eddy, BW_OPTIONAL, eddy_words,
+                   "model of the eddies that no cell resolves"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
     V(channel_time, spin_up, BW_REQUIRED, BW_AT_LEAST(0), "h/U_b",
@@ -61,6 +66,7 @@ channel_config channel_config_of(const channel_case *c)
   channel_config q = {.stretch = c->domain.stretch,
                       .faces = c->domain.faces[0] != 0 ? c->domain.faces : NULL,
                       .viscous = c->fluid.viscous,
+                      .eddy = c->fluid.eddy,
                       .reynolds = c->fluid.reynolds,
                       .perturbation = c->fluid.perturbation,
                       .interval = c->time.interval,

@@ -22,6 +22,7 @@ typedef struct {
   double stretch;       /* of y by tanh; 0: uniform */
   const char *faces;    /* file with the faces in y; NULL: none */
   int viscous;          /* bw_ns_viscous */
+  int eddy;             /* bw_ns_eddy */
   double reynolds;      /* U_b h/nu */
   double perturbation;  /* of the laminar profile that the run starts from [U_b] */
   double interval;      /* between samples [h/U_b] */
@@ -157,6 +158,7 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
     c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
   c.nu = 1.0 / config->reynolds;
   c.viscous = (bw_ns_viscous)config->viscous;
+  c.eddy = (bw_ns_eddy)config->eddy;
   /* U_b = 1 by definition: the gradient follows, and with it Re_tau. */
   c.forcing = BW_FORCING_FLOW_RATE;
   c.forcing_value = 1.0;

@@ -80,7 +80,8 @@ static const column face_columns[] = {{"V_plus", BW_NS_PROFILE_V, 1},
                                       {"omega_x_rms_plus", BW_NS_PROFILE_OX_RMS, -2},
                                       {"omega_z_rms_plus", BW_NS_PROFILE_OZ_RMS, -2},
                                       {"v_skewness", BW_NS_PROFILE_V_SKEWNESS, 0},
-                                      {"v_flatness", BW_NS_PROFILE_V_FLATNESS, 0}};
+                                      {"v_flatness", BW_NS_PROFILE_V_FLATNESS, 0},
+                                      {"eddy_stress_plus", BW_NS_PROFILE_EDDY, 2}};
 
 /* What makes a column dimensionless. */
 static double unit_of(const column *c, double u_tau, double re)

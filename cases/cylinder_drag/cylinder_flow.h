@@ -23,14 +23,15 @@ typedef struct {
                                   memory (bw_ibm_mdf.h), 0: none           default 0.2 */
   int kernel;                  /* of the markers, bw_kernel_delta_id       default roma3 */
   double probe_length;         /* in spacings [-]                          default 2 */
-  double dt_fraction;          /* of the largest stable step [-]           default 0.5 */
+  double dt_fraction;          /* of the largest stable step of the flow
+                                  as it is [-]                             default 0.5 */
 } cylinder_config;
 
 /* Drag coefficients by every route [-]. */
 typedef struct {
   double reaction;       /* from the force of the markers (ERRATA 18) */
   double probe[2];       /* linear and quadratic profile (bw_probe_profile) */
-  double control_volume; /* momentum balance of the box of 2 d around it */
+  double control_volume; /* momentum balance of the box of 2 d around it, cut at the walls */
   double slip;           /* rms velocity left at the markers after the last step [U_b] */
 } cylinder_drag;
 
@@ -107,11 +108,13 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   BW_TRY(bw_ns_channel_create(f->flow.grid, &fluid, &f->flow.fluid));
   BW_TRY(bw_ns_channel_set_velocity(f->flow.fluid, cylinder_poiseuille, &height, 0.0));
 
-  /* Momentum is balanced over a box of two diameters about the cylinder. */
+  /* Momentum is balanced over a box of two diameters about the cylinder, which ends at the walls
+   * where they are nearer: their friction is a flux through its faces. */
   const int size = c->cells_per_diameter;
   const int x = (int)lround(c->upstream * size), y = grid.n[1] / 2;
-  return bw_ns_channel_watch_box(f->flow.fluid, (int[3]){x - size, y - size, 0},
-                                 (int[3]){x + size, y + size, 1});
+  const int low = y > size ? y - size : 0, high = y + size < grid.n[1] ? y + size : grid.n[1];
+  return bw_ns_channel_watch_box(f->flow.fluid, (int[3]){x - size, low, 0},
+                                 (int[3]){x + size, high, 1});
 }
 
 /* Points about one spacing apart on a circle of radius R about the cylinder's centre. */
@@ -162,6 +165,18 @@ static inline bw_status cylinder_make_probes(const bw_comm *comm, cylinder_flow 
   return BW_OK;
 }
 
+/* The longest step of the flow as it is [d/U_b]. At the start it does not feel the cylinder yet,
+ * past which it will be twice as fast as in the middle of the channel (potential flow, 3 U_b), or
+ * as fast as the gaps at the walls make it (plane flow in them, 1.5 U_b/(1 - blockage)).
+ * Collective. */
+static inline double cylinder_longest_step(cylinder_flow *f)
+{
+  const double past = fmax(3.0, 1.5 / (1.0 - f->config.blockage)) / f->h;
+  const double limit = bw_ns_channel_dt_max(f->flow.fluid);
+  const bool start = bw_ns_channel_time(f->flow.fluid) == 0.0;
+  return f->config.dt_fraction * (start ? fmin(limit, sqrt(3.0) / past) : limit);
+}
+
 /* Everything, at t = 0 with Poiseuille flow. Destroy also after a failure. Collective. */
 static inline bw_status cylinder_create(const bw_comm *comm, const cylinder_config *config,
                                         cylinder_flow *f)
@@ -169,7 +184,7 @@ static inline bw_status cylinder_create(const bw_comm *comm, const cylinder_conf
   *f = (cylinder_flow){.config = *config};
   BW_TRY(cylinder_make_fluid(comm, f));
   BW_TRY(cylinder_make_body(comm, f));
-  BW_TRY(body_flow_ready(&f->flow, config->dt_fraction * bw_ns_channel_dt_max(f->flow.fluid)));
+  BW_TRY(body_flow_ready(&f->flow, cylinder_longest_step(f)));
   return cylinder_make_probes(comm, f);
 }
 
@@ -194,12 +209,21 @@ static inline cylinder_drag cylinder_measure(cylinder_flow *f)
   return drag;
 }
 
-/* Steps until `interval` later, at least one. Collective. */
+/* The next of as few equal steps as lead to `end`; `left`: how many are to follow. Collective. */
+static inline bw_status cylinder_step(cylinder_flow *f, double end, double *left)
+{
+  const double span = end - bw_ns_channel_time(f->flow.fluid);
+  const double steps = fmax(1.0, ceil(span / cylinder_longest_step(f) - 1e-9));
+  f->flow.dt = span / steps;
+  *left = steps - 1.0;
+  return body_flow_step(&f->flow);
+}
+
+/* Steps until `interval` later. Collective. */
 static inline bw_status cylinder_advance(cylinder_flow *f, double interval)
 {
-  const double end = bw_ns_channel_time(f->flow.fluid) + interval - 0.5 * f->flow.dt;
-  do {
-    BW_TRY(body_flow_step(&f->flow));
-  } while (bw_ns_channel_time(f->flow.fluid) < end);
+  const double end = bw_ns_channel_time(f->flow.fluid) + interval;
+  for (double left = 1.0; left > 0.0;)
+    BW_TRY(cylinder_step(f, end, &left));
   return BW_OK;
 }

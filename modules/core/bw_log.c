@@ -6,12 +6,14 @@
 #include <stdarg.h>
 #include <string.h>
 
-enum { LINE = 512 };
+enum { LINE = 512, KEPT = 20 };
 
 struct bw_log {
   bw_log_config config;
   bool speaks;    /* rank 0 */
   bool line_open; /* a progress line without its newline is on the terminal */
+  int n_kept;
+  char *kept[KEPT]; /* warnings */
 };
 
 struct bw_progress {
@@ -59,6 +61,8 @@ void bw_log_destroy(bw_log **log)
   if (*log == NULL) return;
   clear_line(*log);
   fflush((*log)->config.out);
+  for (int q = 0; q < (*log)->n_kept; q++)
+    bw_release(&(*log)->kept[q]);
   bw_release(log);
 }
 
@@ -75,6 +79,19 @@ void bw_log_info(bw_log *log, const char *fmt, ...)
   fflush(log->config.out);
 }
 
+/* The text of a warning; NULL without memory, which it is not worth to end a run for. */
+static char *warning_text(const char *fmt, va_list args)
+{
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  if (out == NULL) return NULL;
+  vfprintf(out, fmt, args);
+  if (fclose(out) == 0) return text;
+  bw_release(&text);
+  return NULL;
+}
+
 void bw_log_warn(bw_log *log, const char *fmt, ...)
 {
   if (log == NULL || !log->speaks) return;
@@ -82,12 +99,21 @@ void bw_log_warn(bw_log *log, const char *fmt, ...)
   clear_line(log);
   /* The two streams may end on one terminal: in order of time. */
   fflush(log->config.out);
-  fputs("breakwater: warning: ", log->config.err);
   va_start(args, fmt);
-  vfprintf(log->config.err, fmt, args);
+  char *text = warning_text(fmt, args);
   va_end(args);
-  fputc('\n', log->config.err);
+  fprintf(log->config.err, "breakwater: warning: %s\n", text != NULL ? text : fmt);
   fflush(log->config.err);
+  /* What a user may have missed on the screen stands in run.yaml. */
+  if (text != NULL && log->n_kept < KEPT)
+    log->kept[log->n_kept++] = text;
+  else
+    bw_release(&text);
+}
+
+const char *bw_log_warning(const bw_log *log, int q)
+{
+  return log != NULL && 0 <= q && q < log->n_kept ? log->kept[q] : NULL;
 }
 
 static double now_of(const bw_log *log)

@@ -38,8 +38,12 @@ void bw_log_destroy(bw_log **log);
 /* One or more lines on rank 0, in printf's format; a newline is added at the end. Local. */
 void bw_log_info(bw_log *log, const char *fmt, ...) BW_PRINTF(2, 3);
 
-/* The same on stderr with "warning: " in front, also when quiet. Local. */
+/* The same on stderr with "warning: " in front, also when quiet; kept for run.yaml. Local. */
 void bw_log_warn(bw_log *log, const char *fmt, ...) BW_PRINTF(2, 3);
+
+/* The text of warning q = 0, 1, .. of the log; NULL beyond the last one that was kept (the first
+ * 20), on other ranks than 0, and where log is NULL. Borrowed until destroy. Local. */
+const char *bw_log_warning(const bw_log *log, int q);
 
 /* The one line that says how far a run is. */
 typedef struct bw_progress bw_progress;

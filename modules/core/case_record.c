@@ -78,6 +78,13 @@ static bw_status append_end(const bw_case *run, const char *path, bw_status stat
     bw_core__put_quoted(out, bw_last_message());
   }
   fputc('\n', out);
+  /* What the run has warned of, too. */
+  if (bw_log_warning(run->log, 0) != NULL) fputs("  warnings:\n", out);
+  for (int q = 0; bw_log_warning(run->log, q) != NULL; q++) {
+    fputs("    - ", out);
+    bw_core__put_quoted(out, bw_log_warning(run->log, q));
+    fputc('\n', out);
+  }
   const bool ok = !ferror(out);
   BW_REQUIRE(fclose(out) == 0 && ok, BW_EIO, "cannot write %s: %s", path, strerror(errno));
   return BW_OK;

@@ -39,27 +39,6 @@ static bw_status metrics_create(bw_ns_channel *ns)
   return BW_OK;
 }
 
-/* Largest eigenvalue of the explicit part of nu lap, by Gershgorin: 4 nu sum 1/dx_i^2 where
- * uniform, in y the largest row sum of u's and v's second difference. */
-static double viscous_rate(const bw_ns_channel *ns)
-{
-  const bw_grid_view *g = ns->g;
-  double y = 0.0, rate = 4.0 / (g->spacing[0] * g->spacing[0]);
-  /* Row sums of |D_yy|, first of u and w (in cells), then of v (on faces). */
-  for (int j = 1; j <= g->m[1]; j++) {
-    const double *f = ns->metrics.dyf, *c = ns->metrics.dyc;
-    y = fmax(y, 2.0 * (1.0 / c[j] + 1.0 / c[j - 1]) / f[j]);
-    y = fmax(y, 2.0 * (1.0 / f[j] + 1.0 / f[j + 1]) / c[j]);
-  }
-  /* All ranks have to choose the same step: the thinnest cells of all of them count. */
-  bw_comm_max(ns->comm, 1, &y);
-  /* What is treated implicitly sets no limit, so only explicit directions are added up. */
-  if (ns->config.viscous == BW_VISCOUS_IMPLICIT) return 0.0;
-  if (ns->config.viscous == BW_VISCOUS_EXPLICIT) rate += y;
-  if (ns->components == 3) rate += 4.0 / (g->spacing[2] * g->spacing[2]);
-  return ns->config.nu * rate;
-}
-
 static bw_status poisson_create(bw_ns_channel *ns)
 {
   bw_poisson_side kind[3];
@@ -122,6 +101,7 @@ static bw_status local_create(bw_ns_channel *ns)
 {
   BW_TRY(metrics_create(ns));
   BW_TRY(fields_create(ns));
+  BW_TRY(bw_ns__eddy_create(ns));
   return bw_ns__planes_create(ns);
 }
 
@@ -143,7 +123,7 @@ bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config
   BW_THEN(st, bw_ns__inflow_create(ns)); /* before the pressure's solver: its own is gone by then */
   /* The step's limit needs the heights, which are known now on every rank. */
   if (st == BW_OK) {
-    ns->viscous_rate = viscous_rate(ns);
+    bw_ns__limits_create(ns);
     st = poisson_create(ns);
   }
   BW_THEN(st, lines_create(ns));
@@ -162,6 +142,7 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
   /* Every member may still be NULL: create calls this for an object that is half built. */
   bw_poisson_destroy(&ns->poisson);
   bw_ns__planes_destroy(ns);
+  bw_ns__eddy_destroy(ns);
   for (int c = 0; c < 3; c++) {
     bw_release(&ns->u[c]);
     bw_release(&ns->R[c]);
@@ -185,6 +166,11 @@ bw_real *const *bw_ns_channel_velocity(bw_ns_channel *ns)
 bw_real *bw_ns_channel_pressure(bw_ns_channel *ns)
 {
   return ns->p;
+}
+
+const bw_real *bw_ns_channel_eddy_viscosity(const bw_ns_channel *ns)
+{
+  return ns->eddy.nu;
 }
 
 bw_grid *bw_ns_channel_grid(bw_ns_channel *ns)

@@ -62,13 +62,22 @@ typedef enum {
   BW_FORCING_GRADIENT   /* a given uniform gradient */
 } bw_ns_forcing;
 
-/* How the viscous term advances in time; implicit parts by Crank-Nicolson in each sub-step, which
- * is second order in time. */
+/* How the viscous term advances in time. Implicit parts weigh the old velocity of a sub-step with
+ * 17/60, 0, 1/6 of dt and the new one with 1/4, 2/15, 1/6: second order in time, and what is stiff
+ * is gone within a step (ERRATA 38). */
 typedef enum {
   BW_VISCOUS_EXPLICIT,   /* all by RK3: third order, the step limited by dx^2/nu */
   BW_VISCOUS_IMPLICIT_Y, /* implicit in y: thin cells at walls do not limit the step */
-  BW_VISCOUS_IMPLICIT    /* implicit in all directions: only convection limits the step */
+  BW_VISCOUS_IMPLICIT    /* implicit in all directions: convection limits the step, and where the
+                            Reynolds number of the box is of order 1 that short waves decay */
 } bw_ns_viscous;
+
+/* A model of eddies that no cell resolves. */
+typedef enum {
+  BW_EDDY_NONE, /* every eddy is resolved: direct numerical simulation */
+  BW_EDDY_WALE  /* eddy viscosity of the squared velocity gradient (Nicoud & Ducros 1999): zero at
+                   walls, as y^3, and in plain shear. Explicit, whatever `viscous` is. 3D only */
+} bw_ns_eddy;
 
 /* Everything that a flow is. */
 typedef struct {
@@ -77,6 +86,8 @@ typedef struct {
   bw_ns_forcing forcing; /* in x                                    default none */
   double forcing_value;  /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
   bw_ns_viscous viscous; /*                                         default explicit */
+  bw_ns_eddy eddy;       /*                                         default none */
+  double eddy_constant;  /* C of WALE, nu_t = (C Delta)^2 ... [-]   default 0.325 */
 } bw_ns_channel_config;
 
 /* Walls at rest on all sides, no forcing, nu NaN. Pure. */
@@ -98,12 +109,19 @@ void bw_ns_channel_destroy(bw_ns_channel **ns);
 bw_status bw_ns_channel_set_velocity(bw_ns_channel *ns, bw_ns_velocity_fn function, void *context,
                                      double t) BW_MUST_CHECK;
 
-/* Largest stable dt of the present field [T]: with c = max sum_i |u_i|/dx_i and
- * a = 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term (without z in 2D),
- *   dt = 1 / sqrt((c/sqrt(3))^2 + (a/2.5127)^2),
- * an ellipse inside the stability region of this RK3; with implicit y 2.41 in place of 2.5127
- * (ERRATA 37). INFINITY when nothing limits it: fluid at rest, all implicit. ERRATA 22 has the
- * viscous part with 1.65 instead of 2.5127. Collective. */
+/* Largest dt that the present field allows [T]:
+ *   dt = 1 / sqrt((c/sqrt(3))^2 + g/(sqrt(3) dx) + (a/2.5127)^2),
+ * an ellipse inside the stability region of this RK3, without z in 2D.
+ * c: the largest rate of convection, of all cells half of sum_i (|u_i below| + |u_i above|)/dx_i,
+ *    the same whichever way the stream goes; of all walls and inflows sum_i |u_i|/dx_i, and of a
+ *    given flow rate U/dx, as the fluid may be at rest yet.
+ * g: the given gradient, which may add g dt to the velocity.
+ * a: 4 nu sum_i 1/dx_i^2 over the directions with an explicit viscous term, and over all of them
+ *    with an eddy viscosity; with something implicit 2.47 in place of 2.5127 (ERRATA 37; ERRATA 22
+ *    has the viscous part with 1.65).
+ * With all of the viscous term implicit a = 0, and dt ends where the waves that are short in two or
+ * three directions would no longer decay as fast as the one that fills the box (some L dx/nu).
+ * Collective. */
 double bw_ns_channel_dt_max(bw_ns_channel *ns);
 
 /* One step of dt: three times predict and project. BW_ECFL when dt is over the limit,
@@ -164,13 +182,17 @@ typedef struct {
   double stress[3]; /* mean of nu du_c/dn of the tangential components, n into the fluid [L^2/T^2]:
                        force of the fluid on a wall per area and density; [d] is 0 */
 } bw_ns_side_report;
+/* The eddy viscosity of the present field at the centres, with halos (layout of bw_grid.h)
+ * [L^2/T]; borrowed; NULL without a model. Local. */
+const bw_real *bw_ns_channel_eddy_viscosity(const bw_ns_channel *ns);
+
 /* Flux and stress of side s (0 lower, 1 upper) of direction d. Collective. */
 bw_ns_side_report bw_ns_channel_side(bw_ns_channel *ns, int d, int s);
 
 /* Watch the momentum of the cells lo[d] < i <= hi[d] (global; per velocity component those of
  * its points with these indices). Before a step; replaces an earlier box; costs the faces of the
- * box per sub-step and its volume per step. BW_EINPUT when the box is empty or leaves the grid, or
- * the viscous term is implicit in all directions. Collective. */
+ * box per sub-step and its volume per step. BW_EINPUT when the box is empty or leaves the grid, the
+ * viscous term is implicit in all directions, or there is an eddy viscosity. Collective. */
 bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3],
                                   const int hi[3]) BW_MUST_CHECK;
 

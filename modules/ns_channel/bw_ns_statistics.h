@@ -5,7 +5,8 @@
  * j = 0..n1 ("faces"); products of two components and vorticities on the edge that both touch,
  * so that u v is the scheme's own momentum flux and
  *   nu dU/dy - <u'v'> = tau_w (1 - 2 y/H)
- * holds to round-off for a flow that is steady in the mean, whatever the grid. p is taken
+ * holds to round-off for a flow that is steady in the mean, whatever the grid, with the stress of
+ * an eddy viscosity added where there is one (the budget of k knows none of it). p is taken
  * relative to its mean over the box at that instant (its constant means nothing).
  * Confidence: samples go to at most BW_NS_BATCHES batches in time; when all are full, neighbours
  * are joined. Batch means, 95 %: Student's t times their standard error; valid when a batch is
@@ -58,6 +59,7 @@ typedef enum {
   BW_NS_MOMENT_VUU,            /* <v u u>, from the flux u v and the mean of u across it */
   BW_NS_MOMENT_VWW,            /* <v w w>, likewise */
   BW_NS_MOMENT_PV,             /* <p v> */
+  BW_NS_MOMENT_EDDY,           /* <nu_t (u_y + v_x)>, stress of an eddy viscosity; 0 without one */
   BW_NS_MOMENTS                /* how many there are */
 } bw_ns_moment;
 
@@ -92,7 +94,8 @@ typedef enum {
   BW_NS_PROFILE_V_SKEWNESS,          /* of v' [-] */
   BW_NS_PROFILE_V_FLATNESS,          /* of v' [-] */
   BW_NS_PROFILE_SHEAR,               /* nu dU/dy [L^2/T^2]; row 0: tau_w/rho of the lower wall */
-  BW_NS_PROFILE_TOTAL,               /* nu dU/dy - <u'v'> [L^2/T^2] */
+  BW_NS_PROFILE_EDDY,                /* <nu_t (u_y + v_x)> [L^2/T^2] */
+  BW_NS_PROFILE_TOTAL,               /* nu dU/dy - <u'v'> + <nu_t (u_y + v_x)> [L^2/T^2] */
   BW_NS_PROFILES                     /* how many there are */
 } bw_ns_profile_kind;
 

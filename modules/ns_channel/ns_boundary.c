@@ -141,6 +141,16 @@ void bw_ns__ghosts_velocity(bw_ns_channel *ns)
     }
 }
 
+void bw_ns__ghosts_eddy(bw_ns_channel *ns, bw_real *nu)
+{
+  static const ghost_rule wall = {-1, 0, false}, mirror = {1, 0, false};
+  for (int d = 0; d < ns->components; d++)
+    for (int s = 0; s < 2; s++)
+      if (ns->plane[d][s].here)
+        ghost_layers(ns, d, s, ns->config.side[d][s].kind == BW_SIDE_WALL ? &wall : &mirror, false,
+                     NULL, 0, nu);
+}
+
 void bw_ns__ghosts_scalar(bw_ns_channel *ns, bw_real *p)
 {
   static const ghost_rule mirror = {1, 0, false};

@@ -191,6 +191,9 @@ bw_status bw_ns_channel_watch_box(bw_ns_channel *ns, const int lo[3], const int 
   BW_REQUIRE(ns->config.viscous != BW_VISCOUS_IMPLICIT, BW_EINPUT,
              "ns_channel: the fluxes of a watched box are not known where the viscous term is "
              "implicit in all directions; use explicit or implicit_y");
+  BW_REQUIRE(ns->config.eddy == BW_EDDY_NONE, BW_EINPUT,
+             "ns_channel: a watched box knows no fluxes of an eddy viscosity; leave one of them "
+             "out");
   for (int d = 0; d < 3; d++)
     BW_REQUIRE(0 <= lo[d] && lo[d] < hi[d] && hi[d] <= ns->g->n[d], BW_EINPUT,
                "ns_channel: watched cells %d < i <= %d in direction %d are not a part of 1..%d",

@@ -33,8 +33,8 @@ typedef struct {
   bw_real *dy[3];        /* implicit in y: like fy, the difference quotients */
   int tile;              /* rows in y per tile */
   bw_real nu;            /* 0 where all of the viscous term is implicit */
-  bw_ns_viscous viscous; /* implicit in y: half of that here with weight kappa */
-  bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = gamma dt nu/2 */
+  bw_ns_viscous viscous; /* implicit in y: a part of that here with weight kappa */
+  bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = old dt nu */
   bw_real source;                             /* dt gamma g */
 } bw_ns_sweep;
 
@@ -64,6 +64,12 @@ typedef struct {
   double force[3];    /* of the last step, this rank's share */
 } bw_ns_box;
 
+/* Eddies that no cell resolves (ns_eddy.c); all NULL without a model. */
+typedef struct {
+  bw_real *nu, *force[3]; /* at centres; on faces, of the present sub-step */
+  double rate;            /* this rank's largest 4 nu_t sum 1/dx_i^2 [1/T] */
+} bw_ns_eddies;
+
 struct bw_ns_channel {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
@@ -81,20 +87,24 @@ struct bw_ns_channel {
   bw_real *increment[3]; /* implicit: u* - u; the first is phi, free until the projection */
   bw_real *lanes;        /* (n0, BW_NS_LANES) */
   double time;
-  double gradient;    /* flow rate: gradient the next predict starts from [L/T^2] */
-  double applied;     /* mean gradient of the last finished step */
-  double applying;    /* the same of the step in progress */
-  bool impulsive;     /* velocity was just set: its bulk need not be the wanted one */
-  double courant;     /* this rank's max sum |u_i|/dx_i [1/T]; NaN when not finite */
+  double gradient; /* flow rate: gradient the next predict starts from [L/T^2] */
+  double applied;  /* mean gradient of the last finished step */
+  double applying; /* the same of the step in progress */
+  bool impulsive;  /* velocity was just set: its bulk need not be the wanted one */
+  bw_ns_eddies eddy;
+  double courant;     /* this rank's largest rate of convection [1/T]; NaN when not finite */
   bool courant_known; /* courant_all is that of the present field */
-  double courant_all;
-  double viscous_rate; /* largest eigenvalue of the explicit viscous operator [1/T] */
+  double courant_all, eddy_all; /* of all ranks */
+  double viscous_rate;          /* largest eigenvalue of the explicit viscous operator [1/T] */
+  double damping_step; /* all implicit: longest step that damps short waves [T], else INFINITY */
   bw_ns_box box;
   bw_ns_cost cost;
 };
 
 extern const double bw_ns__alpha[BW_NS_STAGES], bw_ns__beta[BW_NS_STAGES],
     bw_ns__gamma[BW_NS_STAGES], bw_ns__end[BW_NS_STAGES]; /* end: time after the sub-step / dt */
+/* Implicit terms: weights of the old and the new velocity in a sub-step; their sum is gamma. */
+extern const double bw_ns__old[BW_NS_STAGES], bw_ns__new[BW_NS_STAGES];
 
 /* ns_config.c */
 bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config *c);
@@ -111,11 +121,15 @@ void bw_ns__momentum_place(bw_ns_sweep *s, bw_real *scratch);
 /* f <- scale div u; returns this rank's sum u dy (per cell of dx = dz = 1) when asked. */
 double bw_ns__divergence(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
                          double scale, bool sum, bw_real *f);
-/* u <- u - scale grad phi (+ shift in x), p <- p + phi; with `courant` the largest
- * sum |u_i|/dx_i, NaN when something is not finite (else 0). */
+/* u <- u - scale grad phi (+ shift in x), p <- p + phi; with `courant` (and the faces below the
+ * first cells) the largest half of sum (|u_i below| + |u_i above|)/dx_i, NaN when something is not
+ * finite (else 0). */
 double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
                       bw_real *p, const bw_real *phi, double scale, double shift, bool courant);
 double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3]);
+
+/* ns_limit.c: what is known of the step before there is a field. Collective. */
+void bw_ns__limits_create(bw_ns_channel *ns);
 
 /* ns_boundary.c */
 bw_status bw_ns__planes_create(bw_ns_channel *ns);
@@ -123,6 +137,7 @@ void bw_ns__planes_destroy(bw_ns_channel *ns);
 void bw_ns__faces(bw_ns_channel *ns);           /* planes -> normal velocity on the faces. Local. */
 void bw_ns__ghosts_velocity(bw_ns_channel *ns); /* beyond physical boundaries. Local. */
 void bw_ns__ghosts_scalar(bw_ns_channel *ns, bw_real *p);
+void bw_ns__ghosts_eddy(bw_ns_channel *ns, bw_real *nu); /* odd at walls: zero there */
 bw_ns_walk bw_ns__walk(const bw_ns_channel *ns, int d, int s, int index); /* layer `index` of d */
 int bw_ns__face_index(const bw_ns_channel *ns, int d, int s); /* of the side's own face */
 
@@ -169,9 +184,17 @@ void bw_ns__lines_solve_divided(const bw_ns_channel *ns, const bw_ns_lines *q, b
 /* Ghost of a component along side (d, s) = sign u + G (ns_boundary.c). */
 double bw_ns__ghost_sign(const bw_ns_channel *ns, int d, int s);
 
-/* ns_implicit.c: u <- (1 - kappa D_yy)^-1 u. Collective. */
-void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt);
+/* ns_eddy.c. All do nothing without a model; collective: update. */
+bw_status bw_ns__eddy_create(bw_ns_channel *ns);
+void bw_ns__eddy_destroy(bw_ns_channel *ns);
+void bw_ns__eddy_update(bw_ns_channel *ns);                     /* nu_t of the present velocity */
+void bw_ns__eddy_force(bw_ns_channel *ns);                      /* before the sweep changes u */
+void bw_ns__eddy_add(bw_ns_channel *ns, int r, double dt);      /* ... and after it */
+void bw_ns__eddy_stress(const bw_ns_channel *ns, double sum[]); /* over x, z: [0..n1], at faces */
 
-/* ns_factored.c: u <- u*, from the sweep's change in `increment`; sides have mean values until
- * the faces are set. Collective. */
-void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt);
+/* ns_implicit.c: u <- (1 - kappa D_yy)^-1 u. Collective. */
+void bw_ns__implicit_solve(bw_ns_channel *ns, double kappa);
+
+/* ns_factored.c: u <- u* of sub-step r, from the sweep's change in `increment`; sides have mean
+ * values until the faces are set. Collective. */
+void bw_ns__factored_solve(bw_ns_channel *ns, int r, double dt);

@@ -9,7 +9,7 @@ static const char *const end_name[] = {"lower", "upper"};
 bw_ns_channel_config bw_ns_channel_config_default(void)
 {
   bw_ns_channel_config c = {
-      .nu = (double)NAN, .forcing = BW_FORCING_NONE, .viscous = BW_VISCOUS_EXPLICIT};
+      .nu = (double)NAN, .viscous = BW_VISCOUS_EXPLICIT, .eddy_constant = 0.325};
   for (int d = 0; d < 3; d++)
     for (int s = 0; s < 2; s++)
       c.side[d][s] = (bw_ns_side){
@@ -126,6 +126,13 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
 {
   BW_REQUIRE(isfinite(c->nu) && c->nu > 0.0, BW_EINPUT,
              "ns_channel: nu is %g; give a kinematic viscosity > 0", c->nu);
+  /* WALE looks at the gradient of three components; turbulence in a plane is none. */
+  BW_REQUIRE(c->eddy == BW_EDDY_NONE || g->n[2] > 1, BW_EINPUT,
+             "ns_channel: an eddy viscosity in two dimensions, where there is no turbulence to "
+             "model; give more than one cell in z, or leave it out");
+  BW_REQUIRE(isfinite(c->eddy_constant) && c->eddy_constant >= 0.0, BW_EINPUT,
+             "ns_channel: eddy_constant is %g; give a number >= 0, such as 0.325",
+             c->eddy_constant);
   /* In two dimensions nothing is asked of z. */
   for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++) {
     BW_REQUIRE(g->n[d] >= 2, BW_EINPUT, "ns_channel: %d cell in %s; at least 2 are needed", g->n[d],

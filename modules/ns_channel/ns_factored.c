@@ -1,14 +1,16 @@
-/* ns_factored.c -- diffusion by Crank-Nicolson in all directions, in each sub-step, factored into
- * lines. With kappa = gamma dt nu/2, L = D_xx + D_yy + D_zz and w the sweep's change of u (no
- * viscous term in it), the increment d = u* - u of
- *   u* - u = w + kappa L (u + u*)
+/* ns_factored.c -- diffusion, implicit in all directions in each sub-step, factored into lines.
+ * With the weights old_r + new_r = gamma_r of ERRATA 38, kappa = new_r dt nu,
+ * L = D_xx + D_yy + D_zz and w the sweep's change of u (no viscous term in it), the increment
+ * d = u* - u of
+ *   u* - u = w + dt nu L (old_r u + new_r u*)
  * is found from
- *   (1 - kappa D_yy) (1 - kappa D_xx) (1 - kappa D_zz) d = w + 2 kappa L u,
- * which differs by kappa^2 (D_xx D_yy + ..) d = O(dt^3): second order in time, like
- * Crank-Nicolson. Where u is steady d = 0: the steady states are those of the explicit scheme.
+ *   (1 - kappa D_yy) (1 - kappa D_xx) (1 - kappa D_zz) d = w + gamma_r dt nu L u,
+ * which differs by kappa^2 (D_xx D_yy + ..) d = O(dt^3): second order in time. Where u is steady
+ * d = 0: the steady states are those of the explicit scheme.
  * Stability: with a, b, c = kappa |eigenvalue| of the three, diffusion alone multiplies a mode by
- *   1 - 2 (a + b + c)/((1 + a) (1 + b) (1 + c)),
- * within (-1, 1] for any step.
+ *   1 - gamma_r/new_r (a + b + c)/((1 + a) (1 + b) (1 + c)),
+ * above -17/15 in the first sub-step and above -1 in the others. What is stiff in one direction is
+ * gone after a step; of what is stiff in several, more stays the longer the step: ns_limit.c.
  *
  * Why not a Helmholtz solve by transforms: three more Poisson solves per sub-step, transforms for
  * values on faces beside those of the pressure, and three more transposes between ranks; the lines
@@ -16,7 +18,7 @@
  *
  * Boundary values that change in time: d is counted from the old field with the new values at its
  * sides, so that it obeys the homogeneous conditions, and so does what is between two of the
- * factors. u on the right then has, at sides, the mean of old and new values. */
+ * factors. u on the right then has, at sides, the mean of old and new values by their weights. */
 #include "bw_memory.h"
 #include "ns_channel_internal.h"
 
@@ -24,9 +26,9 @@
 
 /* Visit what the second differences of component c see of side (d, s): its face, or the ghosts
  * beyond it. */
-typedef void (*point_fn)(bw_real *u, bw_real *d);
+typedef void (*point_fn)(bw_real *u, bw_real *d, bw_real share);
 
-static void each_point(bw_ns_channel *ns, int c, int d, int s, point_fn f)
+static void each_point(bw_ns_channel *ns, int c, int d, int s, point_fn f, bw_real share)
 {
   const bw_grid_view *g = ns->g;
   /* Along d one layer: the face for the normal component, the ghost cells beyond it for the
@@ -36,29 +38,32 @@ static void each_point(bw_ns_channel *ns, int c, int d, int s, point_fn f)
   for (int k = from[2]; k <= to[2]; k++)
     for (int j = from[1]; j <= to[1]; j++)
       for (int i = from[0]; i <= to[0]; i++)
-        f(ns->u[c] + bw_at(g, i, j, k), ns->increment[c] + bw_at(g, i, j, k));
+        f(ns->u[c] + bw_at(g, i, j, k), ns->increment[c] + bw_at(g, i, j, k), share);
 }
 
-static void each_side(bw_ns_channel *ns, point_fn f)
+static void each_side(bw_ns_channel *ns, point_fn f, bw_real share)
 {
   for (int c = 0; c < ns->components; c++)
     for (int d = 0; d < ns->components; d++)
       for (int s = 0; s < 2; s++)
-        if (ns->plane[d][s].here) each_point(ns, c, d, s, f);
+        if (ns->plane[d][s].here) each_point(ns, c, d, s, f, share);
 }
 
-static void keep(bw_real *u, bw_real *d)
+static void keep(bw_real *u, bw_real *d, bw_real share)
 {
+  (void)share;
   *d = *u;
 }
 
-static void average(bw_real *u, bw_real *d)
+/* `share`: of the new value. */
+static void average(bw_real *u, bw_real *d, bw_real share)
 {
-  *u = (*u + *d) / 2;
+  *u = share * *u + (1 - share) * *d;
   *d = 0;
 }
 
-/* d += 2 kappa L u in a row; f: 2 kappa/(heights) of the six neighbours (x: both the same). */
+/* d += w L u in a row, w = gamma_r dt nu; f: w/(heights) of the six neighbours (x: both the same).
+ */
 typedef struct {
   bw_real x, north, south, z;
 } factors;
@@ -74,15 +79,14 @@ static void add_laplacian(int n, factors f, const bw_real *restrict u, const bw_
             f.z * ((ut[i] - u[i]) - (u[i] - ub[i]));
 }
 
-static factors factors_of_row(const bw_ns_channel *ns, int c, int j, double kappa)
+static factors factors_of_row(const bw_ns_channel *ns, int c, int j, double weight)
 {
   const bw_ns_metrics *m = &ns->metrics;
-  const bw_real twice = (bw_real)(2.0 * kappa);
-  return (factors){
-      .x = twice * m->rdx * m->rdx,
-      .north = twice * (c == 1 ? m->rdyf[j + 1] * m->rdyc[j] : m->rdyc[j] * m->rdyf[j]),
-      .south = twice * (c == 1 ? m->rdyf[j] * m->rdyc[j] : m->rdyc[j - 1] * m->rdyf[j]),
-      .z = twice * m->rdz * m->rdz};
+  const bw_real w = (bw_real)weight;
+  return (factors){.x = w * m->rdx * m->rdx,
+                   .north = w * (c == 1 ? m->rdyf[j + 1] * m->rdyc[j] : m->rdyc[j] * m->rdyf[j]),
+                   .south = w * (c == 1 ? m->rdyf[j] * m->rdyc[j] : m->rdyc[j - 1] * m->rdyf[j]),
+                   .z = w * m->rdz * m->rdz};
 }
 
 /* Is local row `at` of direction d the face of an upper side, where the velocity is given? */
@@ -91,7 +95,7 @@ static bool on_side(const bw_ns_channel *ns, int c, int d, int at)
   return c == d && at == ns->g->m[d] && ns->plane[d][1].here;
 }
 
-static void right_side(const bw_ns_channel *ns, int c, int j, int k, double kappa)
+static void right_side(const bw_ns_channel *ns, int c, int j, int k, double weight)
 {
   const bw_grid_view *g = ns->g;
   const ptrdiff_t at = bw_at(g, 0, j, k), row = g->stride[1], plane = g->stride[2];
@@ -101,10 +105,10 @@ static void right_side(const bw_ns_channel *ns, int c, int j, int k, double kapp
     memset(d + 1, 0, (size_t)g->m[0] * sizeof *d);
     return;
   }
-  /* d holds the sweep's change w; with 2 kappa L u it is the right side of the factored
+  /* d holds the sweep's change; with gamma_r dt nu L u it is the right side of the factored
    * equation. */
-  add_laplacian(g->m[0], factors_of_row(ns, c, j, kappa), u, u + row, u - row, u + plane, u - plane,
-                d);
+  add_laplacian(g->m[0], factors_of_row(ns, c, j, weight), u, u + row, u - row, u + plane,
+                u - plane, d);
   /* Along x only the last point of the row can be a prescribed face. */
   if (on_side(ns, c, 0, g->m[0])) d[g->m[0]] = 0;
 }
@@ -130,7 +134,7 @@ static void solve_x(bw_ns_channel *ns, int c, int k)
 }
 
 /* Right-hand side, y and x in one visit of each plane, which stays in the second-level cache. */
-static void solve_planes(bw_ns_channel *ns, int c, double kappa)
+static void solve_planes(bw_ns_channel *ns, int c, double weight, double kappa)
 {
   const bw_grid_view *g = ns->g;
   const bool divided = bw_ns__lines_are_divided(ns->lines[1]);
@@ -140,7 +144,7 @@ static void solve_planes(bw_ns_channel *ns, int c, double kappa)
   bw_ns__lines_set(ns, c, kappa, ns->lines[0]);
   for (int k = 1; k <= g->m[2]; k++) {
     for (int j = 1; j <= g->m[1]; j++)
-      right_side(ns, c, j, k, kappa);
+      right_side(ns, c, j, k, weight);
     /* Lines in y that cross ranks wait until all planes have their right side. */
     if (divided) continue;
     bw_ns__lines_solve(ns->lines[1], g->m[0], g->stride[1], d + bw_at(g, 1, 1, k));
@@ -193,18 +197,20 @@ static void solve_z(bw_ns_channel *ns, int c, double kappa)
   }
 }
 
-void bw_ns__factored_solve(bw_ns_channel *ns, double gamma_dt)
+void bw_ns__factored_solve(bw_ns_channel *ns, int r, double dt)
 {
-  const double kappa = 0.5 * gamma_dt * ns->config.nu;
+  const double weight = bw_ns__gamma[r] * dt * ns->config.nu;
+  const double kappa = bw_ns__new[r] * dt * ns->config.nu;
+  const bw_real share = (bw_real)(bw_ns__new[r] / bw_ns__gamma[r]);
   /* The old boundary values are put away in the increment's places at the sides. */
-  each_side(ns, keep);
+  each_side(ns, keep, share);
   /* Now the sides of u have the values of the end of the sub-step ... */
   bw_ns__faces(ns);
   bw_ns__ghosts_velocity(ns);
   /* ... and here their mean with the old ones, so that d obeys homogeneous conditions. */
-  each_side(ns, average);
+  each_side(ns, average, share);
   for (int c = 0; c < ns->components; c++) {
-    solve_planes(ns, c, kappa);
+    solve_planes(ns, c, weight, kappa);
     solve_z(ns, c, kappa);
   }
 }

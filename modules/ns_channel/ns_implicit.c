@@ -1,5 +1,5 @@
-/* ns_implicit.c -- y diffusion by Crank-Nicolson in each sub-step: with kappa = gamma dt nu/2,
- *   (1 - kappa D_yy) u* = rhs,   rhs: the sweep's result, + kappa D_yy u included there.
+/* ns_implicit.c -- y diffusion, implicit in each sub-step (ERRATA 38): with kappa = new_r dt nu,
+ *   (1 - kappa D_yy) u* = rhs,   rhs: the sweep's result, + old_r dt nu D_yy u included there.
  * In place: one direction needs no increment (ns_factored.c does). */
 #include "ns_channel_internal.h"
 
@@ -42,13 +42,13 @@ static void boundaries(const bw_ns_channel *ns, const bw_ns_lines *lines, int c,
   if (ns->plane[1][1].here && c != 1) row_boundary(ns, c, 1, k, above, last);
 }
 
-void bw_ns__implicit_solve(bw_ns_channel *ns, double gamma_dt)
+void bw_ns__implicit_solve(bw_ns_channel *ns, double kappa)
 {
   const bw_grid_view *g = ns->g;
   bw_ns_lines *lines = ns->lines[1];
   for (int c = 0; c < ns->components; c++) {
-    /* kappa = gamma_r dt nu/2: half of the diffusion was added explicitly in the sweep. */
-    bw_ns__lines_set(ns, c, 0.5 * gamma_dt * ns->config.nu, lines);
+    /* The part of the diffusion with the old velocity was added explicitly in the sweep. */
+    bw_ns__lines_set(ns, c, kappa, lines);
     for (int k = 1; k <= g->m[2]; k++) {
       /* Boundary values go to the right side before the lines are eliminated. */
       boundaries(ns, lines, c, k);

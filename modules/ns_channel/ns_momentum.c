@@ -83,7 +83,7 @@ BW_NS_INLINE void update_u(int n, bool planar, int stage, bw_ns_viscous viscous,
     /* The upper flux is the next row's lower one: it is kept, as u below is overwritten. */
     fy[i] = y;
     bw_real diffused = 0;
-    /* kappa D_yy u, the explicit half of Crank-Nicolson. */
+    /* kappa D_yy u, the part of the diffusion with the old velocity. */
     if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (un[i] - u[i]) * c->dy_u;
       diffused = d - dy[i];
@@ -117,7 +117,7 @@ BW_NS_INLINE void update_v(int n, bool planar, int stage, bw_ns_viscous viscous,
     bw_real rhs = (fx[i - 1] - fx[i]) + (fy[i] - y) * rdy;
     fy[i] = y;
     bw_real diffused = 0;
-    /* The explicit half of the diffusion in y. */
+    /* The diffusion in y of the old velocity. */
     if (viscous == BW_VISCOUS_IMPLICIT_Y) {
       const bw_real d = (vn[i] - v[i]) * c->dy_v;
       diffused = d - dy[i];

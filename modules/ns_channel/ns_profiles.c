@@ -81,7 +81,7 @@ static double shear(const profile_source *m, bw_ns_moment first, int row)
 
 static double total(const profile_source *m, bw_ns_moment first, int row)
 {
-  return shear(m, first, row) - uv(m, BW_NS_MOMENT_UV, row);
+  return shear(m, first, row) - uv(m, BW_NS_MOMENT_UV, row) + moment(m, BW_NS_MOMENT_EDDY, row);
 }
 
 /* ---- budget of k at centres; what belongs to faces is averaged over or differenced between the
@@ -188,14 +188,16 @@ static const struct {
     [BW_NS_PROFILE_V_SKEWNESS] = {skewness, BW_NS_MOMENT_V},
     [BW_NS_PROFILE_V_FLATNESS] = {flatness, BW_NS_MOMENT_V},
     [BW_NS_PROFILE_SHEAR] = {shear, BW_NS_MOMENT_OZ},
+    [BW_NS_PROFILE_EDDY] = {plain, BW_NS_MOMENT_EDDY},
     [BW_NS_PROFILE_TOTAL] = {total, BW_NS_MOMENT_OZ},
 };
 
 /* What changes sign when y does: odd in v, o_x, o_z together. */
 static const bool odd[BW_NS_MOMENTS] = {
-    [BW_NS_MOMENT_V] = true,   [BW_NS_MOMENT_VVV] = true, [BW_NS_MOMENT_UV] = true,
-    [BW_NS_MOMENT_VW] = true,  [BW_NS_MOMENT_OX] = true,  [BW_NS_MOMENT_OZ] = true,
-    [BW_NS_MOMENT_VUU] = true, [BW_NS_MOMENT_VWW] = true, [BW_NS_MOMENT_PV] = true,
+    [BW_NS_MOMENT_V] = true,    [BW_NS_MOMENT_VVV] = true, [BW_NS_MOMENT_UV] = true,
+    [BW_NS_MOMENT_VW] = true,   [BW_NS_MOMENT_OX] = true,  [BW_NS_MOMENT_OZ] = true,
+    [BW_NS_MOMENT_VUU] = true,  [BW_NS_MOMENT_VWW] = true, [BW_NS_MOMENT_PV] = true,
+    [BW_NS_MOMENT_EDDY] = true,
 };
 
 bool bw_ns_profile_on_faces(bw_ns_profile_kind kind)

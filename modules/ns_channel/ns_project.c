@@ -52,64 +52,135 @@ double bw_ns__divergence(const bw_grid_view *g, const bw_ns_metrics *m, bw_real 
 
 typedef struct {
   bw_real sx, sy, sz, shift; /* scale/dx ... */
-  bw_real rdx, rdy, rdz;
 } correct_scalars;
 
-/* Corrects cell i; returns its sum |u_i|/dx_i when asked. */
-BW_NS_INLINE bw_real correct_cell(int i, bool planar, bool courant, const correct_scalars *c,
-                                  bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
-                                  bw_real *restrict p, const bw_real *restrict f,
-                                  const bw_real *restrict fn, const bw_real *restrict ft)
+/* Corrects cell i. */
+BW_NS_INLINE void correct_cell(int i, bool planar, const correct_scalars *c, bw_real *restrict u,
+                               bw_real *restrict v, bw_real *restrict w, bw_real *restrict p,
+                               const bw_real *restrict f, const bw_real *restrict fn,
+                               const bw_real *restrict ft)
 {
   const bw_real here = f[i];
   /* u <- u* - gamma_r dt grad p^ (POROUS 3.72), all three components from one read of p^. */
-  const bw_real un = u[i] + ((here - f[i + 1]) * c->sx + c->shift);
-  const bw_real vn = v[i] + (here - fn[i]) * c->sy;
-  bw_real rate = 0;
-  u[i] = un;
-  v[i] = vn;
+  u[i] += (here - f[i + 1]) * c->sx + c->shift;
+  v[i] += (here - fn[i]) * c->sy;
+  if (!planar) w[i] += (here - ft[i]) * c->sz;
   /* p <- p + p^ (POROUS 3.73). */
   p[i] += here;
-  /* The new |u_i|/dx_i costs nothing here and saves a sweep before the next step. */
-  if (courant) rate = (un < 0 ? -un : un) * c->rdx + (vn < 0 ? -vn : vn) * c->rdy;
-  if (planar) return rate;
-  const bw_real wn = w[i] + (here - ft[i]) * c->sz;
-  w[i] = wn;
-  return courant ? rate + (wn < 0 ? -wn : wn) * c->rdz : rate;
+}
+
+BW_NS_INLINE void correct_cells(int n, bool planar, const correct_scalars *restrict c,
+                                bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
+                                bw_real *restrict p, const bw_real *restrict f,
+                                const bw_real *restrict fn, const bw_real *restrict ft)
+{
+#pragma omp simd
+  for (int i = 1; i <= n; i++)
+    correct_cell(i, planar, c, u, v, w, p, f, fn, ft);
 }
 
 enum { LANES = 8 }; /* partial results side by side: compilers vectorise them without -ffast-math */
 
-/* Per lane the largest sum |u_i|/dx_i and their sum: what is not finite survives a sum, but not a
+/* Per lane the largest rate and their sum: what is not finite survives a sum, but not a
  * comparison. */
 typedef struct {
   bw_real most[LANES], total[LANES];
 } courant_lanes;
 
-BW_NS_INLINE void correct_cells(int n, bool planar, bool courant, const correct_scalars *restrict c,
-                                bw_real *restrict u, bw_real *restrict v, bw_real *restrict w,
-                                bw_real *restrict p, const bw_real *restrict f,
-                                const bw_real *restrict fn, const bw_real *restrict ft,
+typedef struct {
+  bw_real x, y, z; /* 1/(2 dx) ... of the row's cells */
+} courant_scalars;
+
+/* Row sum of the convective operator of cell i: half of sum_d (|u_d below| + |u_d above|)/dx_d.
+ * Both faces count, so that it is the same whichever way the stream goes. */
+BW_NS_INLINE bw_real courant_rate(int i, bool planar, courant_scalars c, const bw_real *restrict u,
+                                  const bw_real *restrict v, const bw_real *restrict vs,
+                                  const bw_real *restrict w, const bw_real *restrict wb)
+{
+#define BW_ABS(x) ((x) < 0 ? -(x) : (x))
+  const bw_real rate =
+      (BW_ABS(u[i - 1]) + BW_ABS(u[i])) * c.x + (BW_ABS(vs[i]) + BW_ABS(v[i])) * c.y;
+  return planar ? rate : rate + (BW_ABS(wb[i]) + BW_ABS(w[i])) * c.z;
+#undef BW_ABS
+}
+
+BW_NS_INLINE void courant_cells(int n, bool planar, courant_scalars c, const bw_real *restrict u,
+                                const bw_real *restrict v, const bw_real *restrict vs,
+                                const bw_real *restrict w, const bw_real *restrict wb,
                                 courant_lanes *restrict lanes)
 {
   int i = 1;
   /* Whole groups of lanes, then the rest of the row one by one. */
-  for (; courant && i + LANES - 1 <= n; i += LANES)
+  for (; i + LANES - 1 <= n; i += LANES)
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
-      const bw_real rate = correct_cell(i + l, planar, true, c, u, v, w, p, f, fn, ft);
+      const bw_real rate = courant_rate(i + l, planar, c, u, v, vs, w, wb);
       lanes->most[l] = rate > lanes->most[l] ? rate : lanes->most[l];
       lanes->total[l] += rate;
     }
-  for (; courant && i <= n; i++) {
-    const bw_real rate = correct_cell(i, planar, true, c, u, v, w, p, f, fn, ft);
+  for (; i <= n; i++) {
+    const bw_real rate = courant_rate(i, planar, c, u, v, vs, w, wb);
     lanes->most[0] = rate > lanes->most[0] ? rate : lanes->most[0];
     lanes->total[0] += rate;
   }
-  /* Without the Courant number nothing is reduced and all cells are handled here. */
-#pragma omp simd
-  for (int q = i; q <= n; q++)
-    correct_cell(q, planar, false, c, u, v, w, p, f, fn, ft);
+}
+
+/* Courant rates of row (j, k), whose lower faces are valid. */
+BW_NS_INLINE void courant_row(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
+                              int j, int k, bool planar, courant_lanes *lanes)
+{
+  const bw_real half = (bw_real)0.5;
+  const courant_scalars c = {half * m->rdx, half * m->rdyf[j], half * m->rdz};
+  const ptrdiff_t at = bw_at(g, 0, j, k);
+  const bw_real *v = u[1] + at, *w = planar ? NULL : u[2] + at;
+  courant_cells(g->m[0], planar, c, u[0] + at, v, v - g->stride[1], w,
+                planar ? NULL : w - g->stride[2], lanes);
+}
+
+/* Lanes are joined once per field, not per row. One value that is not finite makes the sum so:
+ * nothing else has to look at the field. */
+static double join_lanes(const courant_lanes *lanes)
+{
+  double largest = 0.0, sum = 0.0;
+  for (int l = 0; l < LANES; l++) {
+    largest = fmax(largest, (double)lanes->most[l]);
+    sum += (double)lanes->total[l];
+  }
+  return isfinite(sum) ? largest : (double)NAN;
+}
+
+/* What the correction needs of a row; v has its gradient over the distance of centres, which
+ * changes from row to row. */
+static correct_scalars scalars_of(const bw_ns_metrics *m, int j, double scale, double shift)
+{
+  const bw_real s = (bw_real)scale;
+  return (correct_scalars){
+      .sx = s * m->rdx, .sy = s * m->rdyc[j], .sz = s * m->rdz, .shift = (bw_real)shift};
+}
+
+/* The faces below the first cells, which belong to another rank or to the periodic image, get the
+ * value that their owner gives them: the Courant number reads them before the next halo. At a side
+ * the difference of p^ is zero. */
+static void correct_lower_faces(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
+                                const bw_real *phi, double scale, double shift)
+{
+  const ptrdiff_t row = g->stride[1], plane = g->stride[2];
+  const correct_scalars c = scalars_of(m, 0, scale, shift);
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++) {
+      const ptrdiff_t at = bw_at(g, 0, j, k);
+      u[0][at] += (phi[at] - phi[at + 1]) * c.sx + c.shift;
+    }
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int i = 1; i <= g->m[0]; i++) {
+      const ptrdiff_t at = bw_at(g, i, 0, k);
+      u[1][at] += (phi[at] - phi[at + row]) * c.sy;
+    }
+  for (int j = 1; j <= g->m[1] && u[2] != NULL; j++)
+    for (int i = 1; i <= g->m[0]; i++) {
+      const ptrdiff_t at = bw_at(g, i, j, 0);
+      u[2][at] += (phi[at] - phi[at + plane]) * c.sz;
+    }
 }
 
 BW_NS_INLINE double correct_all(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
@@ -117,30 +188,18 @@ BW_NS_INLINE double correct_all(const bw_grid_view *g, const bw_ns_metrics *m, b
                                 bool planar, bool courant)
 {
   const ptrdiff_t row = g->stride[1], plane = g->stride[2];
-  const bw_real s = (bw_real)scale;
   courant_lanes lanes = {{0}, {0}};
+  if (courant) correct_lower_faces(g, m, u, phi, scale, shift);
   for (int k = 1; k <= g->m[2]; k++)
     for (int j = 1; j <= g->m[1]; j++) {
       const ptrdiff_t at = bw_at(g, 0, j, k);
-      /* v has its gradient over the distance of centres, which changes from row to row. */
-      const correct_scalars c = {.sx = s * m->rdx,
-                                 .sy = s * m->rdyc[j],
-                                 .sz = s * m->rdz,
-                                 .shift = (bw_real)shift,
-                                 .rdx = m->rdx,
-                                 .rdy = m->rdyc[j],
-                                 .rdz = m->rdz};
-      correct_cells(g->m[0], planar, courant, &c, u[0] + at, u[1] + at, planar ? NULL : u[2] + at,
-                    p + at, phi + at, phi + at + row, phi + at + plane, &lanes);
+      const correct_scalars c = scalars_of(m, j, scale, shift);
+      correct_cells(g->m[0], planar, &c, u[0] + at, u[1] + at, planar ? NULL : u[2] + at, p + at,
+                    phi + at, phi + at + row, phi + at + plane);
+      /* The row is in the first-level cache: this saves a sweep before the next step. */
+      if (courant) courant_row(g, m, u, j, k, planar, &lanes);
     }
-  /* Lanes are joined once per field, not per row. */
-  double largest = 0.0, sum = 0.0;
-  for (int l = 0; l < LANES; l++) {
-    largest = fmax(largest, (double)lanes.most[l]);
-    sum += (double)lanes.total[l];
-  }
-  /* One value that is not finite makes the sum so: nothing else has to look at the field. */
-  return isfinite(sum) ? largest : (double)NAN;
+  return join_lanes(&lanes);
 }
 
 double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
@@ -156,18 +215,9 @@ double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *co
 /* The same numbers as `correct` finds, to the last bit: a restart chooses the same step. */
 double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3])
 {
-  bw_real largest = 0;
-  double sum = 0.0;
+  courant_lanes lanes = {{0}, {0}};
   for (int k = 1; k <= g->m[2]; k++)
     for (int j = 1; j <= g->m[1]; j++)
-      for (int i = 1; i <= g->m[0]; i++) {
-        const ptrdiff_t at = bw_at(g, i, j, k);
-        const bw_real x = u[0][at], y = u[1][at], z = u[2] != NULL ? u[2][at] : 0;
-        /* The same operations in the same order as in correct_cell. */
-        bw_real rate = (x < 0 ? -x : x) * m->rdx + (y < 0 ? -y : y) * m->rdyc[j];
-        if (u[2] != NULL) rate += (z < 0 ? -z : z) * m->rdz;
-        largest = rate > largest ? rate : largest;
-        sum += (double)rate;
-      }
-  return isfinite(sum) ? (double)largest : (double)NAN;
+      courant_row(g, m, u, j, k, u[2] == NULL, &lanes);
+  return join_lanes(&lanes);
 }

@@ -97,6 +97,7 @@ void bw_ns_statistics_sample(bw_ns_statistics *s)
   memset(s->now, 0, s->size * sizeof *s->now);
   /* Sums over this rank's part of each plane ... */
   bw_ns__moments(s->g, u, ns->p, s->rows, s->now);
+  bw_ns__eddy_stress(ns, s->now + (size_t)BW_NS_MOMENT_EDDY * (size_t)s->rows);
   /* ... and over all ranks, so that the state does not depend on their number. */
   bw_comm_sum(ns->comm, s->size, s->now);
   const double share = 1.0 / ((double)s->g->n[0] * s->g->n[2]);

@@ -1,25 +1,18 @@
 /* ns_step.c -- the recipe: predict, project, and the checks around a step. */
 #include "ns_channel_internal.h"
 
-#include <math.h>
-
 /* Low-storage RK3 (ERRATA 5): gamma = alpha + beta. */
 const double bw_ns__alpha[BW_NS_STAGES] = {8.0 / 15.0, 5.0 / 12.0, 3.0 / 4.0};
 const double bw_ns__beta[BW_NS_STAGES] = {0.0, -17.0 / 60.0, -5.0 / 12.0};
 const double bw_ns__gamma[BW_NS_STAGES] = {8.0 / 15.0, 2.0 / 15.0, 1.0 / 3.0};
 const double bw_ns__end[BW_NS_STAGES] = {8.0 / 15.0, 2.0 / 3.0, 1.0};
 
-/* Real and imaginary axis limits of every three-stage third-order Runge-Kutta method:
- * |1 + z + z^2/2 + z^3/6| <= 1. The ellipse through both lies inside the stability region. */
-static const double imaginary_limit = 1.7320508;
-
-/* Crank-Nicolson in y takes a little of the real axis: with its rate anything from 0 on, the
- * largest multiplier of all modes on and within the ellipse is 1 up to 2.414 (at a rate of 4.5/dt).
- */
-static double real_limit(const bw_ns_channel *ns)
-{
-  return ns->config.viscous == BW_VISCOUS_IMPLICIT_Y ? 2.41 : 2.5127453;
-}
+/* Shares of gamma_r of an implicit term with the old and with the new velocity. Second order in
+ * time asks for sum gamma_r (new_r - old_r) = 0 only; so the middle one may be backward Euler,
+ * which takes stiff modes away within a step, where the trapezoidal rule in all three would only
+ * turn their sign (ERRATA 38). */
+const double bw_ns__old[BW_NS_STAGES] = {17.0 / 60.0, 0.0, 1.0 / 6.0};
+const double bw_ns__new[BW_NS_STAGES] = {1.0 / 4.0, 2.0 / 15.0, 1.0 / 6.0};
 
 /* Seconds since *mark are added to *sum; *mark moves on. */
 static void lap(double *mark, double *sum)
@@ -73,7 +66,7 @@ static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
   s->alpha_dt = (bw_real)(bw_ns__alpha[r] * dt);
   s->beta_dt = (bw_real)(bw_ns__beta[r] * dt);
   s->gamma_dt = (bw_real)gamma_dt;
-  s->kappa = (bw_real)(0.5 * gamma_dt * ns->config.nu);
+  s->kappa = (bw_real)(bw_ns__old[r] * dt * ns->config.nu);
   s->source = (bw_real)(gamma_dt * gradient);
   /* Books the mean gradient of the step, weighted as pressure is. */
   if (r == 0) ns->applying = 0.0;
@@ -85,16 +78,18 @@ static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
   bw_ns__outflow_advance(ns, gamma_dt, influx);
   /* The watched box sums the fluxes that the sweep is about to use. */
   bw_ns__box_fluxes(ns, r, dt, gradient);
-  if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
+  if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, bw_ns__old[r] * dt);
   lap(&mark, &ns->cost.boundary);
   /* u is u* afterwards, but for what is implicit and for faces on sides. */
+  bw_ns__eddy_force(ns);
   bw_ns__momentum_sweep(s, r);
+  bw_ns__eddy_add(ns, r, dt);
   /* The solve in y takes the new v on the sides as its boundary values. */
   if (viscous == BW_VISCOUS_IMPLICIT_Y) {
     bw_ns__faces(ns);
-    bw_ns__implicit_solve(ns, gamma_dt);
+    bw_ns__implicit_solve(ns, bw_ns__new[r] * dt * ns->config.nu);
   }
-  if (viscous == BW_VISCOUS_IMPLICIT) bw_ns__factored_solve(ns, gamma_dt);
+  if (viscous == BW_VISCOUS_IMPLICIT) bw_ns__factored_solve(ns, r, dt);
   /* From here on u* meets the sides; it is not free of divergence. */
   bw_ns__faces(ns);
   lap(&mark, &ns->cost.momentum);
@@ -103,8 +98,8 @@ static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
     bw_halo_update_faces(ns->grid, ns->u);
   else
     velocity_halos(ns);
-  /* The other half of Crank-Nicolson's diffusion, with the new velocity. */
-  if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, 0.5 * gamma_dt);
+  /* The implicit part of the diffusion, with the new velocity. */
+  if (viscous == BW_VISCOUS_IMPLICIT_Y) bw_ns__box_diffusion(ns, bw_ns__new[r] * dt);
   lap(&mark, &ns->cost.halo);
 }
 
@@ -170,6 +165,8 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   velocity_halos(ns);
   pressure_halos(ns);
   lap(&mark, &ns->cost.halo);
+  bw_ns__eddy_update(ns);
+  lap(&mark, &ns->cost.momentum);
   ns->cost.substeps++;
   /* The step ends with the third sub-step: its balance, mean gradient and time. */
   if (r < BW_NS_STAGES - 1) return;
@@ -196,72 +193,6 @@ bw_status bw_ns_channel_step(bw_ns_channel *ns, double dt)
   return bw_ns_channel_check(ns, 0.0);
 }
 
-/* All ranks: largest sum |u_i|/dx_i, NaN when a value anywhere is not finite. */
-static double courant_everywhere(bw_ns_channel *ns)
-{
-  if (ns->courant_known) return ns->courant_all;
-  /* A maximum drops NaN, so whether all is finite travels as a number of its own. */
-  const bool finite = isfinite(ns->courant);
-  double worst[2] = {finite ? ns->courant : 0.0, finite ? 0.0 : 1.0};
-  bw_comm_max(ns->comm, 2, worst);
-  ns->courant_all = worst[1] > 0.0 ? (double)NAN : worst[0];
-  ns->courant_known = true;
-  return ns->courant_all;
-}
-
-double bw_ns_channel_dt_max(bw_ns_channel *ns)
-{
-  const double c = courant_everywhere(ns) / imaginary_limit, v = ns->viscous_rate / real_limit(ns);
-  return 1.0 / sqrt(c * c + v * v);
-}
-
-/* First point (component, then k, j, i) that is not finite. */
-static bw_status not_finite(bw_ns_channel *ns)
-{
-  const bw_grid_view *g = ns->g;
-  const double n0 = g->n[0] + 1, n1 = g->n[1] + 1, n2 = g->n[2] + 1;
-  /* Component and cell as one number, so that a minimum over ranks names the first place. */
-  double first = INFINITY;
-  for (int c = 0; c < ns->components; c++)
-    for (int k = 1; k <= g->m[2]; k++)
-      for (int j = 1; j <= g->m[1]; j++)
-        for (int i = 1; i <= g->m[0]; i++)
-          if (!isfinite(ns->u[c][bw_at(g, i, j, k)]))
-            first = fmin(first, ((c * n2 + k + g->lo[2]) * n1 + j + g->lo[1]) * n0 + i);
-  bw_comm_min(ns->comm, 1, &first);
-  /* All velocities are finite, only their sum over the directions was not. */
-  if (!isfinite(first))
-    return BW_FAIL(BW_EDIVERGED,
-                   "ns_channel: sum |u_i|/dx_i overflows at "
-                   "t = %g; the step was too long",
-                   ns->time);
-  /* Taken apart again for the message. */
-  const int i = (int)fmod(first, n0), j = (int)fmod(floor(first / n0), n1);
-  const int k = (int)fmod(floor(first / (n0 * n1)), n2), c = (int)floor(first / (n0 * n1 * n2));
-  return BW_FAIL(BW_EDIVERGED,
-                 "ns_channel: velocity component %c is not finite at cell (%d, %d, %d), "
-                 "t = %g; look at what was forced there, or shorten the step",
-                 "uvw"[c], i, j, k, ns -> time);
-}
-
-bw_status bw_ns_channel_check(bw_ns_channel *ns, double dt)
-{
-  const double c = courant_everywhere(ns);
-  if (!isfinite(c)) return not_finite(ns);
-  /* The field is finite. Does the step fit it? */
-  const double limit = bw_ns_channel_dt_max(ns);
-  BW_REQUIRE(isfinite(dt) && dt >= 0.0, BW_EINPUT, "ns_channel: dt = %g; give a step > 0", dt);
-  BW_REQUIRE(dt <= limit * (1.0 + 1e-12), BW_ECFL,
-             "ns_channel: dt = %g at t = %g is over the limit %g (convective %g, viscous %g); use "
-             "a step below it%s",
-             dt, ns->time, limit, imaginary_limit / c, real_limit(ns) / ns->viscous_rate,
-             ns->viscous_rate / real_limit(ns) > c / imaginary_limit &&
-                     ns->config.viscous == BW_VISCOUS_EXPLICIT
-                 ? " or an implicit viscous term"
-                 : "");
-  return BW_OK;
-}
-
 void bw_ns_channel_refresh(bw_ns_channel *ns)
 {
   /* Planes first: those of time, then what leaves from the fields themselves. */
@@ -271,6 +202,7 @@ void bw_ns_channel_refresh(bw_ns_channel *ns)
   all_halos(ns);
   /* What a step would have left behind is found anew, to the same bits. */
   ns->courant = bw_ns__courant(ns->g, &ns->metrics, ns->u);
+  bw_ns__eddy_update(ns);
   ns->courant_known = false;
   ns->box.known = false;
 }

@@ -59,6 +59,12 @@ START_TEST(rank_zero_speaks)
     open_log(&m, quiet != 0, 0, 0.0);
     bw_log_info(m.log, "%d cells", 7);
     bw_log_warn(m.log, "dt %g is large", 0.5);
+    /* Kept for the record, on the rank that writes it. */
+    if (speaks())
+      ck_assert_str_eq(bw_log_warning(m.log, 0), "dt 0.5 is large");
+    else
+      ck_assert_ptr_null(bw_log_warning(m.log, 0));
+    ck_assert_ptr_null(bw_log_warning(m.log, 1));
     close_log(&m);
     ck_assert_str_eq(m.out, speaks() && !quiet ? "7 cells\n" : "");
     ck_assert_str_eq(m.err, speaks() ? "breakwater: warning: dt 0.5 is large\n" : "");

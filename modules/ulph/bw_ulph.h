@@ -1,22 +1,22 @@
-/* bw_ulph.h -- a fluid of particles with a free surface (updated-Lagrangian particle hydrodynamics).
+/* bw_ulph.h -- a fluid of particles with a free surface (updated-Lagrangian hydrodynamics).
  *
  * Solves, for a weakly compressible Newtonian fluid in a frame at rest, in 2D or 3D,
  *   d(rho)/dt = -rho div v,   rho dv/dt = -grad p + mu laplace v + rho g,   p = c0^2 (rho - rho0),
  * with p = 0 outside of the fluid. Source: ULPH (docs/sources.md), equations 8-23, 27, 52; what was
- * wrong there stands in docs/errata.md under "The particle fluid".
+ * wrong there stands in docs/errata.md under "ULPH".
  *
- * Operators, with x = x_J - x_I, weight w = (1 - q)^4 (1 + 4 q), q = r/R, R = 3 dx (Wendland 1995, C2),
- * volume V = m/rho, and
- * M_I = sum_J w V_J x x^T:
+ * Operators, with x = x_J - x_I, weight w = (1 - q)^4 (1 + 4 q), q = r/R, R = 3 dx (Wendland 1995,
+ * C2), volume V = m/rho, and M_I = sum_J w V_J x x^T:
  *   (grad f)_I = sum_J w V_J (f_J - f_I) M_I^-1 x,
  *   F_I        = -V_I sum_J w V_J (p_I M_I^-1 + p_J M_J^-1) x.
  * The gradient is exact for linear fields on any cloud of points. The force is its adjoint:
- * sum F.v = sum V p div v, so that momentum, angular momentum and energy are kept to round-off. Where
- * the least eigenvalue of M_I is below 0.35 of that of a full neighbourhood, M_I^-1 is the unit
- * matrix over the latter: the force is then central, and all three are still kept.
- * Density diffusion (Antuono et al. 2010 with these operators), antisymmetric, zero for linear rho:
- *   D_I = delta h c0 sum_J w V_J/m2 [2 (rho_J - rho_I) - (grad rho_I + grad rho_J).x],  h = 1.2 dx,
- * with m2 = (tr M_I + tr M_J)/(2 d). Viscosity, central, antisymmetric:
+ * sum F.v = sum V p div v, so that momentum, angular momentum and energy are kept to round-off.
+ * Where the least eigenvalue of M_I is below 0.35 of that of a full neighbourhood, M_I^-1 is the
+ * unit matrix over the latter: the force is then central, and all three are still kept.
+ * Density diffusion (Antuono et al. 2010, with these operators), antisymmetric, zero for linear rho
+ * and between particles that are not of the surface:
+ *   D_I = delta h c0 sum_J w V_J/m2 [2 (rho_J - rho_I) - (grad rho_I + grad rho_J).x],
+ * with h = 1.2 dx and m2 = (tr M_I + tr M_J)/(2 d). Viscosity, central, antisymmetric:
  *   F_I = V_I sum_J w V_J 2 (d + 2) mu_t ((v_J - v_I).x) x/(r^2 m2),
  *   mu_t = mu + rho0 alpha h c0/(2 (d + 2)): the physical viscosity and the artificial one.
  * Tension: where p_I < 0 and no surface is within R, F_I = -V_I (grad p)_I; the momentum that this
@@ -24,14 +24,15 @@
  *   -C |grad v| h^2 dt (sum_J w V_J x)/m2, at most 0.05 dx, against clustering; rho and v follow
  * their gradients, and what that takes is booked.
  * A particle is of the surface where the least eigenvalue of M_I is below 3/4 of the full one.
- * Walls are particles too: 3 layers inside a solid shape, a mirror image of the fluid. Their velocity
- * is that of the fluid near them with its part normal to the wall turned round (relative to the
- * wall; with no slip the other part goes linearly through the wall's velocity on the surface), their
- * pressure that of the fluid with the weight between (equation 52 with x_sf = x_f - x_s), at least 0,
- * and their M that of a fluid particle in their place: then pairs across a flat free-slip wall leave
- * it no force along it. A wall particle counts only as far as there is fluid in front of it. Pairs of
- * fluid and wall have the artificial viscosity alpha_wall: the image is extrapolated, its operators
- * are the adjoint of each other only where it is exact, and thin sheets on walls would ring.
+ * Walls are particles too: 3 layers inside a solid shape, a mirror image of the fluid. Their
+ * velocity is that of the fluid near them with its part normal to the wall turned round (relative
+ * to the wall; with no slip the other part goes linearly through the wall's velocity on the
+ * surface), their pressure that of the fluid with the weight between (equation 52 with
+ * x_sf = x_f - x_s), at least 0, and their M that of a fluid particle in their place: then pairs
+ * across a flat free-slip wall leave it no force along it. A wall particle counts only as far as
+ * there is fluid in front of it. Pairs of fluid and wall have the artificial viscosity alpha_wall:
+ * the image is extrapolated, its operators are the adjoint of each other only where it is exact,
+ * and thin sheets on walls would ring.
  * Step (kick, drift, kick, one evaluation): v += a dt/2; x += v dt; walls; M, grad v; rho by the
  * mean of the step's dilation; p; a; v += a dt/2; diffusion and shifting.
  *
@@ -120,8 +121,8 @@ double bw_ulph_artificial_nu(const bw_ulph *u);
 bw_status bw_ulph_fill(const bw_comm *comm, const bw_ulph_config *config, const double origin[3],
                        int count, const bw_shape shape[], size_t *n, double **x) BW_MUST_CHECK;
 
-/* A fluid of particles at x (n,3) of this rank, at rest without pressure, each with the volume dx^d,
- * and its walls. `comm` and the motion are borrowed until destroy. BW_EINPUT: a value of the
+/* A fluid of particles at x (n,3) of this rank, at rest without pressure, each with the volume
+ * dx^d, and its walls. `comm` and the motion are borrowed until destroy. BW_EINPUT: a value of the
  * configuration by its name; a c0 that is less than 10 times the expected speed or sqrt(|g| height)
  * (with the value that would do); walls thinner than 3 dx; particles nearer than dx/2 to each other
  * or inside a wall (with the place). BW_EMEM. The same on all ranks. Collective. */
@@ -131,8 +132,9 @@ bw_status bw_ulph_create(const bw_comm *comm, const bw_ulph_config *config, size
 
 void bw_ulph_destroy(bw_ulph **u); /* NULL is fine. Local. */
 
-/* Velocity and pressure of every particle, and time 0; the mass of a particle becomes rho dx^d. NULL
- * leaves rest. Evaluates the forces. BW_EINPUT where a value is not finite or faster than c0/10.
+/* Velocity and pressure of every particle, and time 0; the mass of a particle becomes rho dx^d.
+ * NULL leaves rest. Evaluates the forces. BW_EINPUT where a value is not finite, or faster than
+ * c0/10.
  * Collective. */
 bw_status bw_ulph_start(bw_ulph *u, bw_ulph_start_fn *start, void *context) BW_MUST_CHECK;
 
@@ -180,8 +182,8 @@ void bw_ulph_ids(const bw_ulph *u, int64_t id[]);
 bw_ulph_ledger bw_ulph_account(const bw_ulph *u);
 
 /* Height of the fluid in the column at x (and z in 3D) [L], counted along y: its volume weighted
- * with a hat of half-width `width` [L], rounded up to a multiple of dx, over the hat. Spray counts with what it holds. Keep a column
- * `width` away from walls. Collective. */
+ * with a hat of half-width `width` [L], rounded up to a multiple of dx, over the hat. Spray counts
+ * with what it holds. Keep a column that width away from walls. Collective. */
 double bw_ulph_depth(const bw_ulph *u, const double x[3], double width);
 
 /* Largest place along `axis` (0, 1, 2) of the fluid within lower <= x < upper, a surface dx/2
@@ -189,8 +191,8 @@ double bw_ulph_depth(const bw_ulph *u, const double x[3], double width);
  * where there is none. Collective. */
 double bw_ulph_reach(const bw_ulph *u, int axis, const double lower[3], const double upper[3]);
 
-/* Mean pressure on the wall particles of the first layer within lower <= x < upper, dry ones counted
- * as 0. NaN where there are none. Collective. */
+/* Mean pressure on the wall particles of the first layer within lower <= x < upper, dry ones
+ * counted as 0. NaN where there are none. Collective. */
 double bw_ulph_wall_pressure(const bw_ulph *u, const double lower[3], const double upper[3]);
 
 /* Force of the fluid on all walls [M L/T^2] at the last evaluation. Collective. */

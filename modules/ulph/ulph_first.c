@@ -1,7 +1,7 @@
 /* The first sweep: moments and gradients, then density and pressure. */
 #include "ulph_internal.h"
 
-/* A particle is of the surface where the least eigenvalue of M is below this part of the full one. */
+/* A particle is of the surface where the least eigenvalue of M is below this part of a full one. */
 static const double SURFACE = 0.75;
 
 /* Sums of the lanes of a cluster. */
@@ -75,8 +75,8 @@ static double velocity_gradient(const double G[9], const double Minv[6], double 
   return L[0] + L[4] + L[8];
 }
 
-/* Density and pressure of one particle at the end of the step. The gradients belong to its end
- * and the velocity to its middle, so that L = L' (1 + dt L')^-1 of the gradient L' at its beginning;
+/* Density and pressure of one particle at the end of the step. The gradients belong to its end and
+ * the velocity to its middle, so that L = L' (1 + dt L')^-1 of the gradient L' at its beginning;
  * the mean dilation is tr L + dt/2 tr L L but for dt^2. */
 static void finish(bw_ulph *u, bw_ulph__particle *p, bw_ulph__between *b, double dt)
 {
@@ -91,8 +91,8 @@ static void finish(bw_ulph *u, bw_ulph__particle *p, bw_ulph__between *b, double
   b->p_mean = 0.5 * (before + p->p);
 }
 
-/* A pair leaves the torque V_I w V_J x cross (P_I x); all pairs of a particle, those with walls among
- * them, V eps:(P M) = 0. */
+/* A pair leaves the torque V_I w V_J x cross (P_I x); all pairs of a particle, those with walls
+ * among them, V eps:(P M) = 0. */
 static void couple_of(const double P[6], const double M_fluid[6], double V, double couple[3])
 {
   double PM[3][3], column[3], product[3];

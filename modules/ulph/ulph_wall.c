@@ -85,8 +85,8 @@ static bw_status grow_own(bw_ulph *u, size_t more)
   return BW_OK;
 }
 
-/* The particles of one wall. Its parts, joined over ranks, are in the order of the whole: so are the
- * numbers. */
+/* The particles of one wall. Its parts, joined over ranks, are in the order of the whole: so are
+ * the numbers. */
 static bw_status build_one(bw_ulph *u, int number, const bw_ulph_wall wall[])
 {
   const bw_ulph_wall *w = wall + number;

@@ -1,0 +1,194 @@
+/* ulph_internal.h -- what the sources of ulph share.
+ *
+ * Own particles are rows of one array, fluid before walls, each part in the order of (cell, part of
+ * the cell, identity). Slots are own particles and copies of others' together, in the same order:
+ * lists name slots, so that sums do not depend on who owns what. */
+#pragma once
+#include "bw_particles_copies.h"
+#include "bw_particles_migrate.h"
+#include "bw_ulph.h"
+#include "ulph_vector.h"
+#include <math.h>
+#include <string.h>
+
+/* A particle, as it lies in memory and travels between ranks. */
+typedef struct {
+  int64_t id;       /* fluid and walls are numbered apart */
+  int32_t wall;     /* -1: fluid */
+  int32_t lone;     /* fluid: M was singular in the last evaluation */
+  double m;         /* mass */
+  double x[3];      /* place */
+  double v[3];      /* velocity; of walls: extrapolated */
+  double a[3];      /* acceleration without gravity */
+  double rho, p;    /* density and pressure */
+  double at[3];     /* fluid: where it was when lists were made; walls: where it was built */
+  double normal[3]; /* walls: out of the wall */
+  double depth;     /* walls: below the surface */
+  double surface;   /* fluid: 1 at the surface, else 0 */
+  double shift[3];  /* fluid: by which it was shifted since the last evaluation */
+} bw_ulph__particle;
+
+/* Of a slot, for the first sweep. */
+typedef struct {
+  double x[3], V, v[3], rho;
+} bw_ulph__near;
+
+/* Of a slot, for the second sweep. */
+typedef struct {
+  double P[6]; /* p M^-1: xx xy xz yy yz zz */
+  double p;
+  double m2; /* tr M/d */
+  double
+      g[3]; /* gradient of the density. Walls: viscosity (no slip); 1 where it moves; artificial */
+  double surface; /* 1 at the surface, else 0 */
+} bw_ulph__far;
+
+/* Of an own fluid particle, from the first sweep to the end of the step. */
+typedef struct {
+  double Minv[6], s[3]; /* M^-1; sum w V x */
+  double L[9], g[3];    /* L[3 a + b] = d v_a/d x_b; gradient of the density */
+  double div_wall;      /* part of tr L that is due to walls */
+  double couple[3];     /* torque that its pairs with fluid leave, as those with walls complete M */
+  double V;
+  double p_mean; /* pressure in the middle of the step, to which tr L belongs */
+  double D;      /* density diffusion */
+} bw_ulph__between;
+
+/* Of an own wall particle: sums over the fluid near it. */
+typedef struct {
+  double weight, hydrostatic; /* sum w; (g - a).sum rho x w */
+} bw_ulph__shade;
+
+/* One kind of slots: fluid, or walls. */
+typedef struct {
+  size_t own, first, n;        /* own particles: first .. first + own - 1; slots in all */
+  size_t base;                 /* number of the first slot */
+  bw_particles_copies *copies; /* of and for others */
+  int32_t *slot_own;           /* (own) slot of an own particle */
+  int32_t *slot_copy;          /* (copies) slot of a copy */
+  uint64_t *key;               /* (n) cell of a slot, increasing */
+} bw_ulph__kind;
+
+/* Neighbours of BW_ULPH_LANES own particles that are near each other. */
+typedef struct {
+  size_t first;             /* own particle of lane 0 */
+  int lanes;                /* that are used */
+  size_t begin, walls, end; /* list: fluid from begin to walls, walls from there to end */
+} bw_ulph__cluster;
+
+enum { BW_ULPH__LINES = 7, BW_ULPH__PUSHES = 4 };
+/* Lines of the book. */
+enum {
+  LINE_WALLS,
+  LINE_VISCOUS,
+  LINE_ARTIFICIAL,
+  LINE_DIFFUSION,
+  LINE_TENSION,
+  LINE_SHIFTING,
+  LINE_GHOSTS
+};
+/* Who pushes. */
+enum { PUSH_GRAVITY, PUSH_WALLS, PUSH_TENSION, PUSH_SHIFTING };
+
+/* What terms have given to the fluid, or give per time. */
+typedef struct {
+  double line[BW_ULPH__LINES];
+  double push[BW_ULPH__PUSHES][3], turn[BW_ULPH__PUSHES][3];
+} bw_ulph__book;
+
+struct bw_ulph {
+  const bw_comm *comm;
+  bw_ulph_config config;
+  int n_walls;
+  bool *no_slip, *moves; /* (n_walls) */
+  double R, skin, h, m2; /* reach, skin of the lists, length of the viscosity; m2 of a lattice */
+  double mu_t, mu_wall;  /* physical and artificial viscosity; artificial one of walls */
+  double time, time_built;
+  int64_t steps, rebuilds, total;
+  bool listed;                            /* lists are there */
+  bool started;                           /* accelerations belong to the state */
+  double wall_x[3], wall_v[3], wall_a[3]; /* of the walls that move, now */
+  double wall_force[3];                   /* of this rank's fluid on walls */
+  bw_particles_space *space;
+  double balance; /* inequality that the last division left */
+  size_t n;       /* own: fluid and walls */
+  bw_ulph__particle *own;
+  bw_ulph__kind fluid, wall;
+  size_t slots;
+  bw_ulph__near *near;         /* (slots) */
+  bw_ulph__far *far;           /* (slots) */
+  bw_ulph__between *between;   /* (fluid.own) */
+  bw_ulph__shade *shade;       /* (wall.own) */
+  size_t n_clusters, n_shades; /* clusters of fluid, of walls */
+  bw_ulph__cluster *cluster, *shading;
+  size_t list_room;
+  int32_t *list;       /* slots */
+  double first_energy; /* of all ranks, at the start */
+  bw_ulph__book book;  /* since the start, of all ranks */
+  /* By the forces of the last evaluation per time; by what moves without a force in this step. Of
+   * this rank until the end of the step, when all are summed. */
+  bw_ulph__book rate, jump;
+};
+
+/* Place of xx, xy, xz, yy, yz, zz in six numbers; a <= b. */
+static inline int bw_ulph__sym(int a, int b)
+{
+  return a + b + (a > 0);
+}
+
+/* out = A x, of a symmetric A in six numbers. */
+static inline void bw_ulph__times(const double A[6], const double x[3], double out[3])
+{
+  out[0] = A[0] * x[0] + A[1] * x[1] + A[2] * x[2];
+  out[1] = A[1] * x[0] + A[3] * x[1] + A[4] * x[2];
+  out[2] = A[2] * x[0] + A[4] * x[1] + A[5] * x[2];
+}
+
+static inline double bw_ulph__dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* ulph_moment.c: M^-1, or where M is singular (then true) that of the central form. */
+bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6]);
+/* Is A - shift the unit matrix positive definite, in d dimensions? Its inverse. */
+bool bw_ulph__above(int d, const double A[6], double shift);
+void bw_ulph__inverse(int d, const double A[6], double out[6]);
+/* sum w x^2 dx^d of a whole neighbourhood on a lattice, per direction. */
+double bw_ulph__lattice_moment(int d, double dx, double R);
+
+/* ulph_config.c */
+bw_status bw_ulph__check(const bw_ulph_config *c) BW_MUST_CHECK;
+bw_status bw_ulph__check_sound(const bw_comm *comm, bw_ulph_config *c, size_t n,
+                               const double x[]) BW_MUST_CHECK;
+
+/* ulph_wall.c: particles of all walls are added to own. Collective. */
+bw_status bw_ulph__build_walls(bw_ulph *u, int n_walls, const bw_ulph_wall wall[]) BW_MUST_CHECK;
+void bw_ulph__move_walls(bw_ulph *u, double t);
+/* Velocity and density of wall particles from the fluid in `near`; their pressure from that in
+ * `far`. Both end with the exchange. Collective. */
+void bw_ulph__shade_velocity(bw_ulph *u);
+void bw_ulph__shade_pressure(bw_ulph *u);
+
+/* ulph_ranks.c. Collective. */
+bw_status bw_ulph__migrate(bw_ulph *u) BW_MUST_CHECK; /* own to the owners of `at` */
+bw_status bw_ulph__slots(bw_ulph *u) BW_MUST_CHECK;   /* copies, slots */
+void bw_ulph__send(bw_ulph__kind *kind, size_t bytes, void *slots);
+void bw_ulph__where(const bw_ulph *u, const bw_ulph__particle *p, double x[3]); /* for lists */
+
+/* ulph_lists.c */
+uint64_t bw_ulph__key(const bw_ulph *u, const double x[3]); /* cell and part of it */
+bw_status bw_ulph__lists(bw_ulph *u) BW_MUST_CHECK;         /* Local. */
+bw_status bw_ulph__rebuild(bw_ulph *u) BW_MUST_CHECK;       /* all of it. Collective. */
+void bw_ulph__release_lists(bw_ulph *u);
+
+/* ulph_first.c, ulph_second.c: the sweeps over pairs. */
+void bw_ulph__first(bw_ulph *u, double dt);
+void bw_ulph__second(bw_ulph *u, double dt);
+
+/* ulph_step.c: all sweeps with the present places; forces of the end of a step dt. Collective. */
+void bw_ulph__evaluate(bw_ulph *u, double dt);
+void bw_ulph__join_books(bw_ulph *u); /* rate and jump of all ranks. Collective. */
+
+/* ulph_account.c */
+double bw_ulph__energy(const bw_ulph *u); /* of all ranks. Collective. */

@@ -1,0 +1,63 @@
+/* Moment matrices: definiteness, inverse, and the moment of a lattice. */
+#include "ulph_internal.h"
+
+/* By the leading minors; what is not a number is not definite. */
+bool bw_ulph__above(int d, const double A[6], double shift)
+{
+  const double a = A[0] - shift, b = A[3] - shift, ab = a * b - A[1] * A[1];
+  if (!(a > 0 && ab > 0)) return false;
+  if (d == 2) return true;
+  const double c = A[5] - shift;
+  return ab * c - a * A[4] * A[4] - b * A[2] * A[2] + 2 * A[1] * A[2] * A[4] > 0;
+}
+
+void bw_ulph__inverse(int d, const double A[6], double out[6])
+{
+  memset(out, 0, 6 * sizeof *out);
+  if (d == 2) {
+    const double over = 1 / (A[0] * A[3] - A[1] * A[1]);
+    out[0] = A[3] * over, out[1] = -A[1] * over, out[3] = A[0] * over;
+    return;
+  }
+  /* Cofactors of a symmetric matrix. */
+  out[0] = A[3] * A[5] - A[4] * A[4];
+  out[1] = A[2] * A[4] - A[1] * A[5];
+  out[2] = A[1] * A[4] - A[2] * A[3];
+  out[3] = A[0] * A[5] - A[2] * A[2];
+  out[4] = A[1] * A[2] - A[0] * A[4];
+  out[5] = A[0] * A[3] - A[1] * A[1];
+  const double over = 1 / (A[0] * out[0] + A[1] * out[1] + A[2] * out[2]);
+  for (int k = 0; k < 6; k++)
+    out[k] *= over;
+}
+
+/* M^-1 is replaced where the least eigenvalue is below this part of the full one. A particle of a
+ * flat surface has half of it. With less, M^-1 makes sound so fast that steps of dx/c0 are not
+ * stable: a rotating square patch blew up at 0.2. */
+static const double SINGULAR = 0.35;
+
+bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6])
+{
+  const int d = u->config.dimensions;
+  const bool singular = !bw_ulph__above(d, M, SINGULAR * u->m2);
+  if (singular) {
+    memset(Minv, 0, 6 * sizeof *Minv);
+    Minv[0] = Minv[3] = Minv[5] = 1 / u->m2;
+  } else {
+    bw_ulph__inverse(d, M, Minv);
+  }
+  return singular;
+}
+
+double bw_ulph__lattice_moment(int d, double dx, double R)
+{
+  const int n = (int)ceil(R / dx);
+  double sum = 0;
+  for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); k++)
+    for (int j = -n; j <= n; j++)
+      for (int i = -n; i <= n; i++) {
+        const double q = sqrt(i * i + j * j + k * k) * dx / R;
+        if (q < 1) sum += pow(1 - q, 4) * (1 + 4 * q) * i * i * dx * dx;
+      }
+  return sum * pow(dx, d);
+}

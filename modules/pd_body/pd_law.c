@@ -23,6 +23,11 @@ bool bw_pd_body_break_hits(bw_pd_body *pd)
     if (pd->law->breaks(pd, &pd->bonds.block[pd->bonds.hit[q]]))
       pd->bonds.hit[kept++] = pd->bonds.hit[q];
   pd->bonds.n_hit = kept;
+  if (pd->law->n_sweep == 1) return kept > 0;
+  /* What a family lost changes the force of its neighbours, too, on whichever rank: anew. */
+  int64_t any = kept > 0;
+  bw_comm_max_int(pd->comm, 1, &any);
+  if (any) bw_pd_body_internal_force(pd, false, false);
   return kept > 0;
 }
 

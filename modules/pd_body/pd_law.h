@@ -47,8 +47,8 @@ struct bw_pd_law {
   bw_pd_sweep sweep[BW_PD_SWEEPS]; /* (n_sweep) */
   bool damps;                      /* its last sweep can do the pair damping on the way */
 
-  /* Breaks what is beyond its limit in one block and takes its force out of pd->a; the energy that
-   * the owners' halves of these bonds held is added to pd->bonds.released (bw_pd_body_cut does
+  /* Breaks what is beyond its limit in one block and, of a law of one pass, takes its force out of
+   * pd->a (of several, all passes follow); the energy that the owners' halves of these bonds held is added to pd->bonds.released (bw_pd_body_cut does
    * that). Unbreakable ends keep their bonds. Both ends have to decide alike. Returns whether any
    * broke. */
   bool (*breaks)(bw_pd_body *pd, bw_pd_block *block);
@@ -93,7 +93,8 @@ bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved,
 /* All passes over all blocks, with what is sent between them. Collective when there are several. */
 void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping);
 /* What the last checked pass noted is broken; pd->bonds.hit keeps the blocks that changed. Returns
- * whether any did. Local. */
+ * whether any did. With a law of several passes a is evaluated anew when one did on any rank:
+ * Collective; else local. */
 bool bw_pd_body_break_hits(bw_pd_body *pd);
 /* Elastic energy of this rank's halves [M L^2/T^2]. Local. */
 double bw_pd_body_elastic(const bw_pd_body *pd);

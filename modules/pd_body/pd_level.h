@@ -18,7 +18,8 @@ enum {
   BW_PD_R0 = 3,        /* |xi| [L] */
   BW_PD_STIFFNESS = 4, /* of the law: acceleration of the owner per change of length [1/T^2]; in a
                           cloud per stretch [L/T^2], still to be taken times Gamma */
-  BW_PD_LIMIT2 = 5,    /* of the law: the squared length beyond which a bond breaks [L^2] */
+  BW_PD_LIMIT2 = 5,    /* of the law: the squared length beyond which a bond breaks [L^2], or
+                          another limit of its own */
   BW_PD_WEIGHT = 6,    /* Gamma dV [L^3] */
   BW_PD_MINUS_R0 = 7   /* -|xi| [L] */
 };

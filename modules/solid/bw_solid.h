@@ -23,6 +23,7 @@
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
+#include "bw_pd_state_law.h"
 #include <stdio.h>
 
 #ifdef __cplusplus

@@ -77,7 +77,10 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
 static void break_bonds(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
-  if (!bw_pd_body_break_hits(pd) || !bw_pd_body_damped(pd)) return;
+  const bool broke = bw_pd_body_break_hits(pd);
+  /* A law of several passes has evaluated all forces anew, also on who is retired. */
+  if (pd->law->n_sweep > 1) bw_solid__still_retired(s);
+  if (!broke || !bw_pd_body_damped(pd)) return;
   /* The old damping of these blocks goes out of extra, the new one into it. */
   for (int side = 0; side < 2; side++) {
     const bw_real sign = side == 0 ? -1 : 1;

@@ -1,0 +1,33 @@
+/* pd_state_ordinary.h -- state of the ordinary law. */
+#pragma once
+#include "pd_state.h"
+
+typedef struct {
+  bw_pd_state_ordinary_options options;
+  double crossing; /* sum of Gamma dV xi.n over half of a full family [L^4] */
+  double lam[BW_PD_GROUPS], mu[BW_PD_GROUPS]; /* lam* and mu [M/(L T^2)] */
+  bool dilates;                               /* some lam* is not mu: theta counts */
+  bool breakable;                             /* some limit is finite */
+  bw_real *q;     /* storage: sum of w |xi|^2 Gamma dV over the family */
+  bw_real *stiff; /* storage: d (d + 2) mu/q */
+  bw_real *swell; /* storage: d^2 (lam* - mu)/q^2 */
+  bw_real *pull;  /* storage: d (lam* - mu) theta/q; copies after the first pass */
+} bw_pd_ordinary;
+
+static inline bw_pd_ordinary *bw_pd_ordinary_of(const bw_pd_body *pd)
+{
+  return (bw_pd_ordinary *)pd->state;
+}
+
+/* w of a bond. */
+static inline double bw_pd_ordinary_influence(const bw_pd_ordinary *o, double r0)
+{
+  return o->options.influence == BW_PD_STATE_INVERSE ? 1 / r0 : 1;
+}
+
+/* pd_state_ordinary_sweep.c: the passes, and the product with the tangent. */
+void bw_pd_state__ordinary_dilate(bw_pd_body *pd, size_t first, size_t last, bool check,
+                                  bool damping);
+void bw_pd_state__ordinary_force(bw_pd_body *pd, size_t first, size_t last, bool check,
+                                 bool damping);
+void bw_pd_state__ordinary_tangent(const bw_pd_body *pd, bw_real *const x[3], double kx[]);

@@ -47,10 +47,10 @@ struct bw_pd_law {
   bw_pd_sweep sweep[BW_PD_SWEEPS]; /* (n_sweep) */
   bool damps;                      /* its last sweep can do the pair damping on the way */
 
-  /* Breaks what is beyond its limit in one block and, of a law of one pass, takes its force out of
-   * pd->a (of several, all passes follow); the energy that the owners' halves of these bonds held is added to pd->bonds.released (bw_pd_body_cut does
-   * that). Unbreakable ends keep their bonds. Both ends have to decide alike. Returns whether any
-   * broke. */
+  /* Breaks what is beyond its limit in one block; a law of one pass takes its force out of pd->a,
+   * after one of several all passes follow. The energy that the owners' halves of these bonds held
+   * is added to pd->bonds.released (bw_pd_body_cut does that). Unbreakable ends keep their bonds.
+   * Both ends have to decide alike. Returns whether any broke. */
   bool (*breaks)(bw_pd_body *pd, bw_pd_block *block);
   /* Energy of the bond of a lane of a slot, the owner's half [M L^2/T^2]. */
   double (*bond_energy)(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,

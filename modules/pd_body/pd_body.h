@@ -128,7 +128,7 @@ typedef struct {
   double most_weight;    /* largest eigenvalue of sum_l e e Gamma dV over particles [L^3] */
 } bw_pd_dampings;
 
-enum { BW_PD_FIELDS = 8 };              /* fields of a law, at most */
+enum { BW_PD_FIELDS = 32 };             /* fields of a law, at most */
 typedef struct bw_pd_field bw_pd_field; /* pd_law.h */
 
 struct bw_pd_body {

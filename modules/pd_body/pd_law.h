@@ -52,6 +52,10 @@ struct bw_pd_law {
    * is added to pd->bonds.released (bw_pd_body_cut does that). Unbreakable ends keep their bonds.
    * Both ends have to decide alike. Returns whether any broke. */
   bool (*breaks)(bw_pd_body *pd, bw_pd_block *block);
+  /* The state of the last evaluation is what later ones start from: at the end of a step or a
+   * relaxation, before bonds break. NULL: no memory, or one that comes out the same however often a
+   * state is evaluated. */
+  void (*accept)(bw_pd_body *pd);
   /* Energy of the bond of a lane of a slot, the owner's half [M L^2/T^2]. */
   double (*bond_energy)(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
                         int lane);

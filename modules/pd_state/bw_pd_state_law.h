@@ -11,10 +11,25 @@
  * e/2 is beyond that of a flat cut, G0/sum_{xi.n > 0} xi.n Gamma dV (ERRATA-ADAPT 24); its part in
  * theta goes with it, q stays.
  *
+ * Correspondence (non-ordinary), its word is `correspondence`: the deformation gradient of a
+ * particle, by its family, is what a material (bw_pd_material.h) answers to.
+ *   K = sum w xi xi Gamma dV,  F_h = (sum w y xi Gamma dV) K^-1,  z = y - F_h xi
+ *   T_h = w (P(F_h) K^-1 xi + beta z),  beta = gamma mu/kappa,  kappa = tr K/d
+ *   L_h = sum (T_h<xi> - T_l<-xi>) Gamma dV
+ * Energy density W(F) + beta/2 sum w z^2 Gamma dV. gamma = 4/3 cancels the error of shear waves to
+ * the fourth order for every weight, horizon and dimension (ERRATA-ULPH, "what the solid must use
+ * instead"). The default weight is (1 - q)^2 (1 + 2 q) with q = |xi| over the family's reach; eight
+ * neighbours (18 in space: horizon_ratio 1.5, family_reach horizon) are the most accurate where
+ * nothing breaks. A particle whose bonds no longer span the space is on central springs.
+ * A bond breaks when its stretch is beyond s0 of its G0; or when it is stretched and the mean of
+ * what its ends have used of a limit of the largest principal stress, or of the flow's factor, is
+ * above 1.
+ *
  * Between two groups each end has its own constants, and the smaller G0 or the joint's own counts.
  * A law given no options (NULL) takes the defaults. */
 #pragma once
 #include "bw_pd_body.h"
+#include "bw_pd_material.h"
 
 BW_BEGIN_DECLS
 
@@ -34,5 +49,34 @@ bw_pd_state_ordinary_options bw_pd_state_ordinary_options_default(void);
 
 /* The ordinary law. */
 extern const bw_pd_law bw_pd_state_ordinary_law;
+
+/* How much a neighbour at a distance counts in a correspondence law. */
+typedef enum {
+  BW_PD_STATE_CUBIC,  /* (1 - q)^2 (1 + 2 q), q = |xi|/reach */
+  BW_PD_STATE_UNIFORM /* 1 */
+} bw_pd_state_weight;
+
+/* What breaks a bond of a correspondence law. */
+typedef enum {
+  BW_PD_STATE_BREAKS_BY_STRETCH, /* its stretch, of G0 */
+  BW_PD_STATE_BREAKS_BY_STRESS,  /* the largest principal Cauchy stress of its ends */
+  BW_PD_STATE_BREAKS_BY_FLOW     /* the factor of the plastic flow of its ends */
+} bw_pd_state_breaks;
+
+/* What the correspondence law is asked for: `options` of bw_pd_body_create. */
+typedef struct {
+  bw_pd_state_weight weight;                /* default cubic */
+  bw_pd_material_elastic elastic;           /* default neo-Hookean */
+  bw_pd_material_yield yield[BW_PD_GROUPS]; /* of each group; default: it does not yield */
+  double stabilisation;                     /* gamma [-]; default 4/3 */
+  bw_pd_state_breaks breaks;                /* default by stretch */
+  double limit;                             /* of stress [M/(L T^2)] or flow [-] */
+} bw_pd_state_correspondence_options;
+
+/* The defaults. Local. */
+bw_pd_state_correspondence_options bw_pd_state_correspondence_options_default(void);
+
+/* The correspondence law. */
+extern const bw_pd_law bw_pd_state_correspondence_law;
 
 BW_END_DECLS

@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-const bw_pd_law *const bw_solid_laws[] = {&bw_pd_bond_law, &bw_pd_state_ordinary_law, NULL};
+const bw_pd_law *const bw_solid_laws[] = {&bw_pd_bond_law, &bw_pd_state_ordinary_law,
+                                          &bw_pd_state_correspondence_law, NULL};
 
 const bw_pd_law *bw_solid_law_by_name(const char *name)
 {

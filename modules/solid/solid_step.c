@@ -324,6 +324,8 @@ bw_status bw_solid__begin(bw_solid *s)
 
 void bw_solid__end(bw_solid *s)
 {
+  /* What was tried in the evaluations of the step counts from now on. */
+  if (s->body->law->accept != NULL) s->body->law->accept(s->body);
   break_bonds(s);
 }
 

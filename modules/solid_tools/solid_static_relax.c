@@ -147,6 +147,7 @@ bw_status bw_solid_static_relax(bw_solid *s, const bw_solid_static_config *confi
     /* Each break changes the equilibrium: again until nothing breaks any more. */
     for (bool again = true; again && st == BW_OK;) {
       st = settle(s, config, &x, scale, report, &scale);
+      if (st == BW_OK && pd->law->accept != NULL) pd->law->accept(pd);
       const int64_t broken = st == BW_OK && config->breaks ? break_all(pd) : 0;
       report->broken += broken;
       again = broken > 0;

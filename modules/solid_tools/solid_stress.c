@@ -82,8 +82,8 @@ static void stress_row(const bw_pd_body *pd, size_t i, const family_sums *sum, d
     s[k] = sum->virial[k][k] / J;
     s[3 + k] = sum->virial[(k + 1) % 3][(k + 2) % 3] / J;
   }
-  /* Held across: the plane's two stresses make the third. */
-  if (pd->config.geometry == BW_PD_PLANE_STRAIN) s[2] = nu * (s[0] + s[1]);
+  /* Held across: the plane's two stresses make the third, where the law does not know better. */
+  if (pd->config.geometry == BW_PD_PLANE_STRAIN && s[2] == 0) s[2] = nu * (s[0] + s[1]);
 }
 
 void bw_solid_stress_compute(bw_solid *s, double F[], double stress[])

@@ -27,9 +27,10 @@ function(_bw_shared target)
 endfunction()
 
 list(TRANSFORM targets REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
-_bw_shared(breakwater ${objects})
-set_target_properties(breakwater PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
-add_library(bw::breakwater ALIAS breakwater)
+_bw_shared(bw_breakwater ${objects})
+set_target_properties(bw_breakwater PROPERTIES EXPORT_NAME breakwater
+                      LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+add_library(bw::breakwater ALIAS bw_breakwater)
 
 # The dynamic linker looks into glibc-hwcaps/LEVEL beside a library first and takes the highest level
 # that the processor has: AVX2 from x86-64-v3 on, AVX-512 from x86-64-v4 on (ld.so(8), glibc 2.33).
@@ -39,12 +40,12 @@ if(BW_HWCAPS)
             "set one of them")
   endif()
   foreach(level x86-64-v3 x86-64-v4)
-    _bw_shared(breakwater-${level} ${sources})
-    add_dependencies(breakwater-${level} bw_version)
-    target_compile_options(breakwater-${level} PRIVATE -march=${level})
-    set_target_properties(breakwater-${level} PROPERTIES
+    _bw_shared(bw_breakwater-${level} ${sources})
+    add_dependencies(bw_breakwater-${level} bw_version)
+    target_compile_options(bw_breakwater-${level} PRIVATE -march=${level})
+    set_target_properties(bw_breakwater-${level} PROPERTIES
                           LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/glibc-hwcaps/${level})
-    install(TARGETS breakwater-${level}
+    install(TARGETS bw_breakwater-${level}
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
   endforeach()
 endif()
@@ -56,10 +57,10 @@ if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr") # where the dynamic linker looks by
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
              OUTPUT_VARIABLE to_lib)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH "$ORIGIN/${to_lib}")
-  set_target_properties(${programs} breakwater PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(${programs} bw_breakwater PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
 install(TARGETS ${programs} RUNTIME)
-install(TARGETS ${targets} breakwater EXPORT Breakwater)
+install(TARGETS ${targets} bw_breakwater EXPORT Breakwater)
 install(EXPORT Breakwater NAMESPACE bw:: FILE BreakwaterTargets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Breakwater)
 

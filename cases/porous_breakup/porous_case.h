@@ -143,8 +143,8 @@ bw_grid_config porous_grid(const porous_config *q); /* that of the fluid. Local.
 /* Values that contradict each other are refused. Local. */
 bw_status porous_check(const porous_config *q) BW_MUST_CHECK;
 /* What cannot run is refused, as the run would; sizes, dimensionless groups, steps against their
- * limits, memory and time to the log. From a small run of the same kind: time and memory do not grow
- * with the channel. Collective. */
+ * limits, memory and time to the log. From a small run of the same kind: time and memory do not
+ * grow with the channel. Collective. */
 bw_status porous_plan(porous_run *p) BW_MUST_CHECK;
 /* What was built, to the log. Collective. */
 bw_status porous_describe(porous_run *p) BW_MUST_CHECK;

@@ -17,7 +17,8 @@ bw_shape porous_box(const porous_config *q); /* the medium's box */
 /* A body from voxels and one from a surface, cut to the medium's box. Local. */
 bw_status porous_image_body(const porous_config *q, porous_body *b) BW_MUST_CHECK;
 bw_status porous_surface_body(const porous_config *q, porous_body *b) BW_MUST_CHECK;
-/* What the file holds and what the medium's box cuts off, into the log. Reads all of it. Collective.
+/* What the file holds and what the medium's box cuts off, into the log. Reads all of it.
+ * Collective.
  */
 bw_status porous_tell_mask(const bw_comm *comm, const porous_config *q, porous_body *b,
                            bw_case *run) BW_MUST_CHECK;

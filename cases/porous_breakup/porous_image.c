@@ -115,8 +115,8 @@ static bw_status set_spacing(const porous_image *m, bw_shape_mask *mask)
   return BW_OK;
 }
 
-/* An image far larger than the channel is in another unit; one smaller than the medium would leave a
- * part of it empty. */
+/* An image far larger than the channel is in another unit; one smaller than the medium would leave
+ * a part of it empty. */
 static bw_status check_length(const porous_config *q, const bw_shape_mask *mask)
 {
   const bw_shape box = porous_box(q);

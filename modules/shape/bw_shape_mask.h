@@ -79,9 +79,10 @@ typedef struct {
   double inside; /* of that, the part in the box that was asked about [L^3] */
 } bw_shape_solid;
 
-/* The solid of the layers first <= k < first + layers, and how much of it lies within lower .. upper
- * (3 each; [L]); cells that the box cuts count by their part. Layers are held a few at a time. Sums
- * over ranks that look at different layers are the whole. Errors as bw_shape_mask_hold. Local. */
+/* The solid of the layers first <= k < first + layers, and how much of it lies within lower ..
+ * upper (3 each; [L]); cells that the box cuts count by their part. Layers are held a few at a
+ * time. Sums over ranks that look at different layers are the whole. Errors as bw_shape_mask_hold.
+ * Local. */
 bw_status bw_shape_mask_measure(bw_shape_mask *mask, int64_t first, int64_t layers,
                                 const double lower[3], const double upper[3],
                                 bw_shape_solid *solid) BW_MUST_CHECK;
@@ -148,8 +149,8 @@ bw_shape_surface_config bw_shape_surface_config_default(void);
 /* Cells whose centre is inside the closed surface of an STL file, binary or text. Each edge has to
  * belong to as many facets that run along it as against it, in pieces where it is cut: what is open
  * is refused with an edge. Facets that point to the other side than those around them are turned; a
- * part that is inside out and outside of every other is refused. BW_EINPUT, BW_EIO, BW_EMEM name the
- * file. *out is the caller's. Local. */
+ * part that is inside out and outside of every other is refused. BW_EINPUT, BW_EIO, BW_EMEM name
+ * the file. *out is the caller's. Local. */
 bw_status bw_shape_mask_open_stl(const char *path, const bw_shape_surface_config *config,
                                  bw_shape_mask **out) BW_MUST_CHECK;
 /* The same where all is held, on the lattice of origin 0, the body where the file puts it. Local.

@@ -1,7 +1,7 @@
-/* Is a surface of triangles closed? Every edge has to be run along as often one way as the other: by
- * two facets for a single body, by more where bodies touch. Where one side of an edge is cut into
- * pieces and the other is not, the pieces count. Facets that run the same way along an edge point to
- * different sides: they are turned to one, that of the larger area. */
+/* Is a surface of triangles closed? Every edge has to be run along as often one way as the other:
+ * by two facets for a single body, by more where bodies touch. Where one side of an edge is cut
+ * into pieces and the other is not, the pieces count. Facets that run the same way along an edge
+ * point to different sides: they are turned to one, that of the larger area. */
 #include "bw_memory.h"
 #include "shape_stl.h"
 
@@ -330,8 +330,8 @@ static uint32_t opposite(const edges *e, const side *s)
   return s->low;
 }
 
-/* A triangle that is there twice is told from a hole: by the sides (n) of edges that do not balance.
- */
+/* A triangle that is there twice is told from a hole: by the sides (n) of edges that do not
+ * balance. */
 static bw_status check_twice(const edges *e, const side bad[], size_t n)
 {
   for (size_t q = 1; q < n; q++)

@@ -2,9 +2,10 @@
  *
  * Everything is measured in cells: cell (i,j,k) has its centre at (i+1/2, j+1/2, k+1/2). The line
  * along x through the centres of a row crosses the surface where it enters (+1) or leaves (-1) a
- * body; the sum of the crossings before a centre is the winding number there. Centres are moved by a
- * hair along +x, +y and +z, a different one in each direction: so a face through centres, whichever
- * way it looks, has all of them on one side, and a lower face keeps what an upper one gives away. */
+ * body; the sum of the crossings before a centre is the winding number there. Centres are moved by
+ * a hair along +x, +y and +z, a different one in each direction: so a face through centres,
+ * whichever way it looks, has all of them on one side, and a lower face keeps what an upper one
+ * gives away. */
 #include "bw_memory.h"
 #include "shape_internal.h"
 #include "shape_source.h"
@@ -61,8 +62,8 @@ static void corners_of(const surface *s, uint32_t q, double p[3][3])
 }
 
 /* Which side of the edge a to b, seen along x, is the point (y, z) on? Twice the area of the
- * triangle they make, by the same numbers whichever end comes first, so that the two triangles of an
- * edge agree, and 0 is not a third answer. */
+ * triangle they make, by the same numbers whichever end comes first, so that the two triangles of
+ * an edge agree, and 0 is not a third answer. */
 static double side_of(const double a[3], const double b[3], double y, double z, int *way)
 {
   const bool swap = a[1] > b[1] || (a[1] == b[1] && a[2] > b[2]);

@@ -1,5 +1,5 @@
-/* Images as the tools of the trade write them: every one holds the same 12 voxels, or is refused with
- * what was found.
+/* Images as the tools of the trade write them: every one holds the same 12 voxels, or is refused
+ * with what was found.
  * BUILD libs=zlib
  * TEST ranks=1 */
 #include "twelve_voxels.h"
@@ -199,7 +199,8 @@ START_TEST(packed_voxels)
 }
 END_TEST
 
-/* What a header claims is not asked for: with little memory left, the file's size is what decides. */
+/* What a header claims is not asked for: with little memory left, the file's size
+ * decides. */
 START_TEST(headers_that_claim_too_much)
 {
   struct rlimit was, low;

@@ -59,8 +59,8 @@ START_TEST(the_wider_of_two_ways_counts)
   const bw_shape_pores p = look(&box, plate);
   ck_assert(p.throat[0] == 3);
   ck_assert(p.at[0][0] == 5 && p.at[0][1] == 3 && p.at[0][2] == 7);
-  /* Along the plate a ball keeps to the larger half, 6 cells wide and open at its end: its centre may
-   * be 6 cells from the plate. */
+  /* Along the plate a ball keeps to the larger half, 6 cells wide and open at its end: its centre
+   * may be 6 cells from the plate. */
   ck_assert(p.throat[1] == 11 && p.throat[2] == 11);
 }
 END_TEST

@@ -223,8 +223,8 @@ START_TEST(closedness_is_a_matter_of_edges)
 }
 END_TEST
 
-/* Facets whose normals point to the wrong side, in a body and in a cavity, one and a whole side with
- * edges of its own: each comes right by its neighbours. */
+/* Facets whose normals point to the wrong side, in a body and in a cavity, one and a whole side
+ * with edges of its own: each comes right by its neighbours. */
 START_TEST(single_facets_are_turned)
 {
   static mesh m;

@@ -206,7 +206,7 @@ void bw_coupler__carry_over(bw_coupler *c, double dt, double relaxation);
 void bw_coupler__book_open(bw_coupler *c);
 void bw_coupler__book_motion(bw_coupler *c, double dt);
 bw_status bw_coupler__book_close(bw_coupler *c) BW_MUST_CHECK;
-/* The status of a step that failed, `cause`, whose message names the coupling where the book says so.
+/* The status of a step that failed, `cause`; its message names the coupling where the book says so.
  * Collective. */
 bw_status bw_coupler__book_explain(bw_coupler *c, bw_status cause) BW_MUST_CHECK;
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;

@@ -36,6 +36,7 @@ typedef struct {
   int64_t step;         /* steps done */
   int64_t end, release; /* of the whole run; until the plate is let go */
   int64_t rows;         /* of history.csv, when the checkpoint was written */
+  double kept[2];       /* step and rows of the last good state */
 } bending_run;
 
 /* Before anything is built: counts the steps; what cannot run is refused, as the run would; sizes,
@@ -52,5 +53,9 @@ bw_status bending_sample(bending_run *p, bending_measure *m) BW_MUST_CHECK;
 bw_status bending_picture(bending_run *p) BW_MUST_CHECK;
 /* checkpoint-last.h5 of the present state. Collective. */
 bw_status bending_checkpoint(bending_run *p) BW_MUST_CHECK;
+/* Remember the present state as good; after a divergence write it to checkpoint-good.h5 and tell
+ * the cause again with it. Returns `cause`. Collective. */
+bw_status bending_keep(bending_run *p) BW_MUST_CHECK;
+bw_status bending_save_last_good(bending_run *p, bw_status cause) BW_MUST_CHECK;
 /* Goes on from a checkpoint, written by any number of ranks. Collective. */
 bw_status bending_restart(bending_run *p, const char *path) BW_MUST_CHECK;

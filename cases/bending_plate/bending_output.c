@@ -135,21 +135,51 @@ bw_status bending_picture(bending_run *p)
   return add_to_series(p, "plate", "vtp", write_plate);
 }
 
-bw_status bending_checkpoint(bending_run *p)
+static void progress_of(const bending_run *p, double progress[2])
 {
-  const double progress[] = {(double)p->step, (double)bw_history_rows(p->history)};
+  progress[0] = (double)p->step;
+  progress[1] = (double)bw_history_rows(p->history);
+}
+
+/* `kept`: the last good state, else the present one. */
+static bw_status write_checkpoint(bending_run *p, const char *name, bool kept)
+{
+  double progress[2];
+  progress_of(p, progress);
   char *path = NULL;
   bw_checkpoint *ck = NULL;
   bw_status st = bw_history_sync(p->flow.comm, p->history);
-  BW_THEN(st, bw_case_path(p->run, "checkpoint-last.h5", &path));
+  BW_THEN(st, bw_case_path(p->run, name, &path));
   BW_THEN(st, bw_checkpoint_create(p->flow.comm, path, &ck));
   BW_THEN(st, bw_checkpoint_put_case(ck, p->run));
-  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", 2, progress));
-  BW_THEN(st, bw_coupler_save(p->flow.coupler, ck));
+  BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/progress", 2, kept ? p->kept : progress));
+  BW_THEN(st,
+          kept ? bw_coupler_save_kept(p->flow.coupler, ck) : bw_coupler_save(p->flow.coupler, ck));
   if (st == BW_OK) st = bw_checkpoint_close(&ck);
   bw_checkpoint_abandon(&ck);
   bw_release(&path);
   return st;
+}
+
+bw_status bending_checkpoint(bending_run *p)
+{
+  return write_checkpoint(p, "checkpoint-last.h5", false);
+}
+
+bw_status bending_keep(bending_run *p)
+{
+  progress_of(p, p->kept);
+  return bw_coupler_keep(p->flow.coupler);
+}
+
+bw_status bending_save_last_good(bending_run *p, bw_status cause)
+{
+  char what[1024];
+  /* The message of the failure, before saving replaces it. */
+  snprintf(what, sizeof what, "%s", bw_last_message());
+  BW_TRY(write_checkpoint(p, "checkpoint-good.h5", true));
+  return BW_FAIL(cause, "step %lld: %s; the last good state, step %.0f, is in checkpoint-good.h5",
+                 (long long)p->step + 1, what, p->kept[0]);
 }
 
 bw_status bending_restart(bending_run *p, const char *path)

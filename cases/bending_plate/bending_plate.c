@@ -9,7 +9,10 @@
 /* What is due after a step: samples, pictures, checkpoints. */
 static bw_status after_step(bending_run *p, bending_measure *m)
 {
+  enum { KEEP_EVERY = 50 }; /* a window of the book of the coupling */
   const bending_output *out = &p->config->output;
+  /* Good states first; one in which the book looks wrong is none. */
+  if (p->step % KEEP_EVERY == 0 && bw_coupler_sound(p->flow.coupler)) BW_TRY(bending_keep(p));
   if (p->step % out->sample_every == 0) BW_TRY(bending_sample(p, m));
   /* 0 leaves checkpoints and pictures to the end of the run. The checkpoint first: what was paid
    * for is on disk before a picture may fail. */
@@ -69,7 +72,11 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
   const int every = p->config->output.picture_every;
   if (args->restart != NULL && every > 0 && p->step % every == 0) BW_TRY(bending_picture(p));
   bw_stop_install();
-  BW_TRY(advance(p, &stopped));
+  /* The first good state, for a divergence in the first steps. */
+  bw_status st = bending_keep(p);
+  BW_THEN(st, advance(p, &stopped));
+  if (st == BW_EDIVERGED || st == BW_ECFL) st = bending_save_last_good(p, st);
+  BW_TRY(st);
   /* The last state, whatever the intervals were. */
   BW_TRY(bending_checkpoint(p));
   if (stopped) return bw_case_unfinished(p->run, "checkpoint-last.h5");

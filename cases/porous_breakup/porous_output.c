@@ -175,7 +175,8 @@ bw_status porous_after_step(porous_run *p)
 {
   const porous_output *out = &p->config->output;
   /* Good states first, so that a failure while writing leaves one. */
-  if (p->step % out->keep_every == 0) BW_TRY(porous_keep(p));
+  /* One in which the book of the coupling looks wrong is none. */
+  if (p->step % out->keep_every == 0 && bw_coupler_sound(p->coupler)) BW_TRY(porous_keep(p));
   if (p->step % out->sample_every == 0) BW_TRY(porous_sample(p));
   /* The checkpoint first: what was paid for is on disk before a picture may fail. */
   if (out->checkpoint_every > 0 && p->step % out->checkpoint_every == 0)

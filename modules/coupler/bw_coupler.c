@@ -20,7 +20,8 @@ bw_coupler_config bw_coupler_config_default(void)
                              .load_relaxation = 0.1,
                              .virtual_mass = 1.0,
                              .coupling_iterations = 1,
-                             .coupling_residual = 1e-4};
+                             .coupling_residual = 1e-4,
+                             .check_book = true};
 }
 
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
@@ -82,14 +83,14 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 21 };
+enum { N_VECTORS = 24 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
       &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
       &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
       &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V,      &c->load,
-      &c->moment,   &c->M,        &c->marker_M};
+      &c->moment,   &c->M,        &c->marker_M, &c->book.X,    &c->book.V,      &c->book.change};
   memcpy(vector, all, sizeof all);
 }
 

@@ -114,6 +114,8 @@ typedef struct {
   double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
                                 that ends the iteration [-]             default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
+  bool check_book;   /* stop when fluid and solid no longer exchange work as bodies do, with what
+                        and since when (book.c, BW_EDIVERGED)              default true */
   bool count_work;   /* work_given, work_late of the report (an exchange a step) default false */
   bool walled[3][2]; /* [direction][lower, upper]: sides of the box the solid leans on, where it
                         has no surface                                     default false */
@@ -142,6 +144,10 @@ void bw_coupler_watch(bw_coupler *c, bool watched);
  * Collective. */
 bw_status bw_coupler_step(bw_coupler *c, double dt) BW_MUST_CHECK;
 
+/* Did the last windows of the book look right? Good states are those of such steps. Local, the same
+ * on all ranks. */
+bool bw_coupler_sound(const bw_coupler *c);
+
 /* How many solid sub-steps a step of dt [T] takes, at least 1; INT_MAX for more. Local. */
 int bw_coupler_substeps(const bw_coupler *c, double dt);
 
@@ -167,6 +173,11 @@ typedef struct {
                                      (load - F').V dt; 0 without count_work or with w = 1.
                                      given = late + received (the solid's ledger, external, less
                                      its weight's), to the order of the step */
+  double work_unseen;             /* of that given, what the load does not hold: by probes, what the
+                                     markers do that no probe sees; by the reaction round-off */
+  double work_received;           /* by the solid from the load since the start; given = unseen +
+                                     late + received but for what the sampling of the motion makes,
+                                     of the order of the step (book.c) [M L^2/T^2] */
   double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
   double slip;                    /* that over the largest speed of inflows, walls and bodies, or of
                                      the fluid's mean where all of them rest [-] */

@@ -4,10 +4,26 @@
 #include "bw_exchange.h"
 
 /* Of the fluid on the solid since the start, this rank's share [M L^2/T^2]: given through the
- * markers; of the load, what relaxation holds back of it. */
+ * markers; by the load; of that, what is held back; what the solid received. */
+enum { BW_COUPLER__WORKS = 4 };
 typedef struct {
-  double given, late;
+  double given, late, loaded, received;
 } bw_coupler__work;
+
+/* What the book of the coupling sums over the steps of a window (book.c), of this rank. */
+enum { BW_COUPLER__WINDOWS = 2, BW_COUPLER__BOOK_SUMS = 8 };
+typedef struct {
+  double sum[BW_COUPLER__BOOK_SUMS];
+  double last[BW_COUPLER__BOOK_SUMS]; /* of the window before, of all ranks */
+  int strikes[3]; /* windows in a row of each kind: book, swing, load; -1: nothing seen yet */
+} bw_coupler__window;
+typedef struct {
+  bw_coupler__window window[BW_COUPLER__WINDOWS];
+  double *X;                     /* (n,3) positions at the beginning of the step [L] */
+  double *V, *change;            /* (n,3) velocities after the last step, their last change [L/T] */
+  double missed, received, load; /* of the step: book.c */
+  int64_t steps;                 /* booked */
+} bw_coupler__book;
 
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
@@ -15,9 +31,9 @@ typedef struct {
   double fluid_numbers[2]; /* time, gradient of the forcing */
   bw_real *field[4];       /* u, v, w, p; NULL where the fluid has none */
   double *rows;            /* (n, bw_solid_restart_row) of bw_solid_get_restart */
-  double sums[BW_SOLID_RESTART_SUMS], work[2]; /* of all ranks: given, late */
-  uint8_t *bits;                               /* (n, bits_bytes) */
-  double *V_before, *F, *M;                    /* (n,3) */
+  double sums[BW_SOLID_RESTART_SUMS], work[BW_COUPLER__WORKS]; /* of all ranks */
+  uint8_t *bits;                                               /* (n, bits_bytes) */
+  double *V_before, *F, *M;                                    /* (n,3) */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
@@ -41,6 +57,7 @@ typedef struct {
  * velocity with which the solid answers (n,3); guess of the markers' and its residual
  * (n_surface,3); what earlier tries of the step taught, (n_surface,3) a column. */
 enum { BW_COUPLER__COLUMNS = 30 };
+#define BW_COUPLER__THETA 0.8 /* of the displacement; ringing: -2/3 */
 typedef struct {
   bw_coupler__state start;
   double *X, *answer, *guess, *residual;
@@ -100,6 +117,7 @@ struct bw_coupler {
   uint8_t *stays;               /* (particles and copies) scratch: not gone */
   bw_pd_link *link;             /* (family) scratch */
   bw_coupler__work work;
+  bw_coupler__book book;
   bw_coupler__state kept;
   bw_coupler__iteration iteration;
   int iterations;
@@ -133,6 +151,8 @@ bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;
 bool bw_coupler__probes_look(const bw_coupler *c);
 void bw_coupler__find_reach(bw_coupler *c); /* Collective */
 void bw_coupler__reaction_force(bw_coupler *c);
+/* The largest speed that drives the fluid (measure.c). Collective. */
+double bw_coupler__reference_speed(bw_coupler *c);
 /* Work of the fluid through the markers over a step of dt; c->force holds the reaction. Local. */
 void bw_coupler__count_work(bw_coupler *c, double dt);
 
@@ -179,6 +199,16 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
  * the next load after it. Local. */
 bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
 void bw_coupler__carry_over(bw_coupler *c, double dt, double relaxation);
+
+/* The book (book.c): at the beginning of a step; after the solid has moved under c->F, before what
+ * is carried over replaces it (both local); at the end of the step, BW_EDIVERGED when it is no
+ * physics any more (Collective). */
+void bw_coupler__book_open(bw_coupler *c);
+void bw_coupler__book_motion(bw_coupler *c, double dt);
+bw_status bw_coupler__book_close(bw_coupler *c) BW_MUST_CHECK;
+/* The status of a step that failed, `cause`; its message names the coupling where the book says so.
+ * Collective. */
+bw_status bw_coupler__book_explain(bw_coupler *c, bw_status cause) BW_MUST_CHECK;
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);

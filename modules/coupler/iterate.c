@@ -21,7 +21,6 @@
 #include <string.h>
 
 static const double LEAST_NEW = 1e-6; /* of a dr */
-static const double THETA = 0.8;      /* ringing: -2/3 */
 
 bw_status bw_coupler__iteration_create(bw_coupler *c)
 {
@@ -74,7 +73,8 @@ static double compare(bw_coupler *c, double dt)
   bw_coupler__marker_velocity(c, V);
   /* theta (X_{n+1} - X_n)/dt + (1 - theta) V_{n+1}, per particle. */
   for (size_t i = 0; i < 3 * c->n; i++)
-    t->answer[i] = THETA * (c->X[i] - t->X[i]) / dt + (1.0 - THETA) * c->V[i];
+    t->answer[i] =
+        BW_COUPLER__THETA * (c->X[i] - t->X[i]) / dt + (1.0 - BW_COUPLER__THETA) * c->V[i];
   /* At the markers: the same change as of the particle, on top of what its spin adds. */
   for (size_t q = 0; q < c->n_surface; q++)
     for (size_t d = 0; d < 3; d++) {

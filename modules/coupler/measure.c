@@ -15,7 +15,7 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
 
 /* The largest speed that drives the fluid: of inflows, walls, a given flow rate, bodies; the mean
  * of the fluid where nothing of this moves. Collective. */
-static double reference_speed(bw_coupler *c)
+double bw_coupler__reference_speed(bw_coupler *c)
 {
   const bw_ns_channel_config *fluid = bw_ns_channel_settings(c->fluid);
   double most = fluid->forcing == BW_FORCING_FLOW_RATE ? fabs(fluid->forcing_value) : 0.0;
@@ -89,12 +89,14 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .imbalance = ibm.imbalance,
                          .work_given = c->work.given,
                          .work_late = c->work.late,
+                         .work_unseen = c->work.given - c->work.loaded,
+                         .work_received = c->work.received,
                          .iterations = c->iterations,
                          .residual = c->residual,
                          .unconverged = c->unconverged};
   double box[3], mass[3];
   int64_t count[2];
-  const double speed = reference_speed(c);
+  const double speed = bw_coupler__reference_speed(c);
   r.slip = speed > 0.0 ? r.slip_rms / speed : 0.0;
   r.leak = measure_leak(c, speed);
   /* Probes that load the solid were read in the step; others are read now, if p is known. */
@@ -117,6 +119,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);
   bw_comm_sum(comm, 1, &r.work_late);
+  bw_comm_sum(comm, 1, &r.work_unseen);
+  bw_comm_sum(comm, 1, &r.work_received);
   /* What is inside, passing out and gone. */
   bw_coupler__count_mass(c, mass);
   r.mass_inside = mass[0], r.mass_out = mass[1], r.mass_left = mass[2];

@@ -7,6 +7,7 @@
 
 enum { N_FIELDS = 4 };
 static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "solid/body";
+static const char more_work_name[] = "solid/work_of_load";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
@@ -58,8 +59,10 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   /* The solid: motion and ledger as its restart wants them, and which bonds hold. */
   bw_solid_get_restart(c->solid, s->rows, s->sums);
   /* Work is kept as the sum of all ranks, which a restart may divide otherwise. */
-  s->work[0] = c->work.given, s->work[1] = c->work.late;
-  bw_comm_sum(bw_solid_comm(c->solid), 2, s->work);
+  const double work[BW_COUPLER__WORKS] = {c->work.given, c->work.late, c->work.loaded,
+                                          c->work.received};
+  memcpy(s->work, work, sizeof work);
+  bw_comm_sum(bw_solid_comm(c->solid), BW_COUPLER__WORKS, s->work);
   bw_solid_get_bits(c->solid, s->bits);
   /* The relaxed load and the velocity before belong to the state: both act in the next step. */
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
@@ -120,6 +123,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
+  BW_TRY(bw_checkpoint_put_numbers(ck, more_work_name, 2, s->work + 2));
   /* Everything of the particles, as rows. */
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id,
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
@@ -143,6 +147,9 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
+  s->work[2] = s->work[3] = 0.0;
+  if (bw_checkpoint_has(ck, more_work_name))
+    BW_TRY(bw_checkpoint_get_numbers(ck, more_work_name, 2, s->work + 2));
   /* Rows find their particles by id. */
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id,
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
@@ -205,7 +212,10 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
   c->kept.filled = true;
   /* Work was saved as the sum of all ranks: one of them gets it. */
   const double own = bw_comm_rank(comm) == 0 ? 1.0 : 0.0;
-  c->work = (bw_coupler__work){own * c->kept.work[0], own * c->kept.work[1]};
+  c->work = (bw_coupler__work){own * c->kept.work[0], own * c->kept.work[1], own * c->kept.work[2],
+                               own * c->kept.work[3]};
+  memset(c->book.window, 0, sizeof c->book.window); /* windows begin anew */
+  c->book.steps = 0;
   BW_TRY(bw_coupler__state_restore(c, &c->kept));
   /* The surface follows from bonds and places. */
   return bw_coupler__follow_surface(c);

@@ -127,6 +127,7 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
     BW_THEN(st, bw_solid_step(c->solid, dt / n));
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
+  bw_coupler__book_motion(c, dt);
   bw_coupler__carry_over(c, dt, relaxation);
   bw_timer_stop(c->timer, BW_PART_SOLID);
   return st;
@@ -155,7 +156,7 @@ static void count_work(bw_coupler *c, double dt)
     bw_timer_work(c->timer, BW_PART_SOLID, c->bonds * bw_coupler_substeps(c, dt) * (rk3 ? 3 : 1));
 }
 
-bw_status bw_coupler_step(bw_coupler *c, double dt)
+static bw_status step(bw_coupler *c, double dt)
 {
   if (dt != c->checked_dt)
     BW_TRY(bw_ns_channel_check(c->fluid, dt)); /* later: by the step before */
@@ -170,6 +171,7 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
     bw_coupler__remember(c);
     return st;
   }
+  bw_coupler__book_open(c);
   if (c->config.coupling_iterations > 1) {
     /* The same phases, repeated until both sides agree. */
     BW_TRY(bw_coupler__iterate(c, dt));
@@ -182,4 +184,11 @@ bw_status bw_coupler_step(bw_coupler *c, double dt)
   bw_coupler__remember(c);       /* what the markers needed, for the next step */
   BW_TRY(bw_coupler__let_go(c)); /* pieces that have passed an outflow */
   return move_surface(c);        /* surface and markers at t + dt */
+}
+
+bw_status bw_coupler_step(bw_coupler *c, double dt)
+{
+  const bw_status st = step(c, dt);
+  if (st != BW_OK) return bw_coupler__book_explain(c, st);
+  return c->held ? BW_OK : bw_coupler__book_close(c); /* is it physics still? */
 }

@@ -357,5 +357,10 @@ void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
   const double w = relaxation, volume = bw_solid_volume(c->solid);
   for (size_t i = 0; i < 3 * c->n; i++)
     c->F[i] += w * c->load[i] / volume;
+  /* c->V: how the surface moves, as the fluid was told. */
+  c->book.load = 0.0;
+  for (size_t i = 0; i < 3 * c->n; i++)
+    c->book.load += dt * c->load[i] * c->V[i];
+  c->work.loaded += c->book.load;
   if (c->config.count_work) c->work.late += dt * power_held_back(c);
 }

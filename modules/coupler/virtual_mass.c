@@ -26,6 +26,7 @@ void bw_coupler__carry_over(bw_coupler *c, double dt, double relaxation)
   const double work = bw_solid_get_drag(c->solid, impulse);
   /* What the drag took is still owed: it joins the next load. */
   c->work.late -= work;
+  c->book.received += work;
   for (size_t i = 0; i < 3 * c->n; i++)
     c->F[i] = (1.0 - relaxation) * c->F[i] - relaxation * impulse[i] / dt;
 }

@@ -299,6 +299,10 @@ typedef struct {
  * beyond a wall, BW_EMEM; *out is then left as it was. Collective. */
 bw_status bw_solid_account(bw_solid *solid, bw_solid_ledger *out) BW_MUST_CHECK;
 
+/* Kinetic energy and that of the bonds [M L^2/T^2], of all ranks, as of the forces evaluated last:
+ * a look that changes nothing, not even lists of contact. Collective. */
+double bw_solid_held(const bw_solid *solid);
+
 /* The bonds that hold, for a checkpoint: bits (n, bytes) <- one bit per direction in stencil order,
  * the same on any number of ranks. Local. */
 void bw_solid_get_bits(const bw_solid *solid, uint8_t bits[]);

@@ -22,6 +22,15 @@ static void motion(const bw_pd_body *pd, double book[7])
   }
 }
 
+double bw_solid_held(const bw_solid *s)
+{
+  double book[7] = {0};
+  motion(s->body, book);
+  double held = book[0] + bw_pd_body_elastic(s->body);
+  bw_comm_sum(s->body->comm, 1, &held);
+  return held;
+}
+
 bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
 {
   bw_pd_body *pd = s->body;

@@ -13,7 +13,7 @@ static bw_status load(const char *name, const char *text, size_t bytes,
   bw_core__config_source source;
   char *accepted = NULL;
   void *loaded = NULL;
-  bw_status st = bw_core__config_read(name, text, bytes, n_overrides, overrides, &source);
+  bw_status st = bw_core__config_read(name, text, bytes, fields, n_overrides, overrides, &source);
   BW_THEN(st, bw_core__config_check(&source, fields, config, &accepted));
   BW_THEN(st, bw_core__config_convert(accepted, fields, size, &loaded));
   /* Nothing was wrong: only now the caller's struct is written, and only where a value was

@@ -27,6 +27,10 @@
  * Overrides are "key.path=value"; shapes.0.radius=2 names an item (its index at most the count,
  * so that the next one may be added); a value may be any YAML ("[1, 2, 3]"). The key `run` at the
  * top level is ignored, so that a run.yaml is itself a case file.
+ * Shorter ways to write a value, where the table allows them: items by their names
+ * (BW_CONFIG_NAMED), a block in place of a list of one (every list), a scalar in place of a block
+ * (BW_CONFIG_BRIEF), a list of texts in place of one with blanks (BW_TEXTS), a point with fewer
+ * numbers (BW_POINT).
  * Tables are written in C: the macros choose by type (_Generic), which C++ cannot. A C++ program
  * may load, dump and describe with a table of a C source. */
 #pragma once
@@ -57,11 +61,15 @@ typedef enum {
 
 /* Which limits of a bw_config_range hold; combined by |. */
 enum {
-  BW_BOUND_MIN = 1,   /* x >= low */
-  BW_BOUND_ABOVE = 2, /* x > low */
-  BW_BOUND_MAX = 4,   /* x <= high */
-  BW_BOUND_BELOW = 8, /* x < high */
-  BW_BOUND_FILE = 16  /* a text that names a file to be read */
+  BW_BOUND_MIN = 1,     /* x >= low */
+  BW_BOUND_ABOVE = 2,   /* x > low */
+  BW_BOUND_MAX = 4,     /* x <= high */
+  BW_BOUND_BELOW = 8,   /* x < high */
+  BW_BOUND_FILE = 16,   /* a text that names a file to be read */
+  BW_BOUND_NAMED = 32,  /* a list whose items have names: a block NAME: {keys} is one, too */
+  BW_BOUND_BRIEF = 64,  /* a block: a scalar is its first key, too */
+  BW_BOUND_TEXTS = 128, /* a text: a list of texts is joined by blanks */
+  BW_BOUND_POINT = 256  /* numbers: fewer, or one without brackets, leave the rest at 0 */
 };
 
 /* Sizes of numbers. Beyond them even the sixth power leaves what a double holds, and no quantity in
@@ -87,6 +95,19 @@ typedef struct {
 #define BW_FILE                                                                                    \
   {                                                                                                \
     BW_BOUND_FILE, 0, 0                                                                            \
+  }
+
+/* For a text: it may be written as a list of texts, which are joined by blanks. */
+#define BW_TEXTS                                                                                   \
+  {                                                                                                \
+    BW_BOUND_TEXTS, 0, 0                                                                           \
+  }
+
+/* For an array of numbers: those left out at its end are 0, as z in two dimensions; one number
+ * needs no brackets. */
+#define BW_POINT                                                                                   \
+  {                                                                                                \
+    BW_BOUND_POINT, 0, 0                                                                           \
   }
 
 /* Numbers greater than x. */
@@ -220,6 +241,25 @@ struct bw_config_field {
   {                                                                                                \
 #m, BW_CONFIG_TYPE_LIST, need, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),                 \
         sizeof BW_CONFIG_MEMBER_(T, m)[0], offsetof(T, count), BW_ANY, "", help, NULL, fields      \
+  }
+
+/* The same where items have names: the first member of the struct is `name`, a text that is unique
+ * in the list. In the file NAME: {keys} is an item; a list of blocks with the key `name` is the
+ * same. Overrides and messages name items by their names. */
+#define BW_CONFIG_NAMED(T, m, count, need, fields, help)                                           \
+  {                                                                                                \
+#m, BW_CONFIG_TYPE_LIST, need, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),                 \
+        sizeof BW_CONFIG_MEMBER_(T, m)[0], offsetof(T, count),                                     \
+                                       {BW_BOUND_NAMED, 0, 0 }, "", help, NULL, fields             \
+  }
+
+/* A block that may be absent (as BW_CONFIG_MAP_IF) and for which a scalar may stand: the value of
+ * the first key of its table. */
+#define BW_CONFIG_BRIEF(T, m, flag, fields, help)                                                  \
+  {                                                                                                \
+#m, BW_CONFIG_TYPE_MAP, BW_OPTIONAL, offsetof(T, m), sizeof BW_CONFIG_MEMBER_(T, m),           \
+        sizeof BW_CONFIG_MEMBER_(T, m), offsetof(T, flag),                                         \
+        {BW_BOUND_BRIEF, 0, 0 }, "", help, NULL, fields                                            \
   }
 
 /* The end of a table. */

@@ -254,11 +254,35 @@ static void check_map(walk *w, const bw_config_field *f, int id, int place, cons
   check_table(w, f->fields, id, place, path, defaults + f->offset);
 }
 
+enum { ITEM = 64 };
+
+/* How messages call an item: by its name where it has one, else by its number. */
+static void item_name(const walk *w, const bw_config_field *f, int item, int q, char text[ITEM])
+{
+  const int id = bw_core__config_find(w->source, item, "name", NULL);
+  const yaml_node_t *node = bw_core__config_node(w->source, id);
+  if ((f->range.bounds & BW_BOUND_NAMED) && node != NULL && node->type == YAML_SCALAR_NODE)
+    snprintf(text, ITEM, "%.60s", (const char *)node->data.scalar.value);
+  else
+    snprintf(text, ITEM, "%d", q);
+}
+
+/* Two items of one name could not be told apart. */
+static void check_unique(walk *w, const bw_config_field *f, int id, int item, int q,
+                         const char *path)
+{
+  char name[ITEM];
+  item_name(w, f, item, q, name);
+  if ((f->range.bounds & BW_BOUND_NAMED) && bw_core__config_named(w->source, id, name) < q &&
+      bw_core__config_named(w->source, id, name) >= 0)
+    problem(w, item, "%s: there is another item of that name; choose a new one", path);
+}
+
 static void check_list(walk *w, const bw_config_field *f, int id, const char *path,
                        const char *defaults)
 {
   const int count = bw_core__config_count(w->source, id), most = (int)(f->size / f->item_size);
-  char meaning[MEANING], item_path[BW_CONFIG_PATH], index[16];
+  char meaning[MEANING], item_path[BW_CONFIG_PATH], index[ITEM];
   bw_core__config_meaning(f, sizeof meaning, meaning);
   if (bw_core__config_node(w->source, id)->type != YAML_SEQUENCE_NODE &&
       !bw_core__config_is_null(w->source, id))
@@ -273,8 +297,9 @@ static void check_list(walk *w, const bw_config_field *f, int id, const char *pa
     for (int q = 0; q < count; q++) {
       const int item = bw_core__config_item(w->source, id, q);
       const yaml_node_t *node = bw_core__config_node(w->source, item);
-      snprintf(index, sizeof index, "%d", q);
+      item_name(w, f, item, q, index);
       bw_core__config_join(path, index, item_path);
+      check_unique(w, f, id, item, q, item_path);
       if (node->type == YAML_MAPPING_NODE)
         check_table(w, f->fields, item, item, item_path, defaults + f->offset);
       else

@@ -21,10 +21,15 @@ typedef struct {
   int *first_node; /* (n_overrides) nodes from here on were made by this override or a later one */
 } bw_core__config_source;
 
-/* The document of `text` with the overrides in it; free also after a failure. */
-bw_status bw_core__config_read(const char *name, const char *text, size_t bytes, int n_overrides,
+/* The document of `text` with the overrides in it, shorter ways written out as the table wants
+ * them; free also after a failure. */
+bw_status bw_core__config_read(const char *name, const char *text, size_t bytes,
+                               const bw_config_field fields[], int n_overrides,
                                const char *const overrides[],
                                bw_core__config_source *s) BW_MUST_CHECK;
+/* Writes out the shorter ways of bw_config.h in the whole document. */
+bw_status bw_core__config_expand(bw_core__config_source *s,
+                                 const bw_config_field fields[]) BW_MUST_CHECK;
 void bw_core__config_free(bw_core__config_source *s);
 
 /* BW_EINPUT with the line of the first byte that is not UTF-8, or 0. */
@@ -36,6 +41,8 @@ int bw_core__config_find(const bw_core__config_source *s, int id, const char *ke
 /* Items of a list (0 for anything else), and one of them. */
 int bw_core__config_count(const bw_core__config_source *s, int id);
 int bw_core__config_item(const bw_core__config_source *s, int id, int item);
+/* Number of the item whose key `name` is this text; -1: none. */
+int bw_core__config_named(const bw_core__config_source *s, int id, const char *name);
 /* Nothing was written behind the key (or null). */
 bool bw_core__config_is_null(const bw_core__config_source *s, int id);
 /* The word `none`, which switches an optional block off. */

@@ -57,6 +57,16 @@ int bw_core__config_item(const bw_core__config_source *s, int id, int item)
   return bw_core__config_node(s, id)->data.sequence.items.start[item];
 }
 
+int bw_core__config_named(const bw_core__config_source *s, int id, const char *name)
+{
+  for (int q = 0; q < bw_core__config_count(s, id); q++) {
+    const int given = bw_core__config_find(s, bw_core__config_item(s, id, q), "name", NULL);
+    const char *text = scalar_of(bw_core__config_node(s, given));
+    if (text != NULL && strcmp(text, name) == 0) return q;
+  }
+  return -1;
+}
+
 static bool is_plain_word(const bw_core__config_source *s, int id, const char *const words[])
 {
   const yaml_node_t *node = bw_core__config_node(s, id);
@@ -215,10 +225,13 @@ static bw_status slot(bw_core__config_source *s, const char *override, int id, c
   BW_REQUIRE(length > 0, BW_EINPUT, "--set %s: empty key in the path", override);
   /* Below a list the segment is an index; one behind the last adds an item. */
   if (node_of(s, id)->type == YAML_SEQUENCE_NODE) {
-    const int index = index_of(segment, length), count = bw_core__config_count(s, id);
-    BW_REQUIRE(index >= 0 && index <= count, BW_EINPUT,
-               "--set %s: %.*s is a list of %d items: '%s' must be a number from 0 to %d", override,
-               before, override, count, key, count);
+    const int number = index_of(segment, length), count = bw_core__config_count(s, id);
+    const int index = number >= 0 ? number : bw_core__config_named(s, id, key);
+    BW_REQUIRE(
+        index >= 0 && index <= count, BW_EINPUT,
+        "--set %s: %.*s is a list of %d items: '%s' must be a number from 0 to %d, or the name of "
+        "an item",
+        override, before, override, count, key, count);
     if (index == count) {
       const int empty = add_scalar(&s->document, "", 0, YAML_PLAIN_SCALAR_STYLE);
       BW_REQUIRE(empty != 0 && yaml_document_append_sequence_item(&s->document, id, empty), BW_EMEM,
@@ -279,7 +292,8 @@ static bw_status apply(bw_core__config_source *s, const char *override)
   return BW_OK;
 }
 
-bw_status bw_core__config_read(const char *name, const char *text, size_t bytes, int n_overrides,
+bw_status bw_core__config_read(const char *name, const char *text, size_t bytes,
+                               const bw_config_field fields[], int n_overrides,
                                const char *const overrides[], bw_core__config_source *s)
 {
   *s = (bw_core__config_source){.name = name};
@@ -296,12 +310,15 @@ bw_status bw_core__config_read(const char *name, const char *text, size_t bytes,
   }
   BW_REQUIRE(s->root != 0 && node_of(s, s->root)->type == YAML_MAPPING_NODE, BW_EINPUT,
              "%s: the file must hold 'key: value' lines", name);
+  /* Once for the file, so that overrides find its items; once for what they brought. */
+  BW_TRY(bw_core__config_expand(s, fields));
   s->overrides = overrides;
   for (s->n_overrides = 0; s->n_overrides < n_overrides; s->n_overrides++) {
     /* From this number on nodes belong to the override that is applied now. */
     s->first_node[s->n_overrides] = (int)(s->document.nodes.top - s->document.nodes.start) + 1;
     BW_TRY(apply(s, overrides[s->n_overrides]));
   }
+  if (n_overrides > 0) BW_TRY(bw_core__config_expand(s, fields));
   return BW_OK;
 }
 

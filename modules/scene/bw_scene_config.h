@@ -1,0 +1,366 @@
+/* bw_scene_config.h -- what a scene file says, as a plain struct (tables in scene_fields*.c).
+ *
+ * Any consistent set of units: [M], [L], [T]. Numbers that were not given are NaN (words INT_MIN,
+ * texts ""); bw_scene_resolve fills what `accuracy` decides. Names join the parts: a body names its
+ * material, a gauge its body. */
+#pragma once
+#include "bw_config.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Sizes of the lists of a scene. */
+enum {
+  BW_SCENE_NAME = 48,      /* bytes of a name, its end included */
+  BW_SCENE_NAMES = 256,    /* bytes of a list of names */
+  BW_SCENE_PATH = 512,     /* bytes of the path of a file */
+  BW_SCENE_MATERIALS = 16, /* materials */
+  BW_SCENE_BODIES = 64,    /* bodies */
+  BW_SCENE_PARTS = 12,     /* shapes of a body */
+  BW_SCENE_HELD = 6,       /* places where a body is held */
+  BW_SCENE_CRACKS = 8,     /* cracks of a body */
+  BW_SCENE_LOADS = 32,     /* loads */
+  BW_SCENE_PHASES = 12,    /* phases */
+  BW_SCENE_GAUGES = 48,    /* gauges */
+  BW_SCENE_WATCHED = 48,   /* lines of `watch` */
+  BW_SCENE_VORTICES = 8    /* vortices at the start of the fluid */
+};
+
+/* How careful a run is with what the file leaves open. */
+typedef enum {
+  BW_SCENE_QUICK,    /* a first look */
+  BW_SCENE_STANDARD, /* the default */
+  BW_SCENE_CAREFUL   /* for numbers that are handed on */
+} bw_scene_accuracy;
+
+/* Which layer the solids of a scene in two dimensions are. */
+typedef enum {
+  BW_SCENE_SPACE,  /* three dimensions */
+  BW_SCENE_STRESS, /* one layer, free to contract across */
+  BW_SCENE_STRAIN  /* one layer, held across */
+} bw_scene_plane;
+
+/* What the fluid is. */
+typedef enum {
+  BW_SCENE_INCOMPRESSIBLE, /* a flow on a grid */
+  BW_SCENE_PARTICLES,      /* particles with a free surface */
+  BW_SCENE_NO_FLUID        /* none */
+} bw_scene_fluid_model;
+
+/* How a body moves. */
+typedef enum {
+  BW_SCENE_FIXED,      /* not at all */
+  BW_SCENE_PRESCRIBED, /* as its velocity, turn and swing say */
+  BW_SCENE_RIGID,      /* as one piece, by its mass and what acts on it */
+  BW_SCENE_ELASTIC,    /* it deforms and does not break */
+  BW_SCENE_BREAKABLE   /* it deforms and breaks */
+} bw_scene_motion;
+
+/* The box of the fluid; without it there are solids alone. */
+typedef struct {
+  double length[3]; /* edges, lower corner at the origin [L] */
+  int cells[3];     /* cells[2] = 1: two dimensions */
+  double stretch;   /* of y by tanh [-], 0: uniform */
+} bw_scene_domain;
+
+/* A side of that box. */
+typedef struct {
+  int kind, profile;  /* bw_ns_side_kind, bw_ns_profile */
+  double velocity[3]; /* of a wall or a uniform inflow [L/T] */
+  double mean;        /* mean velocity of a poiseuille inflow [L/T]; NaN: not given */
+  double ramp;        /* time over which an inflow or a moving wall reaches its velocity [T] */
+} bw_scene_side;
+typedef struct {
+  bw_scene_side lower, upper; /* at 0 and at the length */
+} bw_scene_pair;
+typedef struct {
+  bw_scene_pair x, y, z;
+  bool has_z; /* are there sides in z? Not in two dimensions */
+} bw_scene_sides;
+
+/* A vortex along z, u_theta = swirl s exp((1 - s^2)/2) with s = r/radius. */
+typedef struct {
+  double centre[3]; /* [L] */
+  double radius;    /* where it is fastest [L] */
+  double swirl;     /* largest velocity [L/T]; > 0: counterclockwise */
+} bw_scene_vortex;
+typedef struct {
+  double velocity[3]; /* everywhere [L/T] */
+  bool developed;     /* laminar profile of the inflow everywhere */
+  int n_vortices;
+  bw_scene_vortex vortices[BW_SCENE_VORTICES]; /* added to it */
+  char file[BW_SCENE_PATH];                    /* a checkpoint to take the fluid from */
+} bw_scene_start;
+typedef struct {
+  int kind;     /* bw_ns_forcing */
+  int axis;     /* 0: x */
+  double value; /* bulk velocity [L/T], or -dp/dx over the density [L/T^2] */
+} bw_scene_forcing;
+typedef struct {
+  int model;        /* bw_scene_fluid_model */
+  double density;   /* [M/L^3] */
+  double viscosity; /* kinematic [L^2/T] */
+  bw_scene_sides sides;
+  bw_scene_start start;
+  bool has_forcing;
+  bw_scene_forcing forcing;
+} bw_scene_fluid;
+
+/* A material. Keys of laws that this build does not have are read, and refused. */
+typedef struct {
+  char name[BW_SCENE_NAME];
+  char law[BW_SCENE_NAME];     /* a row of bw_solid_laws */
+  char elastic[BW_SCENE_NAME]; /* of a state-based law */
+  char plastic[BW_SCENE_NAME]; /* of a state-based law */
+  double density;              /* [M/L^3] */
+  double young_modulus;        /* [M/(L T^2)] */
+  double poisson_ratio;        /* [-]; NaN: the law's own */
+  double fracture_energy;      /* [M/T^2]; NaN: it does not break */
+  double cohesion, friction_angle, dilation_angle, yield_stress, hardening; /* of plastic laws */
+} bw_scene_material;
+
+/* One shape of a body: exactly one of its blocks is given. */
+typedef struct {
+  double from[3], to[3]; /* [L] */
+} bw_scene_box;
+typedef struct {
+  int axis;         /* 0, 1, 2 */
+  double centre[2]; /* in the plane across the axis, in the order x, y, z [L] */
+  double radius;    /* [L] */
+  double from, to;  /* along the axis [L]; NaN: without end */
+} bw_scene_cylinder;
+typedef struct {
+  double centre[3]; /* [L] */
+  double radius;    /* [L] */
+} bw_scene_sphere;
+typedef struct {
+  int kind;             /* bw_shape_kind */
+  double centre[3];     /* of one pore [L] */
+  double radius, pitch; /* [L] */
+} bw_scene_pores;
+typedef struct {
+  char file[BW_SCENE_PATH]; /* .nrrd .nhdr .mhd .mha */
+  double low, high;         /* voxels of [low, high] are solid */
+  double at[3];             /* lower corner [L]; NaN: the file's */
+  double voxel;             /* edge of a voxel [L]; NaN: the file's */
+} bw_scene_image;
+typedef struct {
+  char file[BW_SCENE_PATH];
+  double unit; /* of the file's lengths [L] */
+  double cell; /* cells it is filled with [L]; NaN: half the spacing */
+} bw_scene_stl;
+typedef struct {
+  bool has_box, has_cylinder, has_sphere, has_pores, has_image, has_stl;
+  bw_scene_box box;
+  bw_scene_cylinder cylinder;
+  bw_scene_sphere sphere;
+  bw_scene_pores pores;
+  bw_scene_image image;
+  bw_scene_stl stl;
+  char minus[BW_SCENE_NAME];    /* a body whose shapes are taken away */
+  bool remove;                  /* this shape is taken away */
+  char material[BW_SCENE_NAME]; /* of the sites of this shape; "": the body's */
+} bw_scene_shape;
+
+/* Where a body is held: particles in a box, those that stand in another body, or a side. */
+typedef struct {
+  char by[BW_SCENE_NAME];   /* a body; its sites become held particles of this one */
+  char side[BW_SCENE_NAME]; /* x_lower ... z_upper of the body's own extent */
+  int layers;               /* of that side */
+  bool has_box;
+  bw_scene_box box;
+} bw_scene_held;
+typedef struct {
+  double from[3], to[3]; /* the segment, in 3D two corners of the cut [L] */
+  double along[3];       /* 3D: the other edge of the parallelogram, from `from` [L] */
+} bw_scene_crack;
+typedef struct {
+  double rate;      /* [1/T], right-handed about the axis */
+  double axis[3];   /* [-] */
+  double centre[3]; /* a point of it [L] */
+} bw_scene_rotation;
+typedef struct {
+  double amplitude[3]; /* X = X0 + amplitude sin(2 pi frequency t) [L] */
+  double frequency;    /* [1/T] */
+} bw_scene_swing;
+typedef struct {
+  char name[BW_SCENE_NAME];
+  int n_shape;
+  bw_scene_shape shape[BW_SCENE_PARTS];
+  char material[BW_SCENE_NAME];
+  int motion;         /* bw_scene_motion */
+  double spacing;     /* [L]; NaN: the fluid's */
+  double turn;        /* of the lattice about z [deg] */
+  double velocity[3]; /* of a prescribed body always, of others at the start [L/T] */
+  bool has_rotation;
+  bw_scene_rotation rotation; /* of a prescribed body */
+  bool has_swing;
+  bw_scene_swing swing; /* of a prescribed body */
+  int n_held;
+  bw_scene_held held[BW_SCENE_HELD];
+  int n_cracks;
+  bw_scene_crack cracks[BW_SCENE_CRACKS];
+  int self_contact; /* does what breaks off collide with the rest? INT_MIN: if it breaks */
+} bw_scene_body;
+
+/* Loads. */
+typedef enum {
+  BW_SCENE_TRACTION, /* value: force per area of the side [M/(L T^2)] */
+  BW_SCENE_PRESSURE, /* value[0]: against the side [M/(L T^2)] */
+  BW_SCENE_FORCE,    /* value: the sum over the place [M L/T^2] */
+  BW_SCENE_GRAVITY,  /* value: acceleration [L/T^2] */
+  BW_SCENE_VELOCITY  /* value: of particles that are held to it [L/T] */
+} bw_scene_load_kind;
+typedef struct {
+  char side[BW_SCENE_NAME]; /* x_lower ... z_upper of the body's extent, or `crack` */
+  int layers;               /* of that side */
+  bool has_box;
+  bw_scene_box box;
+} bw_scene_where;
+typedef struct {
+  char on[BW_SCENE_NAME]; /* a body */
+  int kind;               /* bw_scene_load_kind */
+  bool has_where;
+  bw_scene_where where; /* left out: all of the body */
+  double value[3];
+  double ramp;      /* until all of it acts [T] */
+  double start;     /* when it begins [T] */
+  bool smooth;      /* the ramp has no corners */
+  bool unbreakable; /* bonds of the particles it acts on do not break */
+} bw_scene_load;
+
+typedef struct {
+  char between[BW_SCENE_NAMES]; /* all, none */
+  double friction;              /* [-] */
+} bw_scene_contact;
+
+/* Phases. */
+typedef struct {
+  double time;    /* of the run [T]; NaN: not given */
+  int steps;      /* of the phase; INT_MIN: not given */
+  double settled; /* kinetic over elastic energy, or change of the flow; NaN: not given */
+} bw_scene_until;
+typedef struct {
+  char name[BW_SCENE_NAME];
+  bool has_until;
+  bw_scene_until until;
+  char hold[BW_SCENE_NAMES]; /* bodies that stand still */
+  double damp;               /* against rest [M/(L^3 T)] */
+  int breaking;              /* may bonds break? 0, 1; INT_MIN: as the bodies say */
+} bw_scene_phase;
+
+/* Gauges. */
+typedef struct {
+  double from[3], to[3]; /* [L] */
+  int points;
+} bw_scene_line;
+typedef struct {
+  int axis;  /* 0, 1, 2 */
+  double at; /* [L] */
+} bw_scene_slice;
+typedef struct {
+  char name[BW_SCENE_NAME];
+  char of[BW_SCENE_NAMES];   /* quantities: see bw_scene_quantity */
+  char body[BW_SCENE_NAMES]; /* bodies */
+  double nearest[3];         /* the particle of the body that is nearest to this place [L] */
+  bool has_region;
+  bw_scene_box region; /* mean over the particles in it */
+  double point[3];     /* a place in the fluid [L] */
+  double minus[3];     /* another one, whose value is taken away [L] */
+  bool has_line;
+  bw_scene_line line;
+  bool has_slice;
+  bw_scene_slice slice;
+  double origin[3]; /* where a crack begins [L] */
+  double every;     /* time between files of lines and slices [T] */
+} bw_scene_gauge_config;
+
+/* What is printed of a gauge at the end, and limits that stop a run. */
+typedef struct {
+  char name[BW_SCENE_NAME]; /* GAUGE or GAUGE.COMPONENT */
+  int mean;                 /* 0: none, 1: midrange, 2: time */
+  bool amplitude, frequency;
+  int last_periods;    /* that go in */
+  double from;         /* time from which is looked at [T] */
+  double above, below; /* the run stops beyond; NaN: no limit */
+} bw_scene_watch;
+
+typedef struct {
+  double sample_every;                  /* [T] */
+  double picture_every;                 /* [T]; 0: at the end only */
+  char checkpoint_every[BW_SCENE_NAME]; /* "600 s" of wall clock, or a time of the run */
+  bool figures;
+} bw_scene_output;
+
+/* Every knob by name; NaN or INT_MIN: `accuracy` decides. */
+typedef struct {
+  double step;          /* of the run, fixed [T]; NaN: step_share of the limit */
+  double step_share;    /* of the largest stable step of the fluid or, alone, of the solids */
+  double solid_share;   /* solid sub-step over its limit, in a flow */
+  int integrator;       /* bw_solid_integrator */
+  double horizon_ratio; /* m */
+  int surface_correction, volume_fraction, family_reach; /* of bw_solid.h */
+  double damping_mean, damping_pair, damping_absolute;
+  double disorder;
+  int disorder_seed;
+  int viscous; /* bw_ns_viscous */
+  int load;    /* bw_coupler_load_kind */
+  int forcing_iterations;
+  double memory, retraction, marker_spacing, probe_length, load_relaxation, coupling_residual;
+  int coupling_iterations;
+  unsigned set; /* bits of the knobs that `accuracy` has set, by rows of its table; no key */
+} bw_scene_numerics;
+
+/* A scene. */
+typedef struct {
+  char name[BW_SCENE_NAMES];
+  int accuracy;     /* bw_scene_accuracy */
+  int plane;        /* bw_scene_plane; INT_MIN: strain with one cell in z, else space */
+  double thickness; /* of the layer in two dimensions [L]; NaN: of the domain, else 1 */
+  bool has_domain;
+  bw_scene_domain domain;
+  bool has_fluid;
+  bw_scene_fluid fluid;
+  int n_materials;
+  bw_scene_material materials[BW_SCENE_MATERIALS];
+  int n_bodies;
+  bw_scene_body bodies[BW_SCENE_BODIES];
+  int n_loads;
+  bw_scene_load loads[BW_SCENE_LOADS];
+  double gravity[3]; /* [L/T^2] */
+  bool has_contact;
+  bw_scene_contact contact;
+  int n_phases;
+  bw_scene_phase phases[BW_SCENE_PHASES];
+  int n_gauges;
+  bw_scene_gauge_config gauges[BW_SCENE_GAUGES];
+  int n_watch;
+  bw_scene_watch watch[BW_SCENE_WATCHED];
+  bw_scene_output output;
+  bw_scene_numerics numerics;
+} bw_scene_config;
+
+/* The keys of a scene file, for bw_config_load and bw_case_main. */
+extern const bw_config_field bw_scene_fields[];
+
+/* *c <- what a scene is before its file is read. Local. */
+void bw_scene_config_default(bw_scene_config *c);
+
+/* Fills what `accuracy` decides and resolves what follows from the rest. Twice is once. Local. */
+void bw_scene_resolve(bw_scene_config *c);
+
+/* The knobs that `accuracy` has set, one a line: "  numerics.KEY = VALUE". After resolve. Local. */
+void bw_scene_knobs(const bw_scene_config *c, FILE *out);
+
+/* Refuses what a run would refuse at its start, without a field or a particle: names that lead
+ * nowhere, what this build does not have, overlapping bodies, loads that hit nothing, cracks outside.
+ * BW_EINPUT names key, value and remedy. Local. */
+bw_status bw_scene_check(const bw_scene_config *c) BW_MUST_CHECK;
+
+/* The keys as a JSON schema (draft 2020-12). Local. */
+void bw_scene_schema(FILE *out);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,167 @@
+/* What a run would refuse, found in the file alone: fluid, materials, phases. */
+#include "scene_check.h"
+
+#include "bw_ns_channel.h"
+#include "bw_solid.h"
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+bool bw_scene__has_fluid(const bw_scene_config *c)
+{
+  return c->has_fluid && c->fluid.model == BW_SCENE_INCOMPRESSIBLE;
+}
+
+bool bw_scene__deforms(const bw_scene_body *b)
+{
+  return b->motion == BW_SCENE_ELASTIC || b->motion == BW_SCENE_BREAKABLE;
+}
+
+bool bw_scene__any_deforms(const bw_scene_config *c)
+{
+  for (int b = 0; b < c->n_bodies; b++)
+    if (bw_scene__deforms(&c->bodies[b])) return true;
+  return false;
+}
+
+bw_status bw_scene__check_fluid(const bw_scene_config *c)
+{
+  const bw_scene_fluid *f = &c->fluid;
+  BW_REQUIRE(!c->has_fluid || f->model != BW_SCENE_PARTICLES, BW_EINPUT,
+             "fluid.model = particles: not in this build; this build has: incompressible, none");
+  BW_REQUIRE(bw_scene__has_fluid(c) == c->has_domain, BW_EINPUT,
+             c->has_domain ? "domain is given without a fluid; leave it out for solids alone, or "
+                             "give fluid"
+                           : "fluid is given without its box; give domain: length and cells");
+  if (!c->has_domain) return BW_OK;
+  BW_REQUIRE(f->start.file[0] == '\0', BW_EINPUT,
+             "fluid.start.file = %s: not in this build; start from velocity and vortices",
+             f->start.file);
+  BW_REQUIRE(!c->fluid.has_forcing || f->forcing.axis == 0, BW_EINPUT,
+             "fluid.forcing.axis = %s: not in this build, which forces along x; turn the scene",
+             bw_scene__word(bw_scene__axis_words, f->forcing.axis));
+  BW_REQUIRE(!f->start.developed || (f->sides.x.lower.kind == BW_SIDE_INFLOW &&
+                                     f->sides.x.lower.profile == BW_PROFILE_POISEUILLE),
+             BW_EINPUT,
+             "fluid.start.developed: there is no poiseuille inflow at the lower x side to take the "
+             "profile of; leave it out");
+  const bool flat = c->domain.cells[2] == 1;
+  BW_REQUIRE(
+      flat == (c->plane == BW_SCENE_STRAIN) && c->plane != BW_SCENE_STRESS, BW_EINPUT,
+      "plane: a fluid in two dimensions (domain.cells[2] = 1) goes with plane: strain, one in "
+      "space with plane: none; leave plane out");
+  BW_REQUIRE(
+      c->domain.stretch == 0.0 || c->n_bodies == 0, BW_EINPUT,
+      "domain.stretch = %g: bodies in a flow need a uniform grid; leave it out, or the bodies",
+      c->domain.stretch);
+  if (c->n_bodies == 0) return BW_OK;
+  /* Markers need cells of one edge. */
+  const double h = c->domain.length[1] / c->domain.cells[1];
+  for (int d = 0; d < 3; d++)
+    BW_REQUIRE(fabs(c->domain.length[d] / c->domain.cells[d] / h - 1.0) < 1e-6, BW_EINPUT,
+               "domain.cells[%d] = %d: with bodies, cells are cubes; %g would give the spacing %g "
+               "of y%s",
+               d, c->domain.cells[d], c->domain.length[d] / h, h,
+               d == 2 && flat ? " (or set domain.length[2] to that spacing)" : "");
+  return BW_OK;
+}
+
+static bw_status check_name(const char *what, const char *name)
+{
+  BW_REQUIRE(name[0] != '\0' && strpbrk(name, " \t.,:[]") == NULL, BW_EINPUT,
+             "%s.%s: a name is one word of letters, digits, - and _", what, name);
+  return BW_OK;
+}
+
+static bw_status check_law(const bw_scene_material *m)
+{
+  char known[256] = "";
+  for (const bw_pd_law *const *law = bw_solid_laws; *law != NULL; law++) {
+    const size_t used = strlen(known);
+    snprintf(known + used, sizeof known - used, "%s%s", used > 0 ? ", " : "",
+             bw_scene__law_name(*law));
+  }
+  BW_REQUIRE(bw_solid_law_by_name(m->law) != NULL, BW_EINPUT,
+             "materials.%s.law = %s: not in this build; this build has: %s", m->name, m->law,
+             known);
+  /* Keys that the law does not read must not look as if they did something. */
+  const double numbers[] = {m->cohesion, m->friction_angle, m->dilation_angle, m->yield_stress,
+                            m->hardening};
+  static const char *const keys[] = {"cohesion", "friction_angle", "dilation_angle", "yield_stress",
+                                     "hardening"};
+  BW_REQUIRE(m->plastic[0] == '\0', BW_EINPUT,
+             "materials.%s.plastic = %s: not in this build; leave it out", m->name, m->plastic);
+  BW_REQUIRE(m->elastic[0] == '\0', BW_EINPUT,
+             "materials.%s.elastic = %s: not in this build; leave it out", m->name, m->elastic);
+  for (int q = 0; q < 5; q++)
+    BW_REQUIRE(isnan(numbers[q]), BW_EINPUT,
+               "materials.%s.%s = %g: plastic laws are not in this build; leave it out", m->name,
+               keys[q], numbers[q]);
+  return BW_OK;
+}
+
+bw_status bw_scene__check_materials(const bw_scene_config *c)
+{
+  for (int q = 0; q < c->n_materials; q++) {
+    BW_TRY(check_name("materials", c->materials[q].name));
+    BW_TRY(check_law(&c->materials[q]));
+  }
+  return BW_OK;
+}
+
+static bw_status check_until(const bw_scene_phase *p, int q, double *end)
+{
+  const bw_scene_until *u = &p->until;
+  BW_REQUIRE(!isnan(u->time) || u->steps != INT_MIN || !isnan(u->settled), BW_EINPUT,
+             "phases.%d.until: it ends never; give time, steps or settled", q);
+  BW_REQUIRE(
+      isnan(u->time) || u->time > *end, BW_EINPUT,
+      "phases.%d.until.time = %g: times are of the run, and phase %d ends at %g; give a later "
+      "one",
+      q, u->time, q - 1, *end);
+  if (!isnan(u->time)) *end = u->time;
+  return BW_OK;
+}
+
+bw_status bw_scene__check_phases(const bw_scene_config *c)
+{
+  double end = 0.0;
+  char name[BW_SCENE_NAME], known[256];
+  bw_scene__body_names(c, sizeof known, known);
+  for (int q = 0; q < c->n_phases; q++) {
+    const bw_scene_phase *p = &c->phases[q];
+    BW_TRY(check_until(p, q, &end));
+    int held = 0;
+    for (const char *rest = p->hold; bw_scene__next_name(&rest, name);) {
+      const int b = bw_scene__body_named(c, name);
+      BW_REQUIRE(b >= 0, BW_EINPUT, "phases.%d.hold = %s: there is no such body; there are: %s", q,
+                 name, known);
+      held += bw_scene__deforms(&c->bodies[b]);
+    }
+    int all = 0;
+    for (int b = 0; b < c->n_bodies; b++)
+      all += bw_scene__deforms(&c->bodies[b]);
+    BW_REQUIRE(
+        held == 0 || (held == all && bw_scene__has_fluid(c)), BW_EINPUT,
+        "phases.%d.hold = %s: this build holds all bodies that deform in a flow or none; name "
+        "all of them, or leave it out",
+        q, p->hold);
+  }
+  return BW_OK;
+}
+
+bw_status bw_scene_check(const bw_scene_config *c)
+{
+  BW_REQUIRE(c->n_bodies > 0 || bw_scene__has_fluid(c), BW_EINPUT,
+             "the scene holds neither a body nor a fluid; give bodies, or domain and fluid");
+  BW_TRY(bw_scene__check_fluid(c));
+  BW_TRY(bw_scene__check_materials(c));
+  for (int b = 0; b < c->n_bodies; b++)
+    BW_TRY(check_name("bodies", c->bodies[b].name));
+  for (int q = 0; q < c->n_gauges; q++)
+    BW_TRY(check_name("gauges", c->gauges[q].name));
+  BW_TRY(bw_scene__check_bodies(c));
+  BW_TRY(bw_scene__check_loads(c));
+  BW_TRY(bw_scene__check_phases(c));
+  return bw_scene__check_gauges(c);
+}

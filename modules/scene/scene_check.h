@@ -1,0 +1,18 @@
+/* scene_check.h -- parts of bw_scene_check; shared inside `scene`. All local; BW_EINPUT. */
+#pragma once
+#include "scene_shapes.h"
+
+bw_status bw_scene__check_fluid(const bw_scene_config *c) BW_MUST_CHECK; /* and domain */
+bw_status
+bw_scene__check_materials(const bw_scene_config *c) BW_MUST_CHECK;        /* laws of this build */
+bw_status bw_scene__check_bodies(const bw_scene_config *c) BW_MUST_CHECK; /* shapes, overlaps */
+bw_status bw_scene__check_loads(const bw_scene_config *c) BW_MUST_CHECK;  /* and contact */
+bw_status bw_scene__check_phases(const bw_scene_config *c) BW_MUST_CHECK; /* and output */
+bw_status bw_scene__check_gauges(const bw_scene_config *c) BW_MUST_CHECK; /* and watch */
+
+/* Does the scene have a fluid on a grid? */
+bool bw_scene__has_fluid(const bw_scene_config *c);
+/* Does the body deform? */
+bool bw_scene__deforms(const bw_scene_body *b);
+/* Some body deforms. */
+bool bw_scene__any_deforms(const bw_scene_config *c);

@@ -1,0 +1,49 @@
+/* What deforms in a flow: the coupler around the one solid of the scene. */
+#include "scene_impl.h"
+
+#include <math.h>
+
+/* Sides that particles of the solid stand beyond are walls that it leans on. */
+static void find_leaning(bw_scene *s, bw_coupler_config *c)
+{
+  const bw_scene__solid *q = &s->solid[0];
+  const bw_ns_channel_config *fluid = bw_ns_channel_settings(s->fluid);
+  double lower[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < q->n; i++)
+    for (size_t d = 0; d < 3; d++) {
+      lower[d] = fmin(lower[d], q->X0[3 * i + d]);
+      upper[d] = fmax(upper[d], q->X0[3 * i + d]);
+    }
+  bw_comm_min(s->comm, 3, lower);
+  bw_comm_max(s->comm, 3, upper);
+  const double ds = bw_solid_settings(q->solid)->ds;
+  for (int d = 0; d < (s->planar ? 2 : 3); d++) {
+    /* Particles whose face lies on the wall touch it; those beyond are held under it. */
+    const bool walls[2] = {fluid->side[d][0].kind == BW_SIDE_WALL,
+                           fluid->side[d][1].kind == BW_SIDE_WALL};
+    c->walled[d][0] = walls[0] && lower[d] < 0.75 * ds;
+    c->walled[d][1] = walls[1] && upper[d] > s->config.domain.length[d] - 0.75 * ds;
+  }
+}
+
+bw_status bw_scene__coupled_create(bw_scene *s)
+{
+  const bw_scene_numerics *n = &s->config.numerics;
+  bw_coupler_config c = bw_coupler_config_default();
+  c.rho = s->config.fluid.density;
+  c.nu = s->config.fluid.viscosity;
+  c.iterations = n->forcing_iterations;
+  c.memory = n->memory;
+  c.retraction = n->retraction;
+  c.marker_spacing = n->marker_spacing;
+  c.probe_length = n->probe_length;
+  c.solid_safety = n->solid_share;
+  c.load = (bw_coupler_load_kind)n->load;
+  c.load_relaxation = n->load_relaxation;
+  c.coupling_iterations = n->coupling_iterations;
+  c.coupling_residual = n->coupling_residual;
+  for (int d = 0; d < 3; d++)
+    c.gravity[d] = s->config.gravity[d];
+  find_leaning(s, &c);
+  return bw_coupler_create(&c, s->fluid, s->solid[0].solid, &s->coupler);
+}

@@ -1,0 +1,161 @@
+/* A scene from its configuration: read, create, destroy, which blocks run and why. */
+#include "scene_impl.h"
+
+#include "bw_memory.h"
+#include <math.h>
+#include <string.h>
+
+bw_status bw_scene_read(const bw_comm *comm, const char *path, int n_overrides,
+                        const char *const overrides[], bw_scene_config *c)
+{
+  BW_TRY(bw_config_load(comm, path, bw_scene_fields, n_overrides, overrides, sizeof *c, c));
+  bw_scene_resolve(c);
+  return bw_comm_agree(comm, bw_scene_check(c));
+}
+
+void bw_scene_destroy(bw_scene **scene)
+{
+  bw_scene *s = *scene;
+  if (s == NULL) return;
+  bw_scene__gauges_destroy(s);
+  bw_scene__fluid_destroy(s);
+  bw_scene__solids_destroy(s);
+  bw_release(scene);
+}
+
+bool bw_scene__asked(const bw_scene *s, const char *quantity)
+{
+  for (int q = 0; q < s->config.n_gauges; q++)
+    if (bw_scene__listed(s->config.gauges[q].of, quantity)) return true;
+  return false;
+}
+
+/* The box whose momentum is balanced: the bodies with as much room around them as they are wide,
+ * where there is as much. */
+static bw_status watch_box(bw_scene *s)
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  double lower[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  int lo[3], hi[3];
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    bw_scene__shapes shapes;
+    const bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
+    for (int d = 0; d < 3; d++) {
+      lower[d] = fmin(lower[d], shapes.lower[d]);
+      upper[d] = fmax(upper[d], shapes.upper[d]);
+    }
+    bw_scene__shapes_release(&shapes);
+    BW_TRY(st);
+  }
+  for (int d = 0; d < 3; d++) {
+    const double room = fmax(4.0 * g->spacing[d], 0.5 * (upper[d] - lower[d]));
+    const int least = g->periodic[d] || g->n[d] < 3 ? 0 : 1;
+    lo[d] = (int)fmin(fmax(0.0, round((lower[d] - room) / g->spacing[d])), g->n[d] - 1.0);
+    hi[d] = (int)fmax(fmin((double)g->n[d], round((upper[d] + room) / g->spacing[d])), 1.0);
+    /* Sides through which the fluid comes and goes are not faces of the box. */
+    const bw_ns_side *side = bw_ns_channel_settings(s->fluid)->side[d];
+    if (side[0].kind != BW_SIDE_WALL && lo[d] < least) lo[d] = least;
+    if (side[1].kind != BW_SIDE_WALL && hi[d] > g->n[d] - least) hi[d] = g->n[d] - least;
+    if (g->n[d] == 1) lo[d] = 0, hi[d] = 1;
+  }
+  return bw_ns_channel_watch_box(s->fluid, lo, hi);
+}
+
+static void find_speed(bw_scene *s)
+{
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    const bw_scene_body *body = &s->config.bodies[b];
+    if (body->motion != BW_SCENE_PRESCRIBED) continue;
+    double v[3] = {0}, lower[3], upper[3];
+    bw_scene__shapes shapes;
+    if (bw_scene__shapes_make(&s->config, b, &shapes) == BW_OK) {
+      memcpy(lower, shapes.lower, sizeof lower);
+      memcpy(upper, shapes.upper, sizeof upper);
+      const double turn = body->has_rotation ? fabs(body->rotation.rate) : 0.0;
+      double reach = 0.0;
+      for (int d = 0; d < 2 && turn > 0.0; d++)
+        reach = fmax(reach, fmax(fabs(lower[d] - body->rotation.centre[d]),
+                                 fabs(upper[d] - body->rotation.centre[d])));
+      for (int d = 0; d < 3; d++)
+        v[d] = fabs(body->velocity[d]) + turn * reach +
+               (body->has_swing
+                    ? 2.0 * acos(-1.0) * body->swing.frequency * fabs(body->swing.amplitude[d])
+                    : 0.0);
+    }
+    bw_scene__shapes_release(&shapes);
+    s->speed = fmax(s->speed, v[0] + v[1] + v[2]);
+  }
+}
+
+static bw_status build(bw_scene *s)
+{
+  const bw_scene_config *c = &s->config;
+  if (bw_scene__has_fluid(c)) BW_TRY(bw_scene__fluid_create(s));
+  find_speed(s);
+  BW_TRY(bw_scene__solids_create(s));
+  if (s->fluid != NULL && s->n_solids > 0) BW_TRY(bw_scene__coupled_create(s));
+  if (s->fluid != NULL && s->n_solids == 0 && c->n_bodies > 0) BW_TRY(bw_scene__surfaces_create(s));
+  if (s->fluid != NULL && c->n_bodies > 0 && bw_scene__asked(s, "force")) BW_TRY(watch_box(s));
+  BW_TRY(bw_scene__gauges_create(s));
+  return bw_scene__phase_begin(s);
+}
+
+bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
+                          bw_scene **out)
+{
+  bw_scene *s = NULL;
+  *out = NULL;
+  BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&s, 1)));
+  s->config = *config;
+  s->comm = comm;
+  s->log = log;
+  s->watched = true;
+  s->settled_energy = NAN;
+  bw_scene_resolve(&s->config);
+  s->planar = bw_scene__planar(&s->config);
+  s->alive = bw_scene__any_deforms(&s->config);
+  for (int b = 0; b < s->config.n_bodies; b++)
+    s->alive = s->alive || s->config.bodies[b].motion == BW_SCENE_PRESCRIBED;
+  bw_status st = bw_comm_agree(comm, bw_scene_check(&s->config));
+  BW_THEN(st, build(s));
+  if (st != BW_OK) bw_scene_destroy(&s);
+  *out = s;
+  return st;
+}
+
+const bw_scene_config *bw_scene_settings(const bw_scene *s)
+{
+  return &s->config;
+}
+
+static void block(FILE *out, bool runs, const char *name, const char *yes, const char *no)
+{
+  fprintf(out, "  %-4s %-24s %s\n", runs ? "runs" : "-", name, runs ? yes : no);
+}
+
+void bw_scene_blocks(const bw_scene *s, FILE *out)
+{
+  const bool flow = s->fluid != NULL, force = bw_scene__asked(s, "force");
+  bool contact = s->assembly != NULL;
+  for (int q = 0; q < s->n_solids; q++)
+    contact = contact || bw_solid_settings(s->solid[q].solid)->contact;
+  block(out, flow, "fluid, pressure", "the scene has a fluid", "no fluid");
+  block(out, s->planar == false, "third dimension", "plane: none",
+        flow ? "one cell in z" : "plane: stress or strain");
+  block(out, s->n_solids > 0, "particles, bonds", "a body deforms, or is an image in a flow",
+        s->config.n_bodies > 0 ? "no body deforms: their true surfaces are in the fluid"
+                               : "no body");
+  block(out, s->n_solids > 0 && s->alive, "solid steps", "a body deforms or is moved",
+        "nothing of particles moves");
+  block(out, contact, "contact", "bodies, or pieces of one, can meet",
+        s->n_solids > 0 ? "contact: none, or nothing can meet" : "no particles");
+  block(out, s->markers != NULL || s->coupler != NULL, "markers", "bodies are in a flow",
+        "no body in a flow");
+  block(out, s->probe != NULL || s->coupler != NULL, "probes",
+        s->coupler != NULL ? "they load the solid" : "a gauge reads the force",
+        "nobody reads the force by them");
+  block(out, flow && force && s->config.n_bodies > 0, "momentum balance", "a gauge reads the force",
+        "no gauge reads it");
+  block(out, bw_scene__asked(s, "fragments"), "fragments", "a gauge counts them",
+        "no gauge counts them");
+}

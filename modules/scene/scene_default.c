@@ -1,0 +1,187 @@
+/* What a scene is before its file is read, and what `accuracy` fills. */
+#include "bw_coupler.h"
+#include "bw_memory.h"
+#include "bw_solid.h"
+#include "scene_check.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+/* Item 0 of a list holds the defaults of all its items. */
+static void default_body(bw_scene_body *b)
+{
+  b->motion = INT_MIN;
+  b->spacing = NAN;
+  b->self_contact = INT_MIN;
+  b->rotation = (bw_scene_rotation){NAN, {0, 0, 1}, {NAN, NAN, NAN}};
+  b->swing = (bw_scene_swing){{NAN, NAN, NAN}, NAN};
+  b->held[0].layers = 1;
+  b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
+  bw_scene_shape *s = &b->shape[0];
+  s->box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  s->cylinder = (bw_scene_cylinder){2, {NAN, NAN}, NAN, NAN, NAN};
+  s->sphere = (bw_scene_sphere){{NAN, NAN, NAN}, NAN};
+  s->pores = (bw_scene_pores){INT_MIN, {NAN, NAN, NAN}, NAN, NAN};
+  s->image = (bw_scene_image){"", 0.5, BW_CONFIG_LARGEST, {NAN, NAN, NAN}, NAN};
+  s->stl = (bw_scene_stl){"", 1.0, NAN};
+}
+
+static void default_gauge(bw_scene_gauge_config *g)
+{
+  for (int d = 0; d < 3; d++)
+    g->nearest[d] = g->point[d] = g->minus[d] = g->origin[d] = NAN;
+  g->region = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  g->line = (bw_scene_line){{NAN, NAN, NAN}, {NAN, NAN, NAN}, 101};
+  g->slice = (bw_scene_slice){INT_MIN, NAN};
+  g->every = NAN;
+}
+
+static void default_fluid(bw_scene_config *c)
+{
+  const bw_scene_side side = {
+      .kind = INT_MIN, .profile = BW_PROFILE_UNIFORM, .mean = NAN, .ramp = 0.0};
+  const bw_scene_pair pair = {side, side};
+  c->domain = (bw_scene_domain){{NAN, NAN, NAN}, {INT_MIN, INT_MIN, INT_MIN}, 0.0};
+  c->fluid.model = BW_SCENE_INCOMPRESSIBLE;
+  c->fluid.density = c->fluid.viscosity = NAN;
+  c->fluid.sides = (bw_scene_sides){pair, pair, pair, false};
+  c->fluid.start.vortices[0] = (bw_scene_vortex){{NAN, NAN, NAN}, NAN, NAN};
+  c->fluid.forcing = (bw_scene_forcing){INT_MIN, 0, NAN};
+}
+
+static void default_numerics(bw_scene_numerics *n)
+{
+  *n = (bw_scene_numerics){.step = NAN,
+                           .step_share = NAN,
+                           .solid_share = NAN,
+                           .integrator = BW_SOLID_VERLET,
+                           .horizon_ratio = NAN,
+                           .surface_correction = INT_MIN,
+                           .volume_fraction = BW_PD_FRACTION_DEFAULT,
+                           .family_reach = BW_PD_REACH_HALF_CELL,
+                           .viscous = BW_VISCOUS_EXPLICIT,
+                           .load = BW_LOAD_PROBES,
+                           .forcing_iterations = INT_MIN,
+                           .memory = NAN,
+                           .retraction = NAN,
+                           .marker_spacing = NAN,
+                           .probe_length = NAN,
+                           .load_relaxation = NAN,
+                           .coupling_residual = NAN,
+                           .coupling_iterations = INT_MIN};
+}
+
+void bw_scene_config_default(bw_scene_config *c)
+{
+  memset(c, 0, sizeof *c);
+  c->accuracy = BW_SCENE_STANDARD;
+  c->plane = INT_MIN;
+  c->thickness = NAN;
+  default_fluid(c);
+  bw_scene_material *m = &c->materials[0];
+  snprintf(m->law, sizeof m->law, "bond");
+  m->density = m->young_modulus = m->poisson_ratio = m->fracture_energy = NAN;
+  m->cohesion = m->friction_angle = m->dilation_angle = m->yield_stress = m->hardening = NAN;
+  default_body(&c->bodies[0]);
+  c->loads[0] = (bw_scene_load){.kind = INT_MIN, .value = {NAN, NAN, NAN}};
+  c->loads[0].where.layers = 1;
+  c->loads[0].where.box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  snprintf(c->contact.between, sizeof c->contact.between, "all");
+  c->phases[0] = (bw_scene_phase){.until = {NAN, INT_MIN, NAN}, .breaking = INT_MIN};
+  default_gauge(&c->gauges[0]);
+  c->watch[0] = (bw_scene_watch){.last_periods = INT_MIN, .above = NAN, .below = NAN};
+  c->output.sample_every = NAN;
+  snprintf(c->output.checkpoint_every, sizeof c->output.checkpoint_every, "600 s");
+  c->output.figures = true;
+  default_numerics(&c->numerics);
+}
+
+/* Who reads a knob: anybody, solids, bodies in a flow, solids in a flow. */
+enum { OF_ALL, OF_SOLIDS, OF_MARKERS, OF_COUPLING };
+
+/* What `accuracy` sets where the file leaves it open. */
+typedef struct {
+  const char *key;
+  size_t offset;
+  bool whole;      /* an int */
+  int of;          /* who reads it: OF_ALL ... */
+  double value[3]; /* quick, standard, careful */
+} knob;
+#define D(m) #m, offsetof(bw_scene_numerics, m), false
+#define I(m) #m, offsetof(bw_scene_numerics, m), true
+static const knob knobs[] = {
+    {D(step_share), OF_ALL, {0.8, 0.6, 0.4}},
+    {D(solid_share), OF_COUPLING, {0.9, 0.8, 0.5}},
+    {D(horizon_ratio), OF_SOLIDS, {3.0, 3.0, 3.0}},
+    {I(surface_correction),
+     OF_SOLIDS,
+     {BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_TENSOR}},
+    {I(forcing_iterations), OF_MARKERS, {1, 1, 2}},
+    {D(memory), OF_MARKERS, {0.2, 0.2, 0.2}},
+    {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},
+    {D(probe_length), OF_MARKERS, {2.0, 2.0, 2.0}},
+    {D(load_relaxation), OF_COUPLING, {0.1, 0.1, 0.1}},
+    {I(coupling_iterations), OF_COUPLING, {1, 1, 20}},
+    {D(coupling_residual), OF_COUPLING, {1e-3, 1e-4, 1e-5}},
+};
+#undef D
+#undef I
+enum { KNOBS = sizeof knobs / sizeof *knobs };
+
+static void set_knob(const knob *k, int accuracy, bw_scene_numerics *n, unsigned bit)
+{
+  char *at = (char *)n + k->offset;
+  double x;
+  int i;
+  memcpy(&x, at, k->whole ? 0 : sizeof x);
+  memcpy(&i, at, k->whole ? sizeof i : 0);
+  if (k->whole ? i != INT_MIN : !isnan(x)) return;
+  x = k->value[accuracy];
+  i = (int)x;
+  memcpy(at, k->whole ? (const void *)&i : (const void *)&x, k->whole ? sizeof i : sizeof x);
+  n->set |= bit;
+}
+
+void bw_scene_resolve(bw_scene_config *c)
+{
+  for (int q = 0; q < KNOBS; q++)
+    set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);
+  const bool flat = c->has_domain && c->domain.cells[2] == 1;
+  if (c->plane == INT_MIN) c->plane = flat ? BW_SCENE_STRAIN : BW_SCENE_SPACE;
+  if (isnan(c->thickness)) c->thickness = flat ? c->domain.length[2] : 1.0;
+  for (int b = 0; b < c->n_bodies; b++) {
+    bw_scene_body *body = &c->bodies[b];
+    if (body->self_contact == INT_MIN) body->self_contact = body->motion == BW_SCENE_BREAKABLE;
+    /* Particles at the fluid's spacing where nothing else is asked for. */
+    if (isnan(body->spacing) && c->has_domain)
+      body->spacing = c->domain.length[1] / c->domain.cells[1];
+  }
+}
+
+/* Does the scene have somebody who reads it? */
+static bool is_read(const bw_scene_config *c, const knob *k)
+{
+  const bool flow = c->has_domain, deforms = bw_scene__any_deforms(c);
+  const bool read[] = {[OF_ALL] = true,
+                       [OF_SOLIDS] = deforms,
+                       [OF_MARKERS] = flow && c->n_bodies > 0,
+                       [OF_COUPLING] = flow && deforms};
+  return read[k->of];
+}
+
+void bw_scene_knobs(const bw_scene_config *c, FILE *out)
+{
+  for (int q = 0; q < KNOBS; q++)
+    if ((c->numerics.set & 1u << q) && is_read(c, &knobs[q])) {
+      const bw_config_field *f = bw_scene__numerics_fields;
+      while (strcmp(f->key, knobs[q].key) != 0)
+        f++;
+      const double value = knobs[q].value[c->accuracy];
+      if (f->words != NULL)
+        fprintf(out, "  numerics.%s = %s\n", f->key, bw_scene__word(f->words, (int)value));
+      else
+        fprintf(out, "  numerics.%s = %g\n", f->key, value);
+    }
+}

@@ -1,0 +1,101 @@
+/* What a scene says of itself before it runs: blocks, knobs, sizes, limits, warnings. */
+#include "scene_impl.h"
+
+#include "bw_memory.h"
+#include <math.h>
+#include <string.h>
+
+static void describe_solids(bw_scene *s, bw_log *log)
+{
+  for (int q = 0; q < s->n_solids; q++) {
+    const bw_solid *p = s->solid[q].solid;
+    char names[256] = "";
+    for (int k = 0; k < s->solid[q].n_bodies; k++) {
+      const size_t used = strlen(names);
+      snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
+               s->config.bodies[s->solid[q].body[k]].name);
+    }
+    bw_log_info(log, "solid      %s: %lld particles of %g, horizon %g, critical stretch %.3g",
+                names, (long long)bw_solid_total(p), bw_solid_settings(p)->ds, bw_solid_horizon(p),
+                bw_solid_critical_stretch(p));
+    bw_log_info(log, "           step at most %.3g for bonds, %.3g for contact", bw_solid_dt_max(p),
+                bw_solid_dt_contact(p));
+  }
+  if (s->assembly != NULL)
+    bw_log_info(log, "contact    between all solids; step at most %.3g for all together",
+                bw_solid_assembly_dt(s->assembly));
+}
+
+static void describe_fluid(bw_scene *s, bw_log *log)
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  bw_log_info(log, "fluid      %d x %d x %d cells of %g x %g x %g", g->n[0], g->n[1], g->n[2],
+              g->spacing[0], g->spacing[1], g->spacing[2]);
+  if (s->speed > 0.0)
+    bw_log_info(log, "           fastest speed that the file names %g; cell Reynolds number %.3g",
+                s->speed, s->speed * g->spacing[1] / s->config.fluid.viscosity);
+  if (s->markers != NULL) {
+    int64_t n[2] = {(int64_t)s->inner.n, (int64_t)s->wall.n};
+    bw_comm_sum_int(s->comm, 2, n);
+    bw_log_info(log, "surfaces   %lld markers, %lld probes on the true surfaces", (long long)n[0],
+                (long long)n[1]);
+  }
+}
+
+/* Cells across what is thin, and steps of the solid. */
+void bw_scene__warn(bw_scene *s, bw_log *log)
+{
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    const bw_scene_body *body = &s->config.bodies[b];
+    bw_scene__shapes shapes;
+    double least = HUGE_VAL;
+    const bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
+    for (int d = 0; st == BW_OK && d < (s->planar ? 2 : 3); d++)
+      least = fmin(least, shapes.upper[d] - shapes.lower[d]);
+    bw_scene__shapes_release(&shapes);
+    if (st != BW_OK) continue;
+    const double cells = least / body->spacing;
+    if (bw_scene__deforms(body) && cells < 3.5)
+      bw_log_warn(log,
+                  "bodies.%s is %.2g particles thick: bending and cracks need four or more; take a "
+                  "smaller spacing",
+                  body->name, cells);
+    if (s->fluid != NULL && least < 7.5 * bw_grid_look(s->grid)->spacing[1] &&
+        !bw_scene__deforms(body))
+      bw_log_warn(log,
+                  "bodies.%s is %.2g cells across: forces on it are some 10 %% off below 8; take "
+                  "more cells",
+                  body->name, least / bw_grid_look(s->grid)->spacing[1]);
+  }
+}
+
+bw_status bw_scene_describe(bw_scene *s, bw_log *log)
+{
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  BW_TRY(bw_comm_agree(s->comm, out == NULL ? BW_FAIL(BW_EMEM, "no memory for a text") : BW_OK));
+  fprintf(out, "what runs, and why:\n");
+  bw_scene_blocks(s, out);
+  static const char *const words[] = {"quick", "standard", "careful"};
+  fprintf(out, "accuracy: %s sets (promised error: not measured)\n", words[s->config.accuracy]);
+  bw_scene_knobs(&s->config, out);
+  fclose(out);
+  if (length > 0 && text[length - 1] == '\n') text[length - 1] = '\0';
+  bw_log_info(log, "%s", text);
+  bw_release(&text);
+  if (s->fluid != NULL) describe_fluid(s, log);
+  describe_solids(s, log);
+  if (s->coupler != NULL && s->alive) {
+    const double dt = bw_scene__limit(s);
+    BW_TRY(bw_coupler_check_substeps(s->coupler, dt));
+    bw_log_info(log, "coupling   %d sub-steps of the solid in a step of %.3g",
+                bw_coupler_substeps(s->coupler, dt), dt);
+  }
+  const double limit = bw_scene__limit(s), end = bw_scene__end(s);
+  bw_log_info(log, "time step  %.3g now%s%.3g", limit,
+              isnan(end) ? "; end by " : ", steps in all about ",
+              isnan(end) ? (double)s->config.n_phases : end / limit);
+  bw_scene__warn(s, log);
+  return BW_OK;
+}

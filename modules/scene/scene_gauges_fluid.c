@@ -1,0 +1,126 @@
+/* What gauges see of the fluid: values at places, forces on bodies, sums over the box. */
+#include "scene_impl.h"
+
+#include "bw_memory.h"
+#include <math.h>
+#include <string.h>
+
+/* Index (global) of the last point at or below x of a line of points, and the part of the way to
+ * the next. `face`: points are on faces i dx, else on centres (i - 1/2) dx. */
+static int below(const bw_grid_view *g, int d, bool face, double x, double *part)
+{
+  if (d != 1 || g->uniform_y) {
+    const double at = x / g->spacing[d] + (face ? 0.0 : 0.5), i = floor(at);
+    *part = at - i;
+    return (int)i;
+  }
+  const double *y = face ? g->y_face : g->y_centre;
+  int i = face ? 0 : -1;
+  while (i < g->n[1] && y[i + 1] <= x)
+    i++;
+  *part = (x - y[i]) / (y[i + 1] - y[i]);
+  return i;
+}
+
+/* Linear in each direction between the points of a field; component 0 .. 2 on its faces, 3 on
+ * centres. On the rank that owns the cell. */
+static double at_place(const bw_scene *s, int component, const double x[3])
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  const bw_real *f = component < 3 ? bw_ns_channel_velocity(s->fluid)[component]
+                                   : bw_ns_channel_pressure(s->fluid);
+  int i[3];
+  double part[3], value = 0.0;
+  if (f == NULL) return 0.0;
+  for (int d = 0; d < 3; d++) {
+    i[d] = 1, part[d] = 0.0;
+    if (g->n[d] > 1) i[d] = below(g, d, component == d, x[d], &part[d]) - g->lo[d];
+    /* One layer of halo is all that there has to be. */
+    const int least = g->n[d] > 1 ? 0 : 1;
+    i[d] = i[d] < least ? least : i[d] > g->m[d] ? g->m[d] : i[d];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    double weight = 1.0;
+    int at[3];
+    for (int d = 0; d < 3; d++) {
+      const int up = corner >> d & 1;
+      weight *= up ? part[d] : 1.0 - part[d];
+      at[d] = i[d] + (g->n[d] > 1 ? up : 0);
+    }
+    if (weight != 0.0) value += weight * (double)f[bw_at(g, at[0], at[1], at[2])];
+  }
+  return value;
+}
+
+void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], double value[])
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  const size_t width = pressure ? 1 : 3;
+  const double rho = s->config.fluid.density, drive = bw_ns_channel_driving(s->fluid);
+  memset(value, 0, width * n * sizeof *value);
+  for (size_t q = 0; q < n; q++) {
+    double at[3];
+    for (int d = 0; d < 3; d++) {
+      /* Onto the box: its upper face belongs to the last cell. */
+      const double most = g->length[d] * (1.0 - 1e-12);
+      at[d] = fmin(fmax(x[3 * q + (size_t)d], 0.0), most);
+      if (g->n[d] == 1) at[d] = 0.5 * g->length[d];
+    }
+    if (bw_grid_owner(s->grid, at) != bw_comm_rank(s->comm)) continue;
+    if (pressure) /* with the gradient that drives the flow, which the field is without */
+      value[q] = rho * (at_place(s, 3, at) - drive * at[0]);
+    else
+      for (int k = 0; k < 3; k++)
+        value[3 * q + (size_t)k] = at_place(s, k, at);
+  }
+  bw_comm_sum(s->comm, width * n, value);
+}
+
+static void point_value(bw_scene *s, const bw_scene_gauge_config *g, bool pressure, double value[3])
+{
+  double other[3] = {0};
+  bw_scene__sample(s, pressure, 1, g->point, value);
+  if (bw_scene__given(g->minus)) bw_scene__sample(s, pressure, 1, g->minus, other);
+  for (int k = 0; k < (pressure ? 1 : 3); k++)
+    value[k] -= other[k];
+}
+
+/* Forces of the coupler, on all that is in the flow. Collective. */
+static bw_status coupled_force(bw_scene *s, double value[BW_SCENE__COMPONENTS])
+{
+  bw_coupler_report r;
+  if (s->steps == 0) return BW_OK;
+  BW_TRY(bw_coupler_measure(s->coupler, &r));
+  bw_coupler_warn_slip(s->coupler, &r, s->log);
+  for (int d = 0; d < 3; d++) {
+    value[d] = r.force_reaction[d];
+    value[3 + d] = r.force_probe[d];
+    value[6 + d] = r.force_control_volume[d];
+  }
+  return BW_OK;
+}
+
+bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,
+                                  double value[BW_SCENE__COMPONENTS])
+{
+  const bw_scene_gauge_config *g = &s->config.gauges[gauge];
+  if (what->source == BW_SCENE__OF_POINT) {
+    point_value(s, g, what->n == 1, value);
+    return BW_OK;
+  }
+  if (strcmp(what->word, "force") == 0)
+    return s->coupler != NULL ? coupled_force(s, value)
+                              : bw_scene__surface_force(s, g->body, value);
+  if (strcmp(what->word, "divergence") == 0) {
+    value[0] = bw_ns_channel_divergence(s->fluid);
+    return BW_OK;
+  }
+  const bw_ns_summary all = bw_ns_channel_summary(s->fluid);
+  if (strcmp(what->word, "flow_rate") == 0)
+    value[0] = all.inflow, value[1] = all.outflow;
+  else if (strcmp(what->word, "bulk_velocity") == 0)
+    value[0] = all.bulk_velocity;
+  else
+    value[0] = s->config.fluid.density * all.kinetic_energy;
+  return BW_OK;
+}

@@ -1,0 +1,175 @@
+/* scene_impl.h -- the objects of a scene; shared inside `scene` only. */
+#pragma once
+#include "bw_coupler.h"
+#include "bw_scene.h"
+#include "bw_solid_assembly.h"
+#include "bw_solid_load.h"
+#include "scene_check.h"
+#include "scene_quantity.h"
+
+/* Bodies on one lattice: a solid. */
+typedef struct {
+  bw_solid *solid;
+  int n_bodies, body[BW_SCENE_BODIES]; /* numbers in the file */
+  int n_groups;
+  int body_of[BW_PD_GROUPS];     /* of a material group */
+  int material_of[BW_PD_GROUPS]; /* of a material group; -1: that of who it holds */
+  size_t n;                      /* particles of this rank */
+  double *X0;                    /* (n,3) */
+  double *F, *V;                 /* (n,3) external force density, velocity of prescribed ones */
+  bool *cut;                     /* (n) cracked at the start; NULL: no crack is followed */
+  bool pushed, moved;            /* something acts; something is moved */
+  bool steady;                   /* F is what it will be */
+} bw_scene__solid;
+
+/* What one load does to the particles of this rank. */
+typedef struct {
+  int load, solid;
+  size_t n;
+  int32_t *particle; /* (n) */
+  double push[3];    /* force density of all of it [M/(L^2 T^2)] */
+} bw_scene__acting;
+
+/* Points on the surfaces of bodies that do not deform, in a fluid alone: all on rank 0. */
+typedef struct {
+  size_t n;
+  int *body;             /* (n) number in the file */
+  double *X0, *N0;       /* (n,3) place and normal at t = 0 */
+  double *area;          /* (n) [L^2] */
+  double *X, *N, *V, *M; /* (n,3) place, normal, velocity; memory of markers, traction on walls */
+} bw_scene__points;
+
+/* A column of the history. */
+typedef struct {
+  int gauge;                      /* number in the file */
+  const bw_scene__quantity *what; /* NULL: time */
+  int component;                  /* of the quantity, as in three dimensions */
+} bw_scene__column;
+
+/* Where a gauge looks, on this rank. */
+typedef struct {
+  int n[BW_SCENE_BODIES]; /* particles in each solid */
+  int32_t *particle[BW_SCENE_BODIES];
+  double count; /* of all ranks */
+} bw_scene__aim;
+
+struct bw_scene {
+  bw_scene_config config;
+  const bw_comm *comm; /* borrowed */
+  bw_log *log;         /* borrowed, may be NULL */
+  bool planar;
+  bool alive; /* some body deforms or is prescribed */
+
+  /* solids */
+  int n_solids;
+  bw_scene__solid solid[BW_SCENE_BODIES];
+  int solid_of[BW_SCENE_BODIES]; /* of each body; -1: it is none */
+  bw_solid_assembly *assembly;   /* several solids without fluid; NULL: none */
+  int n_acting;
+  bw_scene__acting acting[BW_SCENE_LOADS];
+
+  /* fluid */
+  bw_grid *grid;
+  bw_ns_channel *fluid;
+  bw_coupler *coupler;    /* with what deforms; NULL: none */
+  bw_ibm_mdf *markers;    /* with what does not, alone; NULL: none */
+  bw_scene__points inner; /* its markers */
+  bw_scene__points wall;  /* its probe points; none where nobody asks for forces */
+  bool moving;            /* some of them are prescribed */
+  bw_probe *probe;
+  bw_real *pressure;  /* that acted over the last step */
+  double speed;       /* the fastest that the file names [L/T] */
+  void *ramped[3][2]; /* of sides whose velocity rises, owned */
+
+  /* interfaces of solids, for fragments; made when asked for */
+  bw_pd_interface *interface[BW_SCENE_BODIES];
+
+  /* time */
+  double time, dt, phase_start;
+  int64_t steps, phase_steps;
+  int phase;
+  double settled_energy; /* of the fluid at the last look; NaN: none */
+  bool watched;
+
+  /* gauges */
+  int n_columns;
+  bw_scene__column *column;
+  const char **names; /* (n_columns) */
+  double *row;        /* the last measure */
+  bw_scene__aim aim[BW_SCENE_GAUGES];
+  int64_t pictures; /* so far */
+};
+
+/* scene_solids.c */
+bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__solids_destroy(bw_scene *s);
+/* Body of an own particle. */
+int bw_scene__body_of(const bw_scene__solid *q, size_t i);
+/* scene_sites.c: the sites of all bodies of a solid. */
+typedef struct {
+  int64_t n;
+  int32_t *site;
+  uint8_t *kind, *group;
+} bw_scene__sites;
+bw_status bw_scene__sites_make(bw_scene *s, bw_scene__solid *q, const bw_solid_config *config,
+                               bw_scene__sites *out) BW_MUST_CHECK;
+void bw_scene__sites_release(bw_scene__sites *sites);
+/* Is x (3) in the place, given the extent of the body's particles? */
+bool bw_scene__in_where(const bw_scene_where *w, bool planar, double ds, const double lower[3],
+                        const double upper[3], const double x[3]);
+
+/* scene_loads.c */
+bw_status bw_scene__loads_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__loads_apply(bw_scene *s, double dt); /* for the step from s->time */
+/* Share of a load at a time [T]. */
+double bw_scene__load_share(const bw_scene_load *l, double time);
+/* Where a point of a prescribed body is at a time. */
+void bw_scene__motion(const bw_scene_body *b, const double X0[3], double time, double X[3]);
+
+/* Velocity V (3) of a point of it that is at X (3) then. */
+void bw_scene__velocity(const bw_scene_body *b, const double X[3], double time, double V[3]);
+
+/* scene_create.c: does some gauge ask for this quantity? */
+bool bw_scene__asked(const bw_scene *s, const char *quantity);
+
+/* scene_fluid.c */
+bw_status bw_scene__fluid_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__fluid_destroy(bw_scene *s);
+
+/* scene_surface.c: bodies that do not deform, in a fluid alone */
+bw_status bw_scene__surfaces_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__surfaces_destroy(bw_scene *s);
+bw_status bw_scene__surfaces_step(bw_scene *s, double dt) BW_MUST_CHECK;
+bw_status bw_scene__surfaces_restore(bw_scene *s) BW_MUST_CHECK;
+/* Force on the bodies of these names: by markers, probes, box. Collective. */
+bw_status bw_scene__surface_force(bw_scene *s, const char *names,
+                                  double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+
+/* scene_coupled.c */
+bw_status bw_scene__coupled_create(bw_scene *s) BW_MUST_CHECK;
+
+/* scene_step.c */
+bw_status bw_scene__phase_begin(bw_scene *s) BW_MUST_CHECK;
+double bw_scene__limit(bw_scene *s);     /* longest step now, with its share [T] */
+double bw_scene__end(const bw_scene *s); /* of the scene [T]; NaN: not known */
+
+/* scene_gauges.c, scene_gauges_solid.c, scene_gauges_fluid.c */
+bw_status bw_scene__gauges_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__gauges_destroy(bw_scene *s);
+bw_status bw_scene__note_cuts(bw_scene *s) BW_MUST_CHECK;
+bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quantity *what,
+                                  double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,
+                                  double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+/* value (3 or 1) <- velocity or pressure at x (3), all ranks. */
+void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], double value[]);
+
+/* scene_describe.c: warnings of what will be poor. */
+void bw_scene__warn(bw_scene *s, bw_log *log);
+/* scene_profiles.c: the files of the lines and slices that are due. */
+bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge) BW_MUST_CHECK;
+/* scene_watch.c: what the rows of history.csv say of the gauges that are watched, to the log and
+ * watch.csv. */
+bw_status bw_scene__watch_report(bw_scene *s, const bw_case *run, bw_log *log) BW_MUST_CHECK;
+/* Number of the column of a watched name; -1: none. */
+int bw_scene__watched_column(const bw_scene *s, const char *name);

@@ -1,0 +1,204 @@
+/* VTK files: the fluid with what is solid in it, and the particles or surfaces of the bodies. */
+#include "scene_impl.h"
+
+#include "bw_exchange.h"
+#include "bw_memory.h"
+#include "bw_shape_surface.h"
+#include "bw_vtk.h"
+#include <math.h>
+#include <string.h>
+
+/* Undoes the motion of a body: where the point X was at t = 0. */
+static void undo(const bw_scene_body *b, double time, const double X[3], double X0[3])
+{
+  const double origin[3] = {0, 0, 0};
+  double shift[3], axes[3][3], r[3];
+  bw_scene_body still = *b;
+  still.has_rotation = false;
+  bw_scene__motion(&still, origin, time, shift);
+  for (int d = 0; d < 3; d++)
+    X0[d] = X[d] - shift[d];
+  if (!b->has_rotation) return;
+  bw_shape_turn(b->rotation.axis, -b->rotation.rate * time, axes);
+  for (int d = 0; d < 3; d++)
+    r[d] = X0[d] - b->rotation.centre[d];
+  for (int k = 0; k < 3; k++) {
+    X0[k] = b->rotation.centre[k];
+    for (int d = 0; d < 3; d++)
+      X0[k] += axes[d][k] * r[d];
+  }
+}
+
+/* Cells whose centre is inside a true surface. */
+static bw_status mask_surfaces(bw_scene *s, bw_real *mask)
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    bw_scene__shapes shapes;
+    bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
+    st = bw_comm_agree(s->comm, st);
+    for (int k = 1; st == BW_OK && k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++)
+        for (int i = 1; i <= g->m[0]; i++) {
+          const double x[3] = {(i + g->lo[0] - 0.5) * g->spacing[0], g->y_centre[j + g->lo[1]],
+                               (k + g->lo[2] - 0.5) * g->spacing[2]};
+          double X0[3];
+          undo(&s->config.bodies[b], s->time, x, X0);
+          if (bw_shape_distance(shapes.n, shapes.shape, s->planar, X0) < 0.0)
+            mask[bw_at(g, i, j, k)] = (bw_real)(b + 1);
+        }
+    bw_scene__shapes_release(&shapes);
+    BW_TRY(st);
+  }
+  return BW_OK;
+}
+
+/* A particle on its way to the rank of its cell. */
+typedef struct {
+  double X[3];
+  double body;
+} seen;
+
+static ptrdiff_t cell_of(const bw_grid_view *g, const double x[3])
+{
+  int i[3];
+  for (int d = 0; d < 3; d++) {
+    i[d] = g->n[d] == 1 ? 1 : (int)floor(x[d] / g->spacing[d]) + 1 - g->lo[d];
+    i[d] = i[d] < 1 ? 1 : i[d] > g->m[d] ? g->m[d] : i[d];
+  }
+  return bw_at(g, i[0], i[1], i[2]);
+}
+
+/* Cells that hold a particle. Collective. */
+static bw_status mask_particles(bw_scene *s, bw_real *mask)
+{
+  bw_scene__solid *q = &s->solid[0];
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  seen *send = NULL, *receive = NULL;
+  int *owner = NULL;
+  bw_exchange *plan = NULL;
+  size_t n = 0;
+  bw_solid_get_position(q->solid, q->V);
+  bw_status st = BW_ALLOCATE(&send, q->n);
+  BW_THEN(st, BW_ALLOCATE(&owner, q->n));
+  for (size_t i = 0; st == BW_OK && i < q->n; i++) {
+    double x[3];
+    for (size_t d = 0; d < 3; d++) {
+      x[d] = q->V[3 * i + d];
+      if (g->n[d] == 1) x[d] = 0.5 * g->length[d];
+    }
+    const int rank = bw_grid_owner(s->grid, x);
+    if (rank < 0) continue;
+    memcpy(send[n].X, x, sizeof x);
+    send[n].body = bw_scene__body_of(q, i) + 1.0;
+    owner[n++] = rank;
+  }
+  st = bw_comm_agree(s->comm, st);
+  BW_THEN(st, bw_exchange_create(s->comm, n, owner, &plan));
+  BW_THEN(st, bw_comm_agree(s->comm, BW_ALLOCATE(&receive, bw_exchange_received(plan))));
+  if (st == BW_OK) {
+    bw_exchange_forward(plan, sizeof *send, send, receive);
+    for (size_t i = 0; i < bw_exchange_received(plan); i++)
+      mask[cell_of(g, receive[i].X)] = (bw_real)receive[i].body;
+  }
+  bw_exchange_destroy(&plan);
+  bw_release(&send);
+  bw_release(&receive);
+  bw_release(&owner);
+  return st;
+}
+
+static bw_status write_fluid(bw_scene *s, int solid, const char *path)
+{
+  (void)solid;
+  enum { MOST = 2 + 1 + BW_SCENE_BODIES };
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  bw_real *const *u = bw_ns_channel_velocity(s->fluid);
+  bw_real *body = NULL, *part[BW_SCENE_BODIES] = {NULL};
+  bw_vtk_field field[MOST] = {{.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
+                              {.name = "pressure",
+                               .data = {bw_ns_channel_pressure(s->fluid)},
+                               .scale = s->config.fluid.density}};
+  int n = 2;
+  bw_status st = BW_OK;
+  if (s->config.n_bodies > 0) {
+    st = bw_comm_agree(s->comm, bw_field_create(s->grid, &body));
+    BW_THEN(st, s->n_solids > 0 ? mask_particles(s, body) : mask_surfaces(s, body));
+    /* The number of the body in the file, and a mask of each by its name. */
+    field[n++] = (bw_vtk_field){.name = "body", .data = {body}};
+    for (int b = 0; b < s->config.n_bodies && st == BW_OK; b++) {
+      st = bw_comm_agree(s->comm, bw_field_create(s->grid, &part[b]));
+      for (size_t i = 0; st == BW_OK && i < g->size; i++)
+        part[b][i] = body[i] == (bw_real)(b + 1) ? 1 : 0;
+      field[n++] = (bw_vtk_field){.name = s->config.bodies[b].name, .data = {part[b]}};
+    }
+  }
+  BW_THEN(st, bw_vtk_write_grid(s->grid, path, n, field));
+  for (int b = 0; b < s->config.n_bodies; b++)
+    bw_release(&part[b]);
+  bw_release(&body);
+  return st;
+}
+
+static bw_status write_solid(bw_scene *s, int solid, const char *path)
+{
+  bw_scene__solid *q = &s->solid[solid];
+  double *X = NULL, *U = NULL, *damage = NULL;
+  int32_t *body = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * q->n);
+  BW_THEN(st, BW_ALLOCATE(&U, 3 * q->n));
+  BW_THEN(st, BW_ALLOCATE(&damage, q->n));
+  BW_THEN(st, BW_ALLOCATE(&body, q->n));
+  st = bw_comm_agree(s->comm, st);
+  if (st == BW_OK) {
+    bw_solid_get_position(q->solid, X);
+    bw_solid_get_velocity(q->solid, q->V);
+    bw_solid_get_damage(q->solid, damage);
+    for (size_t i = 0; i < 3 * q->n; i++)
+      U[i] = X[i] - q->X0[i];
+    for (size_t i = 0; i < q->n; i++)
+      body[i] = bw_scene__body_of(q, i) + 1;
+    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
+                                   {"displacement", BW_VTK_FLOAT64, 3, U},
+                                   {"velocity", BW_VTK_FLOAT64, 3, q->V},
+                                   {"body", BW_VTK_INT32, 1, body}};
+    st = bw_vtk_write_points(s->comm, path, q->n, X, 4, arrays);
+  }
+  bw_release(&X);
+  bw_release(&U);
+  bw_release(&damage);
+  bw_release(&body);
+  return st;
+}
+
+/* One file of the series `what` at the present time. */
+static bw_status add_to_series(bw_scene *s, const bw_case *run, const char *what,
+                               const char *extension, int solid,
+                               bw_status (*write)(bw_scene *, int, const char *))
+{
+  char name[2 * BW_SCENE_NAME], series[2 * BW_SCENE_NAME], *path = NULL, *series_path = NULL;
+  snprintf(name, sizeof name, "%s-%08lld%s", what, (long long)s->steps, extension);
+  snprintf(series, sizeof series, "%s.pvd", what);
+  bw_status st = bw_case_path(run, name, &path);
+  BW_THEN(st, bw_case_path(run, series, &series_path));
+  BW_THEN(st, write(s, solid, path));
+  /* The series names the file only after it is there. */
+  BW_THEN(st, bw_vtk_series_add(s->comm, series_path, s->time, name));
+  bw_release(&path);
+  bw_release(&series_path);
+  return st;
+}
+
+bw_status bw_scene_picture(bw_scene *s, const bw_case *run)
+{
+  if (s->fluid != NULL)
+    BW_TRY(add_to_series(s, run, "fluid", bw_vtk_grid_extension(s->grid), 0, write_fluid));
+  for (int q = 0; q < s->n_solids; q++) {
+    /* A solid of several bodies has the name of the first. */
+    char what[BW_SCENE_NAME + 8];
+    const char *name = s->config.bodies[s->solid[q].body[0]].name;
+    snprintf(what, sizeof what, "%s%s", strcmp(name, "fluid") == 0 ? "body-" : "", name);
+    BW_TRY(add_to_series(s, run, what, ".vtp", q, write_solid));
+  }
+  return BW_OK;
+}

@@ -1,0 +1,127 @@
+/* The table of what gauges can measure, and what a run would refuse of gauges. */
+#include "scene_quantity.h"
+
+#include "scene_check.h"
+#include <math.h>
+#include <string.h>
+
+#define XYZ                                                                                        \
+  {                                                                                                \
+    "x", "y", "z"                                                                                  \
+  }
+const bw_scene__quantity bw_scene__quantities[] = {
+    {"displacement", BW_SCENE__OF_PLACE, 3, true, XYZ, "L"},
+    {"position", BW_SCENE__OF_PLACE, 3, true, XYZ, "L"},
+    {"velocity", BW_SCENE__OF_PLACE, 3, true, XYZ, "L/T"},
+    {"velocity", BW_SCENE__OF_POINT, 3, true, XYZ, "L/T"},
+    {"damage", BW_SCENE__OF_PLACE, 2, false, {"mean", "largest"}, "-"},
+    {"force",
+     BW_SCENE__OF_BODIES,
+     9,
+     false,
+     {"reaction.x", "reaction.y", "reaction.z", "probe.x", "probe.y", "probe.z", "box.x", "box.y",
+      "box.z"},
+     "M L/T2"},
+    {"force_on_support", BW_SCENE__OF_BODIES, 3, true, XYZ, "M L/T2"},
+    {"crack_tip", BW_SCENE__OF_BODIES, 4, false, {"x", "y", "z", "reach"}, "L"},
+    {"fragments", BW_SCENE__OF_SOLIDS, 1, false, {""}, "-"},
+    {"broken_bonds", BW_SCENE__OF_SOLIDS, 1, false, {""}, "-"},
+    {"energy",
+     BW_SCENE__OF_SOLIDS,
+     6,
+     false,
+     {"kinetic", "elastic", "contact", "fracture", "damping", "external"},
+     "M L2/T2"},
+    {"pressure", BW_SCENE__OF_POINT, 1, false, {""}, "M/(L T2)"},
+    {"flow_rate", BW_SCENE__OF_FLUID, 2, false, {"in", "out"}, "L3/T"},
+    {"bulk_velocity", BW_SCENE__OF_FLUID, 1, false, {""}, "L/T"},
+    {"kinetic_energy", BW_SCENE__OF_FLUID, 1, false, {""}, "M L2/T2"},
+    {"divergence", BW_SCENE__OF_FLUID, 1, false, {""}, "-"},
+    {NULL, BW_SCENE__OF_FLUID, 0, false, {NULL}, NULL}};
+
+bool bw_scene__given(const double x[3])
+{
+  return !isnan(x[0]);
+}
+
+static bool in_fluid(const bw_scene_gauge_config *g)
+{
+  return bw_scene__given(g->point) || g->has_line || g->has_slice;
+}
+
+const bw_scene__quantity *bw_scene__quantity_named(const bw_scene_gauge_config *g, const char *word)
+{
+  for (const bw_scene__quantity *q = bw_scene__quantities; q->word != NULL; q++)
+    if (strcmp(q->word, word) == 0 && (q->source == BW_SCENE__OF_POINT || !in_fluid(g)) &&
+        !(q->source == BW_SCENE__OF_POINT && strcmp(word, "velocity") == 0 && !in_fluid(g)))
+      return q;
+  return NULL;
+}
+
+static bw_status check_quantity(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                                const char *word)
+{
+  const bw_scene__quantity *q = bw_scene__quantity_named(g, word);
+  BW_REQUIRE(q != NULL, BW_EINPUT,
+             "gauges.%s.of = %s: there is no such quantity%s; `--help gauges` lists them", g->name,
+             word, in_fluid(g) ? " of a place in the fluid" : "");
+  const bool bodies = q->source <= BW_SCENE__OF_SOLIDS;
+  BW_REQUIRE(bodies ? c->n_bodies > 0 : bw_scene__has_fluid(c), BW_EINPUT,
+             "gauges.%s.of = %s: the scene has no %s; leave the gauge out", g->name, word,
+             bodies ? "body" : "fluid");
+  BW_REQUIRE(q->source > BW_SCENE__OF_BODIES || g->body[0] != '\0', BW_EINPUT,
+             "gauges.%s.body is missing: %s is that of a body", g->name, word);
+  BW_REQUIRE(q->source != BW_SCENE__OF_POINT || in_fluid(g), BW_EINPUT,
+             "gauges.%s.point is missing: %s is that of a place; give point, line or slice",
+             g->name, word);
+  BW_REQUIRE(strcmp(word, "force") != 0 || bw_scene__has_fluid(c), BW_EINPUT,
+             "gauges.%s.of = force: that of a fluid, of which there is none; use force_on_support",
+             g->name);
+  BW_REQUIRE(strcmp(word, "crack_tip") != 0 || bw_scene__given(g->origin), BW_EINPUT,
+             "gauges.%s.origin is missing: where the crack begins, from which its reach counts",
+             g->name);
+  return BW_OK;
+}
+
+static bw_status check_place(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                             const char *key, const double x[3])
+{
+  for (int d = 0; bw_scene__given(x) && d < (bw_scene__planar(c) ? 2 : 3); d++)
+    BW_REQUIRE(x[d] >= 0.0 && x[d] <= c->domain.length[d], BW_EINPUT,
+               "gauges.%s.%s[%d] = %g: outside the domain, 0 to %g", g->name, key, d, x[d],
+               c->domain.length[d]);
+  return BW_OK;
+}
+
+static bw_status check_gauge(const bw_scene_config *c, const bw_scene_gauge_config *g)
+{
+  char name[BW_SCENE_NAME], known[256];
+  bw_scene__body_names(c, sizeof known, known);
+  for (const char *rest = g->of; bw_scene__next_name(&rest, name);)
+    BW_TRY(check_quantity(c, g, name));
+  for (const char *rest = g->body; bw_scene__next_name(&rest, name);)
+    BW_REQUIRE(bw_scene__body_named(c, name) >= 0, BW_EINPUT,
+               "gauges.%s.body = %s: there is no such body; there are: %s", g->name, name, known);
+  BW_REQUIRE(!(g->has_line || g->has_slice) || g->every > 0.0, BW_EINPUT,
+             "gauges.%s.every is missing: the time between files of a line or slice", g->name);
+  BW_REQUIRE(!bw_scene__given(g->minus) || bw_scene__given(g->point), BW_EINPUT,
+             "gauges.%s.minus: there is no point that it is taken away from; give point", g->name);
+  if (!c->has_domain) return BW_OK;
+  BW_TRY(check_place(c, g, "point", g->point));
+  BW_TRY(check_place(c, g, "minus", g->minus));
+  BW_TRY(check_place(c, g, "line.from", g->line.from));
+  return check_place(c, g, "line.to", g->line.to);
+}
+
+bw_status bw_scene__check_gauges(const bw_scene_config *c)
+{
+  for (int q = 0; q < c->n_gauges; q++)
+    BW_TRY(check_gauge(c, &c->gauges[q]));
+  for (int q = 0; q < c->n_watch; q++) {
+    char name[BW_SCENE_NAME];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(c->watch[q].name, "."), c->watch[q].name);
+    BW_REQUIRE(bw_scene__gauge_named(c, name) >= 0, BW_EINPUT,
+               "watch.%s: there is no gauge %s; give it in gauges", c->watch[q].name, name);
+  }
+  return BW_OK;
+}

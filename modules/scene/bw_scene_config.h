@@ -354,8 +354,8 @@ void bw_scene_resolve(bw_scene_config *c);
 void bw_scene_knobs(const bw_scene_config *c, FILE *out);
 
 /* Refuses what a run would refuse at its start, without a field or a particle: names that lead
- * nowhere, what this build does not have, overlapping bodies, loads that hit nothing, cracks outside.
- * BW_EINPUT names key, value and remedy. Local. */
+ * nowhere, what this build does not have, overlapping bodies, loads that hit nothing, cracks
+ * outside. BW_EINPUT names key, value and remedy. Local. */
 bw_status bw_scene_check(const bw_scene_config *c) BW_MUST_CHECK;
 
 /* The keys as a JSON schema (draft 2020-12). Local. */

@@ -3,6 +3,7 @@
 
 #include "bw_memory.h"
 #include "bw_number.h"
+#include <limits.h>
 #include <math.h>
 
 enum { NUMBERS = 7, FIELDS = 4 };
@@ -121,6 +122,11 @@ bw_status bw_scene_restore(bw_scene *s, bw_checkpoint *ck)
       BW_EINPUT, "the checkpoint's 'scene/time' holds numbers that this scene does not have");
   s->time = numbers[0];
   s->phase = (int)phase;
+  /* A phase whose end has been moved since goes on. */
+  while (s->phase > 0 && s->time < s->config.phases[s->phase - 1].until.time &&
+         isnan(s->config.phases[s->phase - 1].until.settled) &&
+         s->config.phases[s->phase - 1].until.steps == INT_MIN)
+    s->phase--;
   s->phase_start = numbers[4];
   s->dt = numbers[6];
   /* What the phase allows, then the state: damping belongs to the forces that are restored. */

@@ -1,0 +1,47 @@
+#!/bin/sh
+# A scene stopped and gone on with tells the same history to the last bit, and on other ranks the
+# same to round-off: solids that break, several solids in contact, a body in a flow.
+# usage: scene.sh SOURCE BUILD
+set -eu
+source=$1 build=$2
+out=$build/test_scene_restart
+rm -rf "$out" && mkdir -p "$out"
+
+# same NAME RANKS END HALF [arguments]: to END at once, and to HALF and on
+same() {
+  name=$1 ranks=$2 end=$3 half=$4
+  shift 4
+  scene="mpirun -n $ranks $build/bin/breakwater $source/scenes/$name/$name.yaml --quiet"
+  $scene --out "$out/$name-whole" --set phases.0.until.time="$end" "$@"
+  $scene --out "$out/$name-half" --set phases.0.until.time="$half" "$@"
+  $scene --out "$out/$name-half" --set phases.0.until.time="$end" \
+    --restart "$out/$name-half/checkpoint-last.h5" "$@"
+  cmp "$out/$name-whole/history.csv" "$out/$name-half/history.csv"
+}
+# On one rank: on several the books are summed in another order after a restart.
+same kalthoff_winkler 1 30e-6 20e-6 --set bodies.plate.spacing=2e-3 --set output.picture_every=0 \
+  --set output.sample_every=5e-6
+same beam_under_load 1 2e-3 1e-3 --set bodies.beam.spacing=4e-3 --set output.sample_every=2e-4
+same impact_on_plate 1 60e-6 40e-6 --set bodies.plate.spacing=2e-3 --set bodies.ball.spacing=2e-3 \
+  --set output.picture_every=0 --set output.sample_every=5e-6
+same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.length=[8, 4, 0.125]" \
+  --set output.picture_every=0
+
+# Another number of ranks: sums are in another order, and nothing else differs.
+mpirun -n 3 "$build/bin/breakwater" "$source/scenes/impact_on_plate/impact_on_plate.yaml" --quiet \
+  --out "$out/three" --set phases.0.until.time=60e-6 --set bodies.plate.spacing=2e-3 \
+  --set bodies.ball.spacing=2e-3 --set output.picture_every=0 --set output.sample_every=5e-6
+/usr/bin/python3 - "$out/impact_on_plate-whole/history.csv" "$out/three/history.csv" <<'END'
+import csv, sys
+a, b = (list(csv.reader(open(path))) for path in sys.argv[1:])
+assert a[0] == b[0] and len(a) == len(b) > 10
+# a component that is nothing but rounding is measured by its vector
+gauge = [name.split(".")[0].split("[")[0] for name in a[0]]
+columns = list(zip(*([float(x) for x in row] for row in a[1:])))
+most = [max(abs(x) for x in column) for column in columns]
+largest = [max(m for m, other in zip(most, gauge) if other == own) for own in gauge]
+for one, other in zip(a[1:], b[1:]):
+    for x, y, scale in zip(map(float, one), map(float, other), largest):
+        # 1e-16 of a sum of some thousand bonds, grown over some hundred steps
+        assert abs(x - y) <= 1e-9 * scale, (one, other)
+END

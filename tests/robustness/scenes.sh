@@ -1,0 +1,93 @@
+#!/bin/sh
+# Every template of scenes/ passes --check, runs in its short form (the line "# short:" of the file),
+# and leaves numbers; what cannot be run is refused with key, value and remedy, and nothing is
+# written; the JSON schema takes every template and refuses what the reader refuses.
+# usage: scenes.sh SOURCE BUILD
+set -eu
+source=$1 build=$2
+out=$build/test_scenes
+rm -rf "$out" && mkdir -p "$out"
+bad=0
+complain() { echo "FAIL: $*"; bad=1; }
+
+# ---- templates ----------------------------------------------------------------------------------
+for file in "$source"/scenes/*/*.yaml; do
+  name=$(basename "$file" .yaml)
+  [ -f "$source/scenes/$name/README.md" ] || complain "$name has no README.md"
+  short=$(sed -n 's/^# short: //p' "$file")
+  [ -n "$short" ] || complain "$name has no line '# short:'"
+  "$build/bin/breakwater" "$file" --check >"$out/check" 2>&1 ||
+    complain "$name --check: $(tail -1 "$out/check")"
+  # shellcheck disable=SC2046,SC2086 # a list of words without blanks
+  set -- $(printf -- '--set %s ' $short)
+  "$build/bin/breakwater" "$file" --out "$out/$name" "$@" >"$out/log" 2>&1 ||
+    complain "$name: $(tail -1 "$out/log")"
+  [ "$(wc -l <"$out/$name/history.csv")" -ge 3 ] || complain "$name: history.csv has no rows"
+  ls "$out/$name"/*.pvd >/dev/null || complain "$name: no pictures"
+done
+
+# ---- refusals -----------------------------------------------------------------------------------
+# refused SCENE KEY=VALUE PIECE: of the message
+refused() {
+  code=0
+  "$build/bin/breakwater" "$source/scenes/$1/$1.yaml" --out "$out/refused" --set "$2" \
+    >"$out/log" 2>&1 || code=$?
+  [ "$code" -eq 2 ] || complain "$1 --set $2: exit code $code"
+  grep -qF -- "$3" "$out/log" || complain "$1 --set $2: not '$3' but: $(cat "$out/log")"
+}
+beam=beam_under_load flow=flow_past_cylinder
+refused $beam bodies.beam.material=wood "bodies.beam.material = wood: there is no such material"
+refused $beam bodies.beam.motion=rigid "motion = rigid: not in this build"
+refused $beam bodies.beam.motion=breakable "materials.polymer has no fracture_energy"
+refused $beam materials.polymer.law=magic "law = magic: not in this build; this build has: bond"
+refused $beam materials.polymer.plastic=j2 "materials.polymer.plastic = j2: not in this build"
+refused $beam loads.0.on=plate "loads.0.on = plate: there is no such body; there are: beam"
+refused $beam loads.0.where=crack "loads.0.where = crack: not in this build"
+refused $beam loads.0.where=top "loads.0.where.side = top: must be one of x_lower"
+refused $beam "loads.0.where={side: x_upper, box: {from: [1, 1], to: [2, 2]}}" "nothing of beam is in it"
+refused $beam bodies.beam.spacing=1e-9 "sites; check the unit"
+refused $beam bodies.beam.spaceing=1e-3 "did you mean bodies.beam.spacing?"
+refused $beam gauges.tip.of=tension "gauges.tip.of = tension: there is no such quantity"
+refused $beam gauges.tip.of=pressure "the scene has no fluid"
+refused $beam "phases=[{until: {}}]" "phases.0.until: it ends never"
+refused $beam contact.friction=0.3 "contact.friction = 0.3: not in this build"
+refused $beam "bodies.beam.held={by: wall}" "there is no such body that is fixed"
+refused $beam "watch.top={mean: time}" "watch.top: there is no gauge top"
+refused kalthoff_winkler "bodies.plate.cracks=[{from: [1, 1], to: [2, 1]}]" "it is outside the body"
+refused impact_on_plate "bodies.ball.shape={sphere: {centre: [0.05, 0.012], radius: 0.006}}" "overlap"
+refused $flow fluid.model=particles "fluid.model = particles: not in this build"
+refused $flow "domain.cells=[120, 61, 1]" "cells are cubes"
+refused $flow fluid.sides.x.lower.mean=-1 "nothing comes in through this inflow"
+refused $flow "bodies.cylinder.velocity=[1, 0]" "a fixed body has no velocity"
+refused $flow "bodies.cylinder.shape={cylinder: {centre: [40, 2], radius: 0.5}}" "outside the domain"
+[ ! -e "$out/refused/history.csv" ] || complain "a refused scene has written"
+
+# ---- help and schema ----------------------------------------------------------------------------
+"$build/bin/breakwater" --help bodies.N.motion | grep -q breakable || complain "--help KEY"
+"$build/bin/breakwater" --schema >"$out/schema.json"
+/usr/bin/python3 - "$out/schema.json" "$source"/scenes/*/*.yaml <<'END' || bad=1
+import json, re, sys
+import jsonschema, yaml
+schema = json.load(open(sys.argv[1]))
+
+class Numbers(yaml.SafeLoader):  # 1e-3 is a number and `on` a word, as they are to the reader
+    yaml_implicit_resolvers = {first: [pair for pair in pairs if first in "tTfF" or "bool" not in pair[0]]
+                               for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items()}
+Numbers.add_implicit_resolver("tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?$"), list("-+0123456789."))
+
+for path in sys.argv[2:]:
+    scene = yaml.load(open(path), Numbers)
+    try:
+        jsonschema.validate(scene, schema)
+    except jsonschema.ValidationError as error:
+        raise SystemExit(f"the schema refuses {path}: {error.json_path}: {error.message}")
+    for change in ({"spaceing": 1}, {"accuracy": "best"}, {"bodies": {"a": {"motion": "flies"}}},
+                   {"phases": {"until": {"steps": 0}}}, {"output": {"sample_every": -1}}):
+        try:
+            jsonschema.validate({**scene, **change}, schema)
+        except jsonschema.ValidationError:
+            continue
+        raise SystemExit(f"the schema takes {change}")
+END
+exit $bad

@@ -193,7 +193,7 @@ function(_bw_program target own head)
   endif()
   list(APPEND head_modules bw_core)
   if(BW_HWCAPS)
-    set(head_modules bw_breakwater) # of which the dynamic linker takes the one for its processor
+    set(head_modules breakwater) # of which the dynamic linker takes the one for its processor
   endif()
   target_link_libraries(${target} PRIVATE ${head_modules} ${head_libs} bw_flags)
 endfunction()

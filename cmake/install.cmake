@@ -27,10 +27,10 @@ function(_bw_shared target)
 endfunction()
 
 list(TRANSFORM targets REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
-_bw_shared(bw_breakwater ${objects})
-set_target_properties(bw_breakwater PROPERTIES EXPORT_NAME breakwater
+_bw_shared(breakwater_library ${objects}) # the program of scenes has the plain name
+set_target_properties(breakwater_library PROPERTIES EXPORT_NAME breakwater
                       LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
-add_library(bw::breakwater ALIAS bw_breakwater)
+add_library(bw::breakwater ALIAS breakwater_library)
 
 # The dynamic linker looks into glibc-hwcaps/LEVEL beside a library first and takes the highest level
 # that the processor has: AVX2 from x86-64-v3 on, AVX-512 from x86-64-v4 on (ld.so(8), glibc 2.33).
@@ -40,12 +40,12 @@ if(BW_HWCAPS)
             "set one of them")
   endif()
   foreach(level x86-64-v3 x86-64-v4)
-    _bw_shared(bw_breakwater-${level} ${sources})
-    add_dependencies(bw_breakwater-${level} bw_version)
-    target_compile_options(bw_breakwater-${level} PRIVATE -march=${level})
-    set_target_properties(bw_breakwater-${level} PROPERTIES
+    _bw_shared(breakwater-${level} ${sources})
+    add_dependencies(breakwater-${level} bw_version)
+    target_compile_options(breakwater-${level} PRIVATE -march=${level})
+    set_target_properties(breakwater-${level} PROPERTIES
                           LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/glibc-hwcaps/${level})
-    install(TARGETS bw_breakwater-${level}
+    install(TARGETS breakwater-${level}
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
   endforeach()
 endif()
@@ -57,10 +57,10 @@ if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr") # where the dynamic linker looks by
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
              OUTPUT_VARIABLE to_lib)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH "$ORIGIN/${to_lib}")
-  set_target_properties(${programs} bw_breakwater PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  set_target_properties(${programs} breakwater_library PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
 install(TARGETS ${programs} RUNTIME)
-install(TARGETS ${targets} bw_breakwater EXPORT Breakwater)
+install(TARGETS ${targets} breakwater_library EXPORT Breakwater)
 install(EXPORT Breakwater NAMESPACE bw:: FILE BreakwaterTargets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Breakwater)
 
@@ -92,7 +92,7 @@ foreach(folder ${folders})
     cmake_path(GET folder PARENT_PATH kind)
     cmake_path(GET kind FILENAME kind)
     install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/breakwater/${kind}
-            FILES_MATCHING PATTERN "*.yaml" PATTERN "README.md")
+            FILES_MATCHING PATTERN "*.yaml" PATTERN "*.nrrd" PATTERN "README.md")
   endif()
 endforeach()
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -34,7 +34,7 @@ int main(int argc, char **argv)
 {
   bw_scene_config *config = NULL;
   const bw_case_about about = {"breakwater", "bodies and a fluid from one scene file",
-                               bw_scene_fields, sizeof *config};
+                               bw_scene_fields, sizeof *config, bw_checkpoint_read_case};
   if (bw_allocate(1, sizeof *config, &config) != BW_OK) return 1;
   bw_scene_config_default(config);
   int code = 0;

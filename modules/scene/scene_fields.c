@@ -38,11 +38,12 @@ static const bw_config_field contact_fields[] = {
 const bw_config_field bw_scene__output_fields[] = {
     V(bw_scene_output, sample_every, BW_OPTIONAL, BW_ABOVE(0), "T",
       "time between rows of history.csv; left out: a 200th of the run"),
-    V(bw_scene_output, picture_every, BW_OPTIONAL, BW_AT_LEAST(0), "T",
+    V(bw_scene_output, picture_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T",
       "time between VTK files; 0: at the end only"),
-    V(bw_scene_output, checkpoint_every, BW_OPTIONAL, BW_ANY, "",
+    V(bw_scene_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
       "600 s: wall-clock time between checkpoint-last.h5; 0: at the end only"),
-    V(bw_scene_output, figures, BW_OPTIONAL, BW_ANY, "", "draw history.csv at the end (./run)"),
+    V(bw_scene_output, figures, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
+      "draw history.csv at the end (./run)"),
     BW_CONFIG_END};
 
 static const bw_config_word viscous_words[] = {
@@ -99,7 +100,7 @@ const bw_config_field bw_scene__numerics_fields[] = {
 #undef W
 
 const bw_config_field bw_scene_fields[] = {
-    V(bw_scene_config, name, BW_OPTIONAL, BW_ANY, "", "what the scene is called"),
+    V(bw_scene_config, name, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "", "what the scene is called"),
     BW_CONFIG_WORD(bw_scene_config, accuracy, BW_OPTIONAL, accuracy_words,
                    "sets every knob that the file leaves open"),
     BW_CONFIG_WORD(bw_scene_config, plane, BW_OPTIONAL, plane_words,

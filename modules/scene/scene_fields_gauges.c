@@ -3,9 +3,10 @@
 
 #define V BW_CONFIG_VALUE
 static const bw_config_field until_fields[] = {
-    V(bw_scene_until, time, BW_OPTIONAL, BW_ABOVE(0), "T", "time of the run at which it ends"),
-    V(bw_scene_until, steps, BW_OPTIONAL, BW_AT_LEAST(1), "", "steps of the phase"),
-    V(bw_scene_until, settled, BW_OPTIONAL, BW_ABOVE(0), "",
+    V(bw_scene_until, time, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "T",
+      "time of the run at which it ends"),
+    V(bw_scene_until, steps, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "", "steps of the phase"),
+    V(bw_scene_until, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "",
       "solids: kinetic over elastic energy; fluid: relative change of its kinetic energy per "
       "sample; ends below it"),
     BW_CONFIG_END};
@@ -60,14 +61,17 @@ static const bw_config_word mean_words[] = {{"none", 0, NULL},
 #define OURS bw_scene_watch
 const bw_config_field bw_scene__watch_fields[] = {
     V(bw_scene_watch, name, BW_REQUIRED, BW_ANY, "", "GAUGE or GAUGE.COMPONENT"),
-    BW_CONFIG_WORD(bw_scene_watch, mean, BW_OPTIONAL, mean_words, "which mean"),
-    V(OURS, amplitude, BW_OPTIONAL, BW_ANY, "", "half of largest less least"),
-    V(OURS, frequency, BW_OPTIONAL, BW_ANY, "", "of crossings of the mean, upwards"),
-    V(OURS, last_periods, BW_OPTIONAL, BW_AT_LEAST(1), "",
+    BW_CONFIG_WORD(bw_scene_watch, mean, BW_OPTIONAL | BW_MAY_CHANGE, mean_words, "which mean"),
+    V(OURS, amplitude, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "", "half of largest less least"),
+    V(OURS, frequency, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
+      "of crossings of the mean, upwards"),
+    V(OURS, last_periods, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "",
       "periods that go in; left out: all after `from`"),
-    V(OURS, from, BW_OPTIONAL, BW_AT_LEAST(0), "T", "time from which is looked at"),
-    V(OURS, above, BW_OPTIONAL, BW_ANY, "", "the run stops when the gauge is above"),
-    V(OURS, below, BW_OPTIONAL, BW_ANY, "", "the run stops when the gauge is below"),
+    V(OURS, from, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T", "time from which is looked at"),
+    V(OURS, above, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
+      "the run stops when the gauge is above"),
+    V(OURS, below, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
+      "the run stops when the gauge is below"),
     BW_CONFIG_END};
 #undef OURS
 #undef V

@@ -59,14 +59,14 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
   const double rho = s->config.fluid.density, drive = bw_ns_channel_driving(s->fluid);
   memset(value, 0, width * n * sizeof *value);
   for (size_t q = 0; q < n; q++) {
-    double at[3];
+    double at[3], inside[3];
     for (int d = 0; d < 3; d++) {
-      /* Onto the box: its upper face belongs to the last cell. */
-      const double most = g->length[d] * (1.0 - 1e-12);
-      at[d] = fmin(fmax(x[3 * q + (size_t)d], 0.0), most);
+      at[d] = fmin(fmax(x[3 * q + (size_t)d], 0.0), g->length[d]);
       if (g->n[d] == 1) at[d] = 0.5 * g->length[d];
+      /* The upper face of the box belongs to the last cell. */
+      inside[d] = fmin(at[d], g->length[d] * (1.0 - 1e-12));
     }
-    if (bw_grid_owner(s->grid, at) != bw_comm_rank(s->comm)) continue;
+    if (bw_grid_owner(s->grid, inside) != bw_comm_rank(s->comm)) continue;
     if (pressure) /* with the gradient that drives the flow, which the field is without */
       value[q] = rho * (at_place(s, 3, at) - drive * at[0]);
     else
@@ -89,7 +89,6 @@ static void point_value(bw_scene *s, const bw_scene_gauge_config *g, bool pressu
 static bw_status coupled_force(bw_scene *s, double value[BW_SCENE__COMPONENTS])
 {
   bw_coupler_report r;
-  if (s->steps == 0) return BW_OK;
   BW_TRY(bw_coupler_measure(s->coupler, &r));
   bw_coupler_warn_slip(s->coupler, &r, s->log);
   for (int d = 0; d < 3; d++) {
@@ -108,6 +107,8 @@ bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quanti
     point_value(s, g, what->n == 1, value);
     return BW_OK;
   }
+  /* Forces are those of the last step. */
+  if (strcmp(what->word, "force") == 0 && s->steps == 0) return BW_OK;
   if (strcmp(what->word, "force") == 0)
     return s->coupler != NULL ? coupled_force(s, value)
                               : bw_scene__surface_force(s, g->body, value);

@@ -78,6 +78,7 @@ static bw_status checkpoint(driver *r)
   bw_status st = bw_history_sync(comm, r->history);
   BW_THEN(st, bw_case_path(r->run, "checkpoint-last.h5", &path));
   BW_THEN(st, bw_checkpoint_create(comm, path, &ck));
+  BW_THEN(st, bw_checkpoint_put_case(ck, r->run));
   BW_THEN(st, bw_checkpoint_put_numbers(ck, "case/rows", 1, &rows));
   BW_THEN(st, bw_scene_save(r->scene, ck));
   if (st == BW_OK) st = bw_checkpoint_close(&ck);

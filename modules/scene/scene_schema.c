@@ -114,7 +114,7 @@ static void put_table(FILE *out, const bw_config_field fields[], bool named)
   fputs("},\"required\":[", out);
   first = true;
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
-    if (f->need != BW_REQUIRED || (named && strcmp(f->key, "name") == 0)) continue;
+    if (!(f->need & BW_REQUIRED) || (named && strcmp(f->key, "name") == 0)) continue;
     if (!first) fputc(',', out);
     first = false;
     put_text(out, f->key);

@@ -178,18 +178,20 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
   return BW_OK;
 }
 
-/* Do pieces of this solid meet each other? */
+/* Do pieces of this solid meet each other? Those of a body that breaks do, and bodies in a flow
+ * that nothing joins. */
 static bool meets_itself(const bw_scene *s, const bw_scene__solid *q)
 {
-  bool self = false;
-  int deforming = 0;
+  const bw_scene_config *c = &s->config;
+  if (strcmp(c->contact.between, "none") == 0) return false;
   for (int k = 0; k < q->n_bodies; k++) {
-    const bw_scene_body *b = &s->config.bodies[q->body[k]];
-    self = self || (bw_scene__deforms(b) && b->self_contact);
-    deforming += bw_scene__deforms(b);
+    const bw_scene_body *b = &c->bodies[q->body[k]];
+    if (!bw_scene__deforms(b)) continue;
+    if (b->self_contact) return true;
+    for (int r = 0; r < q->n_bodies; r++)
+      if (r != k && !joined(c, q->body[k], q->body[r])) return true;
   }
-  const bool several = q->n_bodies > 1 && deforming > 0 && bw_scene__has_fluid(&s->config);
-  return self || (several && strcmp(s->config.contact.between, "none") != 0);
+  return false;
 }
 
 static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_config *c)

@@ -1,0 +1,54 @@
+/* scene_text.h -- scenes of a few lines, for tests. */
+#pragma once
+#include "bw_check.h"
+#include "bw_memory.h"
+#include "scene_impl.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The scene of a text, written to a file of this number of ranks. NULL when it is refused. */
+static inline bw_scene *scene_of(const char *text)
+{
+  bw_comm *world = bw_check_world();
+  bw_scene_config *c = NULL;
+  bw_scene *scene = NULL;
+  char path[64];
+  snprintf(path, sizeof path, "test_scene_np%d.yaml", bw_comm_size(world));
+  if (bw_comm_rank(world) == 0) {
+    FILE *out = fopen(path, "w");
+    ck_assert_ptr_nonnull(out);
+    fputs(text, out);
+    ck_assert_int_eq(fclose(out), 0);
+  }
+  bw_comm_barrier(world);
+  bw_check_ok(BW_ALLOCATE(&c, 1));
+  bw_scene_config_default(c);
+  bw_status st = bw_scene_read(world, path, 0, NULL, c);
+  if (st == BW_OK) st = bw_scene_create(world, c, NULL, &scene);
+  bw_release(&c);
+  return st == BW_OK ? scene : NULL;
+}
+
+/* The same, which has to be taken. */
+static inline bw_scene *made(const char *text)
+{
+  bw_scene *scene = scene_of(text);
+  ck_assert_msg(scene != NULL, "%s", bw_last_message());
+  return scene;
+}
+
+/* Steps to the end. */
+static inline void run(bw_scene *scene)
+{
+  while (!bw_scene_done(scene))
+    bw_check_ok(bw_scene_step(scene, INFINITY));
+}
+
+static inline double gauge(bw_scene *scene, const char *name)
+{
+  double value = NAN;
+  bw_check_ok(bw_scene_gauge(scene, name, &value));
+  return value;
+}

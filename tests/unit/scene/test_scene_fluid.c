@@ -1,0 +1,167 @@
+/* The fluid of a scene: gauges at places, ramps, forces on bodies by every route, bodies in it.
+ * TEST ranks=1,2 */
+#include "scene_text.h"
+
+#define CHANNEL "domain: {length: [2, 1, 0.125], cells: [16, 8, 1]}\n"
+#define WALLS   "    y: {lower: {kind: wall}, upper: {kind: wall}}\n"
+
+/* A field that is linear in all directions, halos too. */
+static void fill(bw_scene *s, bw_real *f, int face, double c0, const double c[3])
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  for (int k = 1 - g->halo[2]; k <= g->m[2] + g->halo[2]; k++)
+    for (int j = 1 - g->halo[1]; j <= g->m[1] + g->halo[1]; j++)
+      for (int i = 1 - g->halo[0]; i <= g->m[0] + g->halo[0]; i++) {
+        const int at[3] = {i, j, k};
+        double value = c0;
+        for (int d = 0; d < 3; d++)
+          value += c[d] * (at[d] + g->lo[d] - (d == face ? 0.0 : 0.5)) * g->spacing[d];
+        f[bw_at(g, i, j, k)] = (bw_real)value;
+      }
+}
+
+/* Linear fields are met everywhere, between points and next to sides. */
+START_TEST(places)
+{
+  bw_scene *s =
+      made("domain: {length: [2, 1, 1.5], cells: [16, 8, 12]}\n"
+           "fluid:\n  density: 2\n  viscosity: 0.1\n  sides:\n"
+           "    x: {lower: {kind: wall}, upper: {kind: wall}}\n" WALLS
+           "    z: {lower: {kind: wall}, upper: {kind: wall}}\n"
+           "phases: {until: {steps: 1}}\n"
+           "gauges:\n  a: {point: [0.83, 0.41, 0.7], of: [velocity, pressure]}\n"
+           "  b: {point: [0, 1, 1.5], minus: [1.2, 0.1, 0.02], of: [velocity, pressure]}\n");
+  const double c[4][3] = {{1, 2, 3}, {-1, 4, 2}, {5, -3, 1}, {2, 2, -4}};
+  for (int q = 0; q < 4; q++)
+    fill(s, q < 3 ? bw_ns_channel_velocity(s->fluid)[q] : bw_ns_channel_pressure(s->fluid), q, q,
+         c[q]);
+  static const char *const names[] = {"velocity.x", "velocity.y", "velocity.z", "pressure"};
+  for (int q = 0; q < 4; q++) {
+    char a[32], b[32];
+    const double scale = q == 3 ? 2.0 : 1.0; /* p is over the density in the field */
+    snprintf(a, sizeof a, "a.%s", names[q]);
+    snprintf(b, sizeof b, "b.%s", names[q]);
+    bw_check_near(gauge(s, a), scale * (q + 0.83 * c[q][0] + 0.41 * c[q][1] + 0.7 * c[q][2]),
+                  1e2 * BW_REAL_EPSILON);
+    bw_check_near(gauge(s, b), scale * (-1.2 * c[q][0] + 0.9 * c[q][1] + 1.48 * c[q][2]),
+                  1e3 * BW_REAL_EPSILON);
+  }
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* The gradient that drives a flow is in the pressure that a gauge tells. */
+START_TEST(driven)
+{
+  bw_scene *s =
+      made(CHANNEL "fluid:\n  density: 2\n  viscosity: 0.1\n  forcing: {kind: gradient, value: 3}\n"
+                   "  sides:\n    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n" WALLS
+                   "phases: {until: 0.01}\n"
+                   "gauges: {p: {point: [0.25, 0.5], minus: [1.5, 0.5], of: pressure}, u: {of: "
+                   "bulk_velocity}}\n");
+  run(s);
+  bw_check_near(gauge(s, "p"), 2 * 3 * 1.25, 1e3 * BW_REAL_EPSILON);
+  /* From rest, but for the friction of a hundredth of a unit of time: 3 t. */
+  bw_check_near(gauge(s, "u"), 0.03, 0.005);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* An inflow that rises brings mean (1 - cos(pi t/T))/2. */
+START_TEST(ramp)
+{
+  bw_scene *s =
+      made(CHANNEL "fluid:\n  density: 1\n  viscosity: 0.1\n  sides:\n"
+                   "    x: {lower: {kind: inflow, profile: poiseuille, mean: 2, ramp: 0.4}, upper: "
+                   "{kind: outflow}}\n" WALLS "phases: {until: 0.1}\n"
+                   "gauges: {q: {of: flow_rate}}\nnumerics: {step: 0.005}\n");
+  run(s);
+  /* Through a section of 1 x 0.125; the sum of the parabola as above. */
+  const double rate = 2 * 0.5 * (1 - cos(0.25 * acos(-1.0))) * 0.125 * (1 + 0.5 / 64);
+  bw_check_near(gauge(s, "q.in"), rate, 1e3 * BW_REAL_EPSILON);
+  bw_check_near(gauge(s, "q.out"), rate, 1e4 * BW_REAL_EPSILON);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* A sphere that does not move: markers have its area, the three routes its drag. The momentum
+ * balance is the scheme's own, so that two of them are one to round-off. */
+START_TEST(force)
+{
+  bw_scene *s =
+      made("domain: {length: [2, 2, 2], cells: [16, 16, 16]}\n"
+           "fluid:\n  density: 2\n  viscosity: 0.5\n  sides:\n"
+           "    x: {lower: {kind: inflow, velocity: [1, 0, 0]}, upper: {kind: outflow}}\n"
+           "    y: {lower: {kind: free_slip}, upper: {kind: free_slip}}\n"
+           "    z: {lower: {kind: periodic}, upper: {kind: periodic}}\n"
+           "  start: {velocity: [1, 0, 0]}\n"
+           "bodies: {ball: {shape: {sphere: {centre: [1, 1, 1], radius: 0.45}}, motion: fixed}}\n"
+           "phases: {until: {steps: 30}}\ngauges: {f: {body: ball, of: force}}\n");
+  const double retraction = bw_ibm_mdf_retraction(&(bw_ibm_mdf_config){BW_KERNEL_ROMA3, 1, 0.2});
+  const double R = 0.45 - retraction * 0.125;
+  double area = 0.0;
+  for (size_t i = 0; i < s->inner.n; i++)
+    area += s->inner.area[i];
+  bw_comm_sum(s->comm, 1, &area);
+  bw_check_near(area, 4 * acos(-1.0) * R * R, 1e-10);
+  run(s);
+  const double reaction = gauge(s, "f.reaction.x");
+  ck_assert_double_gt(reaction, 0.0);
+  bw_check_near(gauge(s, "f.box.x") / reaction, 1.0, 1e5 * BW_REAL_EPSILON);
+  /* Probes err by the first order of the cell over the radius, 1/3.6. */
+  bw_check_near(gauge(s, "f.probe.x") / reaction, 1.0, 0.28);
+  bw_check_near(gauge(s, "f.reaction.y"), 0.0, 1e4 * BW_REAL_EPSILON);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* A flap held by a fixed cylinder: one lattice, of which the cylinder stays and the flap gives. */
+START_TEST(flap)
+{
+  bw_scene *s = made(
+      "domain: {length: [2, 1, 0.0625], cells: [32, 16, 1]}\n"
+      "fluid:\n  density: 1\n  viscosity: 0.05\n  sides:\n"
+      "    x: {lower: {kind: inflow, profile: poiseuille, mean: 1}, upper: {kind: outflow}}\n" WALLS
+      "  start: {developed: true}\n"
+      "materials: {m: {density: 10, young_modulus: 1000}}\n"
+      "bodies:\n"
+      "  post: {shape: {cylinder: {centre: [0.5, 0.4], radius: 0.15}}, motion: fixed}\n"
+      "  flap: {shape: [{box: {from: [0.5, 0.3125], to: [1.2, 0.5]}}, {minus: post}],\n"
+      "         material: m, motion: elastic, held: {by: post}}\n"
+      "phases: [{until: {steps: 3}, hold: flap}, {until: {steps: 8}}]\n"
+      "gauges:\n  tip: {body: flap, nearest: [1.2, 0.4], of: displacement}\n"
+      "  post: {body: post, of: displacement}\n"
+      "  drag: {body: [post, flap], of: force}\n");
+  ck_assert_int_eq(s->n_solids, 1);
+  ck_assert(!bw_solid_settings(s->solid[0].solid)->contact);
+  while (bw_scene_phase_now(s) == 0)
+    bw_check_ok(bw_scene_step(s, INFINITY));
+  bw_check_near(gauge(s, "tip.x"), 0.0, 0.0);
+  run(s);
+  ck_assert_double_gt(gauge(s, "tip.x"), 0.0);
+  bw_check_near(gauge(s, "post.x"), 0.0, 0.0);
+  ck_assert_double_gt(gauge(s, "drag.reaction.x"), 0.0);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* What is too near to another body in a flow would be bonded: refused, with both names. */
+START_TEST(too_near)
+{
+  bw_scene *s = scene_of(
+      CHANNEL
+      "fluid:\n  density: 1\n  viscosity: 0.05\n  sides:\n"
+      "    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n" WALLS
+      "materials: {m: {density: 10, young_modulus: 1000}}\n"
+      "bodies:\n  a: {shape: {box: {from: [0.5, 0.25], to: [1, 0.5]}}, material: m, motion: "
+      "elastic}\n"
+      "  b: {shape: {box: {from: [1.125, 0.25], to: [1.5, 0.5]}}, material: m, motion: "
+      "elastic}\nphases: {until: 1}\n");
+  ck_assert_ptr_null(s);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "nearer than a horizon"));
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(places), BW_TEST(driven), BW_TEST(ramp),
+                                      BW_TEST(force),  BW_TEST(flap),   BW_TEST(too_near)};
+BW_CHECK_MAIN("scene.fluid", tests)

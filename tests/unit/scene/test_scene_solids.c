@@ -1,0 +1,161 @@
+/* Solids of a scene against mechanics that needs no computer: loads, weight, prescribed motion,
+ * collisions, materials.
+ * TEST ranks=1,2 */
+#include "scene_text.h"
+
+/* Round-off of a step, times the steps. */
+static const double TINY = 2e3 * BW_REAL_EPSILON;
+
+#define BLOCK                                                                                      \
+  "plane: strain\nthickness: 2\nmaterials: {m: {density: 3, young_modulus: 100}, heavy: "          \
+  "{density: 30, young_modulus: 100}}\n"
+
+/* Free fall: Verlet is exact for a constant force. */
+START_TEST(weight)
+{
+  bw_scene *s =
+      made(BLOCK "gravity: [1, -2]\n"
+                 "bodies: {a: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, material: m,"
+                 " motion: elastic, spacing: 0.1, velocity: [0, 5]}}\n"
+                 "phases: {until: 0.5}\n"
+                 "gauges: {x: {body: a, of: [displacement, velocity]}, e: {of: energy}}\n");
+  run(s);
+  bw_check_near(gauge(s, "x.displacement.x"), 0.5 * 0.25, TINY);
+  bw_check_near(gauge(s, "x.displacement.y"), 5 * 0.5 - 0.25, 3 * TINY);
+  bw_check_near(gauge(s, "x.velocity.y"), 5 - 2 * 0.5, 6 * TINY);
+  /* Work of the weight is the gain of kinetic energy: m/2 (v^2 - v0^2), m = 3 * 0.12 * 2. */
+  bw_check_near(gauge(s, "e.external"), 0.36 * (0.25 + 16 - 25), 20 * TINY);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* Newton: a traction, a force and a pressure give the momentum that they say, by their ramps. */
+START_TEST(loads)
+{
+  static const struct {
+    const char *load;
+    double force[2]; /* of all of it: the sides are 0.3 and 0.4 long and 2 deep */
+  } cases[] = {{"{on: a, kind: traction, where: x_upper, value: [10, 4], ramp: 0.2}", {6.0, 2.4}},
+               {"{on: a, kind: pressure, where: y_upper, value: 10, ramp: 0.2}", {0.0, -8.0}},
+               {"{on: a, kind: pressure, where: {side: x_lower, layers: 2}, value: 10, ramp: 0.2}",
+                {6.0, 0.0}},
+               {"{on: a, kind: force, value: [1, 2], ramp: 0.2}", {1.0, 2.0}},
+               {"{on: a, kind: force, where: {box: {from: [0, 0], to: [0.2, 0.1]}}, value: [1, 2], "
+                "ramp: 0.2}",
+                {1.0, 2.0}},
+               {"{on: a, kind: gravity, value: [1, -1], ramp: 0.2}", {0.72, -0.72}}};
+  for (size_t q = 0; q < sizeof cases / sizeof *cases; q++) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             BLOCK "bodies: {a: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, material: m,"
+                   " motion: elastic, spacing: 0.1}}\nloads: %s\n"
+                   "phases: {until: 0.4}\ngauges: {v: {body: a, of: velocity}}\n",
+             cases[q].load);
+    bw_scene *s = made(text);
+    run(s);
+    /* Half of the ramp and all of the rest: 0.1 + 0.2 of the force; a step's corner is missed. */
+    const double mass = 3 * 0.12 * 2, corner = bw_scene_last_step(s);
+    bw_check_near(gauge(s, "v.x"), cases[q].force[0] * 0.3 / mass,
+                  fabs(cases[q].force[0]) / mass * corner * corner / 0.2 + TINY);
+    bw_check_near(gauge(s, "v.y"), cases[q].force[1] * 0.3 / mass,
+                  fabs(cases[q].force[1]) / mass * corner * corner / 0.2 + TINY);
+    bw_scene_destroy(&s);
+  }
+}
+END_TEST
+
+/* A body that turns and swings stands where it is told to, whatever the steps are. */
+START_TEST(prescribed)
+{
+  bw_scene *s =
+      made(BLOCK
+           "bodies:\n"
+           "  a: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, motion: prescribed, spacing: 0.1,\n"
+           "      velocity: [0.5, 0], rotation: {rate: 1.5707963267948966, centre: [0, 0]},\n"
+           "      swing: {amplitude: [0, 0.2], frequency: 0.25}}\n"
+           "  b: {shape: {box: {from: [9, 9], to: [9.4, 9.3]}}, material: m, motion: elastic, "
+           "spacing: 0.1}\n"
+           "phases: {until: 1}\n"
+           "gauges: {p: {body: a, nearest: [0.35, 0.05], of: position}}\n");
+  run(s);
+  /* A quarter of a turn brings (0.35, 0.05) to (-0.05, 0.35); then velocity and swing. */
+  bw_check_near(gauge(s, "p.x"), -0.05 + 0.5, TINY);
+  bw_check_near(gauge(s, "p.y"), 0.35 + 0.2, TINY);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* Two equal blocks meet: momentum stays, they part, the book closes. */
+START_TEST(collision)
+{
+  bw_scene *s = made(
+      BLOCK "bodies:\n"
+            "  a: {shape: {box: {from: [0, 0], to: [0.4, 0.4]}}, material: m, motion: elastic, "
+            "spacing: 0.1, velocity: [1, 0]}\n"
+            "  b: {shape: {box: {from: [0.5, 0], to: [0.9, 0.4]}}, material: m, motion: elastic, "
+            "spacing: 0.1}\n"
+            "phases: {until: 1}\nnumerics: {step_share: 0.1}\n"
+            "gauges: {a: {body: a, of: velocity}, b: {body: b, of: velocity}, e: {of: energy}}\n");
+  run(s);
+  bw_check_near(gauge(s, "a.x") + gauge(s, "b.x"), 1.0, TINY);
+  ck_assert_double_gt(gauge(s, "b.x"), 0.7);
+  ck_assert_double_lt(gauge(s, "a.x"), 0.3);
+  /* Verlet keeps energy to the square of the step, a hundredth of a percent here. */
+  const double all = gauge(s, "e.kinetic") + gauge(s, "e.elastic") + gauge(s, "e.contact");
+  bw_check_near(all, 0.5 * 3 * 0.16 * 2, 2e-3 * all);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* Parts of their own material; a hole by minus and by remove. */
+START_TEST(materials_and_holes)
+{
+  bw_scene *s = made(
+      BLOCK "bodies:\n"
+            "  a:\n    shape: [{box: {from: [0, 0], to: [0.4, 0.4]}}, {box: {from: [0.2, 0], to: "
+            "[0.4, 0.4]}, material: heavy},\n"
+            "            {minus: hole}, {box: {from: [0, 0], to: [0.1, 0.1]}, remove: true}]\n"
+            "    material: m\n    motion: elastic\n    spacing: 0.1\n    velocity: [2, 0]\n"
+            "  hole: {shape: {box: {from: [0.3, 0.3], to: [0.4, 0.4]}}, motion: fixed, spacing: "
+            "0.1}\n"
+            "contact: {between: none}\n"
+            "phases: {until: {steps: 1}}\ngauges: {e: {of: energy}}\n");
+  /* 7 light, 7 heavy particles of 0.02: m/2 v^2. */
+  bw_check_near(gauge(s, "e.kinetic"), 2 * (7 * 3 + 7 * 30) * 0.02, 1e2 * TINY);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+/* Phases end by time and by steps, and damping belongs to them. */
+START_TEST(phases)
+{
+  bw_scene *s =
+      made(BLOCK "bodies: {a: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, material: m, motion: "
+                 "elastic, spacing: 0.1, velocity: [1, 0]}}\n"
+                 "phases: [{until: 0.1}, {until: {steps: 7}}, {until: 1, damp: 30}]\n"
+                 "gauges: {v: {body: a, of: velocity}}\n");
+  while (bw_scene_phase_now(s) == 0)
+    bw_check_ok(bw_scene_step(s, INFINITY));
+  bw_check_near(bw_scene_time(s), 0.1, 1e-15);
+  const int64_t first = bw_scene_steps(s);
+  while (bw_scene_phase_now(s) == 1)
+    bw_check_ok(bw_scene_step(s, INFINITY));
+  ck_assert_int_eq(bw_scene_steps(s), first + 7);
+  bw_check_near(gauge(s, "v.x"), 1.0, TINY);
+  const double from = bw_scene_time(s);
+  run(s);
+  bw_check_near(bw_scene_time(s), 1.0, 1e-15);
+  /* v' = -k/rho v; the damping of Verlet's half step is of first order in the step. */
+  const double decay = exp(-10.0 * (1.0 - from));
+  bw_check_near(gauge(s, "v.x"), decay, 10 * bw_scene_last_step(s) * 10 * decay + TINY);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(weight),
+                                      BW_TEST(loads),
+                                      BW_TEST(prescribed),
+                                      BW_TEST(collision),
+                                      BW_TEST(materials_and_holes),
+                                      BW_TEST(phases)};
+BW_CHECK_MAIN("scene.solids", tests)

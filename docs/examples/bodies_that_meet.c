@@ -14,10 +14,10 @@ static bw_status meet(const bw_comm *world)
       {.count = 1, .shape = &ball, .density = 1.0, .velocity = {1, 0, 0}},
       {.count = 1, .shape = &block, .density = 2.0}};
   bw_rigid *bodies = NULL;
+  bw_status st = BW_OK;
   bw_rigid_config config = bw_rigid_config_default();
   config.spacing = 0.1, config.stiffness = 1000.0;
   BW_TRY(bw_rigid_create(world, &config, 2, body, &bodies));
-  bw_status st = BW_OK;
   while (st == BW_OK && bw_rigid_time(bodies) < 2.0)
     st = bw_rigid_step(bodies, bw_rigid_dt_max(bodies));
   const bw_rigid_state s = bw_rigid_state_of(bodies, 1);

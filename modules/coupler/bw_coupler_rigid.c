@@ -213,7 +213,7 @@ void bw_coupler_rigid_force(bw_coupler_rigid *c, double dt)
 static void find_force(bw_coupler_rigid *c, double dt)
 {
   const int n = bw_rigid_count(c->rigid);
-  const double rho = c->config.rho, driving = bw_ns_channel_driving(c->fluid);
+  const double rho = c->config.rho;
   double *F = c->scratch, *T = c->scratch + 3 * (ptrdiff_t)n;
   bw_ibm_mdf_marker_force(c->ibm, c->Q);
   for (size_t i = 0; i < 3 * c->n; i++)
@@ -228,8 +228,6 @@ static void find_force(bw_coupler_rigid *c, double dt)
   measure_inside(c, c->scratch);
   for (int i = 0; i < 6 * n; i++)
     c->hydro[i] += rho * (c->scratch[i] - c->inside[i]) / dt;
-  for (int q = 0; q < n; q++)
-    c->hydro[6 * q] -= rho * driving * bw_rigid_state_of(c->rigid, q).volume;
 }
 
 bw_status bw_coupler_rigid_advance(bw_coupler_rigid *c, double dt)

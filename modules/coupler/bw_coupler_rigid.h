@@ -4,19 +4,21 @@
  *   fluid   three sub-steps: predict, no slip at the markers, project; the markers are the surface
  *           points of the bodies, on the true surface (bw_ibm_mdf_set_normals)
  *   load    the markers' reaction with the inertia of the fluid inside taken out:
- *             F = -rho sum Q dV + rho d/dt int_inside u dV - rho g_d V
+ *             F = -rho sum Q dV + rho d/dt int_inside u dV
  *           (M. Uhlmann, J. Comput. Phys. 209 (2005) 448; T. Kempe and J. Froehlich, J. Comput.
- *           Phys. 231 (2012) 3663), the same for the torque about the centre of mass. g_d is what
- *           drives the fluid, whose pressure is not in the field. The integral is that of the
- *           velocity times the share of each cell inside, over the place that the body had.
+ *           Phys. 231 (2012) 3663), the same for the torque about the centre of mass. What drives
+ *           the fluid pushes the body, too, as the pressure that it stands for would: the fluid
+ *           inside is driven like the rest. The integral is that of the velocity times the share
+ *           of each cell inside, over the place that the body had.
  *   bodies  m V' = F + (m - rho V_body) g + springs, walls, contact: sub-steps of bw_rigid
  *
  * Added mass. The load is that of the step before, so that the added mass m_a of a light body would
  * be a negative damping. A virtual mass m_v = c rho V_body on both sides of the equation,
  *   (m + m_v) A_{n+1} = F_n + m_v A_n,
- * holds where m_v > (m_a - m)/2 and changes no steady motion (S. Schwarz, T. Kempe and J. Froehlich,
- * J. Comput. Phys. 281 (2015) 591); here it is a relaxation of the load by m/(m + m_v). A sphere has
- * m_a = rho V/2, a cylinder rho V; c = 1 holds both at any density (validation/coupler/rigid_fall).
+ * holds where m_v > (m_a - m)/2 and changes no steady motion (S. Schwarz, T. Kempe and J.
+ * Froehlich, J. Comput. Phys. 281 (2015) 591); here it is a relaxation of the load by m/(m + m_v).
+ * A sphere has m_a = rho V/2, a cylinder rho V; with c = 1 a cylinder holds at a hundredth of the
+ * fluid's density (validation/coupler/rigid_fall).
  *
  * With a solid of particles in the same fluid, or in a loop of one's own, the phases are called one
  * by one: begin; force after each bw_ns_channel_predict; advance.

@@ -1,8 +1,8 @@
 /* bw_rigid.h -- rigid bodies: six numbers each, on springs, between walls, in contact.
  *
  *   m V' = F + f,   L' = T + t,   L = Q I Q^T W,   X' = V,   Q' = W x Q
- * F, T: what the caller loads; f, t: weight, springs, walls, contact. X is the centre of mass, Q the
- * turn since the start, I the inertia at the start, W the spin, L the angular momentum about X.
+ * F, T: what the caller loads; f, t: weight, springs, walls, contact. X is the centre of mass, Q
+ * the turn since the start, I the inertia at the start, W the spin, L the angular momentum about X.
  * Step     kick, drift, kick. The drift turns the body by a splitting of its kinetic energy: about
  *          its principal axes by L_1/I_1 dt/2, L_2/I_2 dt/2, L_3/I_3 dt, L_2/I_2 dt/2, L_1/I_1
  *          dt/2 (A. Dullweber, B. Leimkuhler and R. McLachlan, J. Chem. Phys. 107 (1997) 5840).
@@ -138,7 +138,8 @@ double bw_rigid_distance(const bw_rigid *rigid, int body, const double x[3]);
 double bw_rigid_radius(const bw_rigid *rigid, int body);
 
 /* State for a restart: BW_RIGID_ROW numbers per body, the same on all ranks. Restored into bodies
- * that were created alike, the motion goes on to the last bit. save is local, restore collective. */
+ * that were created alike, the motion goes on to the last bit. save is local, restore
+ * collective. */
 enum { BW_RIGID_ROW = 24 };
 void bw_rigid_save(const bw_rigid *rigid, double row[]);
 void bw_rigid_restore(bw_rigid *rigid, double time, const double row[]);

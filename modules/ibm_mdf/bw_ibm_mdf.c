@@ -335,6 +335,14 @@ void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[])
   return_to_caller(ib, U);
 }
 
+void bw_ibm_mdf_lack_of(bw_ibm_mdf *ib, bw_real *const u[3], double lack[])
+{
+  gather_velocity(ib, u);
+  for (size_t m = 0; m < ib->held; m++)
+    bw_ibm_mdf__lack(ib, m, ib->reply + 3 * (size_t)ib->order[m]);
+  return_to_caller(ib, lack);
+}
+
 void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3])
 {
   if (ib->plan == NULL) return;

@@ -131,6 +131,10 @@ void bw_ibm_mdf_interpolate(bw_ibm_mdf *ib, bw_real *const u[3], double U[]);
  * stay valid. Collective. */
 void bw_ibm_mdf_spread(bw_ibm_mdf *ib, const double F[], bw_real *const u[3]);
 
+/* lack (n,3) [L/T], in the order of set_markers: what u at the markers lacks of what they want;
+ * zero where one is outside the box. u's halos must be valid. Collective. */
+void bw_ibm_mdf_lack_of(bw_ibm_mdf *ib, bw_real *const u[3], double lack[]);
+
 /* What the last step did. */
 typedef struct {
   double slip_before;    /* rms |V - U| over markers (with normals: of what they want), before the

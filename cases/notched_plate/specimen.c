@@ -1,7 +1,6 @@
 /* A plate under load: its sites, its material, its loads, a step. */
 #include "specimen.h"
 #include "bw_memory.h"
-#include "bw_number.h"
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +15,7 @@ static void edge_place(const specimen_config *c, int edge, const double x[3], do
   *along = edge == SPECIMEN_LEFT || edge == SPECIMEN_RIGHT ? x[1] : x[0];
 }
 
-static bool loaded(const specimen *p, const specimen_load *load, const double x[3])
+bool specimen_loaded(const specimen *p, const specimen_load *load, const double x[3])
 {
   double depth, along;
   edge_place(&p->config, load->edge, x, &depth, &along);
@@ -25,13 +24,13 @@ static bool loaded(const specimen *p, const specimen_load *load, const double x[
   return depth < load->rows * p->ds - tie && along > load->from + tie && along < load->to - tie;
 }
 
-static bool inside(const specimen *p, const double x[3])
+bool specimen_inside(const specimen *p, int n_holes, const double x[3])
 {
   const specimen_shape *s = &p->config.shape;
   const double tie = TIE * p->ds;
   if (x[0] < -tie || x[0] >= s->length - tie || x[1] < -tie || x[1] >= s->height - tie)
     return false;
-  for (int q = 0; q < p->config.n_holes; q++) {
+  for (int q = 0; q < n_holes; q++) {
     const specimen_hole *o = &p->config.holes[q];
     if (hypot(x[0] - o->centre[0], x[1] - o->centre[1]) < o->radius - tie) return false;
   }
@@ -42,7 +41,7 @@ static uint8_t loads_at(const specimen *p, const double x[3])
 {
   uint8_t loads = 0;
   for (int q = 0; q < p->config.n_loads; q++)
-    if (loaded(p, &p->config.loads[q], x)) loads |= (uint8_t)(1u << q);
+    if (specimen_loaded(p, &p->config.loads[q], x)) loads |= (uint8_t)(1u << q);
   return loads;
 }
 
@@ -57,7 +56,7 @@ static uint8_t kind_of(const specimen *p, uint8_t loads)
   return kind;
 }
 
-static bw_solid_config material(const specimen *p)
+bw_solid_config specimen_material(const specimen *p)
 {
   const specimen_solid *s = &p->config.solid;
   const specimen_shape *shape = &p->config.shape;
@@ -89,7 +88,7 @@ static bw_solid_config material(const specimen *p)
 }
 
 /* Where the middle of a site lies in the plane. */
-static void place_of(const bw_solid_config *c, int i, int j, double x[2])
+void specimen_place(const bw_solid_config *c, int i, int j, double x[2])
 {
   const double at[2] = {(i + 0.5) * c->ds, (j + 0.5) * c->ds};
   for (int d = 0; d < 2; d++)
@@ -112,9 +111,9 @@ static int64_t scan(const specimen *p, const bw_solid_config *c, int32_t *site, 
     for (int i = -over; i < columns + over; i++) {
       const int j = (int)(row % in_layer) - over, k = (int)(row / in_layer);
       double x[3] = {0.0, 0.0, 0.0};
-      place_of(c, i, j, x);
+      specimen_place(c, i, j, x);
       /* Outside the plate, or in a hole. */
-      if (!inside(p, x)) continue;
+      if (!specimen_inside(p, p->config.n_holes, x)) continue;
       if (site != NULL) {
         site[3 * n] = i, site[3 * n + 1] = j, site[3 * n + 2] = k;
         kind[n] = kind_of(p, loads_at(p, x));
@@ -155,7 +154,7 @@ static bw_status own_loads(specimen *p, const bw_solid_config *c)
     for (int a = 0; a < 2; a++)
       site[a] = (int)floor((r[0] * c->axes[a][0] + r[1] * c->axes[a][1]) / c->ds);
     double x[3] = {0.0, 0.0, 0.0};
-    place_of(c, site[0], site[1], x);
+    specimen_place(c, site[0], site[1], x);
     p->loads[h] = loads_at(p, x);
   }
   bw_release(&X);
@@ -164,7 +163,7 @@ static bw_status own_loads(specimen *p, const bw_solid_config *c)
 
 static bw_status make_solid(specimen *p)
 {
-  const bw_solid_config c = material(p);
+  const bw_solid_config c = specimen_material(p);
   /* Counted first, then listed: each rank lists its part alone. */
   const int64_t n = scan(p, &c, NULL, NULL);
   int64_t all = n;
@@ -252,74 +251,9 @@ static bw_status apply_velocity(specimen *p)
   return st;
 }
 
-/* Limits that were not given are infinite. */
-static void open_limits(specimen_config *c)
-{
-  for (int q = 0; q < c->n_loads; q++) {
-    if (isnan(c->loads[q].from)) c->loads[q].from = -HUGE_VAL;
-    if (isnan(c->loads[q].to)) c->loads[q].to = HUGE_VAL;
-  }
-  for (int d = 0; d < 2; d++) {
-    if (isnan(c->follow.lower[d])) c->follow.lower[d] = -HUGE_VAL;
-    if (isnan(c->follow.upper[d])) c->follow.upper[d] = HUGE_VAL;
-  }
-  if (isnan(c->follow.fit_to)) c->follow.fit_to = HUGE_VAL;
-}
-
-/* Particles have 32-bit numbers, and sites are looked through one by one. */
-static bw_status check_count(const specimen_shape *s, bool solid)
-{
-  const double ds = s->length / s->particles;
-  const double rows = round(s->height / ds), layers = solid ? round(s->thickness / ds) : 1.0;
-  const double n = s->particles * rows * layers;
-  BW_REQUIRE(
-      n <= (double)INT32_MAX, BW_EINPUT,
-      "shape.particles = %d over shape.length = %g make a spacing of %.3g and a plate of %d x "
-      "%.0f x %.0f particles, %.3g in all; at most %d",
-      s->particles, s->length, ds, s->particles, rows, layers, n, INT32_MAX);
-  /* A turned lattice is looked through far beyond the plate. */
-  static const double scanned = 2e10; /* sites of some nanoseconds each: a minute */
-  const double over = s->lattice_angle == 0.0 ? 0.0 : s->particles + rows;
-  BW_REQUIRE((s->particles + 2.0 * over) * (rows + 2.0 * over) * layers <= scanned, BW_EINPUT,
-             "shape.lattice_angle = %g: %d x %.0f particles are too many for a turned lattice",
-             s->lattice_angle, s->particles, rows);
-  BW_REQUIRE(rows >= 1.0, BW_EINPUT, "shape.height = %g is less than a spacing, %g", s->height, ds);
-  return BW_OK;
-}
-
-static bw_status check(const specimen_config *c)
-{
-  for (int d = 0; d < 2; d++)
-    BW_REQUIRE(c->follow.lower[d] < c->follow.upper[d], BW_EINPUT,
-               "follow.lower[%d] = %g has to be below follow.upper[%d] = %g", d, c->follow.lower[d],
-               d, c->follow.upper[d]);
-  BW_REQUIRE(c->follow.fit_from < c->follow.fit_to, BW_EINPUT,
-             "follow.fit_from = %g has to be below follow.fit_to = %g", c->follow.fit_from,
-             c->follow.fit_to);
-  /* The tip of a notch in this plate, to a spacing; sections are laid across the crack from
-   * there. */
-  const double edge[2] = {c->shape.length, c->shape.height};
-  const double ds = c->shape.length / c->shape.particles;
-  for (int d = 0; d < 2; d++)
-    BW_REQUIRE(c->follow.from[d] >= -ds && c->follow.from[d] <= edge[d] + ds, BW_EINPUT,
-               "follow.from[%d] = %g is outside the plate, 0 to %g m (millimetres for metres?)", d,
-               c->follow.from[d], edge[d]);
-  const double steps = ceil(c->time.end / c->time.step - 1e-9);
-  BW_REQUIRE(steps <= (double)BW_MOST_STEPS, BW_EINPUT,
-             "time.end = %g takes %.3g steps of time.step = %g, more than the %g that anybody can "
-             "wait for; take a larger step",
-             c->time.end, steps, c->time.step, (double)BW_MOST_STEPS);
-  return check_count(&c->shape, c->solid.geometry == BW_PD_3D);
-}
-
 bw_status specimen_create(const bw_comm *comm, const specimen_config *config, specimen *p)
 {
-  memset(p, 0, sizeof *p);
-  p->comm = comm;
-  p->config = *config;
-  open_limits(&p->config);
-  BW_TRY(check(&p->config));
-  p->ds = config->shape.length / config->shape.particles;
+  BW_TRY(specimen_begin(comm, config, p));
   p->crack = (specimen_crack){{NAN, NAN}, 0.0, NAN, NAN, NAN, NAN, 0.0};
   /* Particles and cut notches; nothing acts yet. */
   BW_TRY(make_solid(p));

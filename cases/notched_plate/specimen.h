@@ -7,6 +7,7 @@
  * validation/pd_bond. */
 #pragma once
 #include "bw_config.h"
+#include "bw_log.h"
 #include "bw_pd_crack.h"
 #include "bw_solid.h"
 
@@ -114,6 +115,22 @@ typedef struct {
   specimen_crack crack;
   bw_pd_crack_track track; /* of reach, at the looks */
 } specimen;
+
+/* ---- before anything is built (specimen_plan.c) ---- */
+/* What cannot run is refused: values that contradict each other, notches, holes and loads that
+ * touch nothing. `p` gets the configuration alone. Local; no memory. */
+bw_status specimen_begin(const bw_comm *comm, const specimen_config *config,
+                         specimen *p) BW_MUST_CHECK;
+/* The same, with sizes, limits and the memory of a rank to the log; a step that the material does
+ * not bear is refused. Time and memory do not grow with the plate. Collective. */
+bw_status specimen_plan(const bw_comm *comm, const specimen_config *config,
+                        bw_log *log) BW_MUST_CHECK;
+/* The lattice's material; where site i, j lies in the plane; is a place in the plate, but for the
+ * first n_holes holes; does a load act on a site there? Local. */
+bw_solid_config specimen_material(const specimen *p);
+void specimen_place(const bw_solid_config *c, int i, int j, double x[2]);
+bool specimen_inside(const specimen *p, int n_holes, const double x[3]);
+bool specimen_loaded(const specimen *p, const specimen_load *load, const double x[3]);
 
 /* `p` is filled; free it with specimen_destroy, also after a failure. Collective. */
 bw_status specimen_create(const bw_comm *comm, const specimen_config *config,

@@ -41,12 +41,14 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   bw_history *history = NULL;
   specimen p;
   bool stopped = false;
+  bw_stop_install();
+  BW_TRY(specimen_plan(comm, config, bw_case_log(run)));
+  /* --check ends before anything is built. */
+  if (args->check) return BW_OK;
   bw_status st = specimen_create(comm, config, &p);
-  BW_THEN(st, specimen_describe(&p, bw_case_log(run)));
-  /* --check has built and described everything, and ends. */
-  if (st == BW_OK && !args->check) {
-    bw_stop_install();
-    st = specimen_open_history(run, &history);
+  if (st == BW_OK) {
+    st = specimen_describe(&p, bw_case_log(run));
+    BW_THEN(st, specimen_open_history(run, &history));
     BW_THEN(st, advance(&p, run, history, &stopped));
     /* The crack as it is at the end, and what was found of it. */
     BW_THEN(st, specimen_crack_file(&p, run));

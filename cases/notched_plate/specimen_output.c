@@ -8,16 +8,10 @@
 
 bw_status specimen_describe(const specimen *p, bw_log *log)
 {
-  const specimen_solid *s = &p->config.solid;
   bw_solid_ledger e;
   BW_TRY(bw_solid_account(p->solid, &e));
-  bw_log_info(log, "%lld particles of %g m, lattice turned by %g deg, horizon %g m, %lld bonds",
-              (long long)bw_solid_total(p->solid), p->ds, p->config.shape.lattice_angle,
-              bw_solid_horizon(p->solid), (long long)e.bonds);
-  bw_log_info(log, "bonds break at a stretch of %.4g; sound travels at %.0f m/s (sqrt(E/rho))",
-              bw_solid_critical_stretch(p->solid), sqrt(s->young_modulus / s->density));
-  bw_log_info(log, "time step %g s of at most %.3g s, %.0f steps", p->config.time.step,
-              bw_solid_dt_max(p->solid), ceil(p->config.time.end / p->config.time.step - 1e-9));
+  bw_log_info(log, "built: %lld particles, %lld bonds, time step at most %.3g s",
+              (long long)bw_solid_total(p->solid), (long long)e.bonds, bw_solid_dt_max(p->solid));
   return BW_OK;
 }
 

@@ -59,6 +59,16 @@ void bw_release(void *out)
   memcpy(out, &p, sizeof p);
 }
 
+size_t bw_memory_in_use(void)
+{
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+  const struct mallinfo2 m = mallinfo2();
+  return m.uordblks + m.hblkhd; /* in the heap, and mapped by themselves */
+#else
+  return 0;
+#endif
+}
+
 size_t bw_memory_resident(void)
 {
   long pages = 0, all = 0;

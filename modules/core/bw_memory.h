@@ -17,6 +17,10 @@ void bw_release(void *out);
 /* Typed form: BW_ALLOCATE(&x, n) for `double *x`, the status of bw_allocate. */
 #define BW_ALLOCATE(pointer, count) bw_allocate((count), sizeof **(pointer), (pointer))
 
+/* What this process has allocated and not released [bytes]; 0 where the C library does not tell.
+ * Local. */
+size_t bw_memory_in_use(void);
+
 /* Memory of this process that is resident now [bytes]; 0 where the system does not tell. Local. */
 size_t bw_memory_resident(void);
 

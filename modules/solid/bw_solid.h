@@ -98,6 +98,20 @@ bw_status bw_solid_create_same(const bw_comm *comm, const bw_solid_config *confi
                                const int32_t site[], const uint8_t kind[],
                                bw_solid **out) BW_MUST_CHECK;
 
+/* What a large body of a material is like, before it is built. */
+typedef struct {
+  double dt_max, dt_contact; /* steps that are stable, that resolve a collision [T] */
+  double critical_stretch;   /* [-] */
+  double horizon;            /* [L] */
+  double bytes;              /* of memory per particle */
+} bw_solid_sample;
+
+/* The same as bw_solid_dt_max and so on, from two small blocks with free faces: time and memory do
+ * not grow with the body. The step of a body with notches or pores may be some per cent shorter.
+ * Errors of bw_solid_create for the settings. The same on all ranks. Collective. */
+bw_status bw_solid_try(const bw_comm *comm, const bw_solid_config *config,
+                       bw_solid_sample *out) BW_MUST_CHECK;
+
 /* Frees the solid and sets the pointer to NULL; NULL is fine. Collective. */
 void bw_solid_destroy(bw_solid **solid);
 

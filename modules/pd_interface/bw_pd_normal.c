@@ -61,7 +61,8 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Two unit vectors along the surface. */
+/* Two unit vectors along the surface. Which way they point is without effect: the fit is taken at
+ * h, where both coordinates are zero. */
 static void tangents(const double n[3], double t[2][3])
 {
   int least = 0;

@@ -102,7 +102,8 @@ void bw_poisson__row_forward(const bw_poisson__transform *t, bw_real *in, bw_rea
     BW_FFTW(execute_r2r)(t->forward, in, out);
     break;
   }
-  /* The entry that makes the number of columns even. */
+  /* The entry that makes the number of columns even. The way back does not read it, so that any
+   * number would do; zero keeps the solve along z of this column from running off to NaN. */
   if (t->n % 2 == 1) out[t->n] = 0;
 }
 

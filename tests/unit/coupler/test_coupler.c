@@ -190,6 +190,39 @@ START_TEST(probes_look_when_watched)
 }
 END_TEST
 
+/* Cells that hold the body are found anew as soon as it has moved by a tenth of a cell. */
+START_TEST(cells_of_the_body_move_with_it)
+{
+  scene s = build(0.5, 0.5);
+  const size_t n = bw_solid_count(s.solid);
+  double *X = NULL, *V = NULL;
+  bw_coupler_report r;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_coupler_hold_solid(s.coupler, true);
+  for (int moved = 0; moved <= 1; moved++) {
+    const bw_grid_view *g = bw_grid_look(s.grid);
+    bw_solid_get_reference(s.solid, X);
+    for (size_t i = 0; i < n; i++)
+      X[3 * i] += 0.7 * H * moved;
+    bw_solid_set_state(s.solid, X, V);
+    bw_check_ok(bw_coupler__follow_surface(s.coupler));
+    bw_coupler_watch(s.coupler, true);
+    bw_check_ok(bw_coupler_step(s.coupler, 1.0e-3));
+    bw_check_ok(bw_coupler_measure(s.coupler, &r)); /* probes look where the body is */
+    /* x is not divided: the row through the middle, where this rank has it. */
+    const int middle = FIRST + BLOCK / 2, j = middle + 1 - g->lo[1], k = middle + 1 - g->lo[2];
+    for (int q = 0; q < N && j >= 1 && j <= g->m[1] && k >= 1 && k <= g->m[2]; q++) {
+      const bool body = q >= FIRST + moved && q < FIRST + BLOCK + moved;
+      ck_assert_int_eq((int)s.coupler->inside[bw_at(g, q + 1, j, k)], body);
+    }
+  }
+  bw_release(&X);
+  bw_release(&V);
+  destroy(&s);
+}
+END_TEST
+
 START_TEST(substeps_keep_the_solid_within_its_limit)
 {
   scene s = build(0.5, 0.5);
@@ -323,6 +356,7 @@ static const bw_check_test tests[] = {BW_TEST(another_set_of_particles_is_follow
                                       BW_TEST(blocks_share_a_marker_and_its_force),
                                       BW_TEST(the_load_has_the_markers_moment_and_power),
                                       BW_TEST(probes_look_when_watched),
+                                      BW_TEST(cells_of_the_body_move_with_it),
                                       BW_TEST(substeps_keep_the_solid_within_its_limit),
                                       BW_TEST(held_solid_stays_free_one_is_carried),
                                       BW_TEST(loaded_state_goes_on_as_the_saved_one),

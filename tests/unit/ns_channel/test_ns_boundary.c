@@ -85,6 +85,28 @@ static bw_ns_channel_config in_out(bw_ns_profile profile)
   return c;
 }
 
+/* Beyond an outflow all ghosts are the last cell: what leaves goes on as it is. */
+START_TEST(an_outflow_repeats_its_last_cells)
+{
+  const int n[3] = {6, 6, 6};
+  const double length[3] = {1, 1, 1};
+  const bw_ns_channel_config c = in_out(BW_PROFILE_UNIFORM);
+  bw_ns_channel *ns = ns_solver(ns_grid(bw_check_world(), n, length, closed, 0, 2), &c);
+  bw_check_ok(bw_ns_channel_set_velocity(ns, ns_smooth, NULL, 0));
+  const bw_grid_view *g = ns->g;
+  double differ = 0.0;
+  for (int c_ = 1; c_ < 3; c_++)
+    for (int k = 1; k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++) {
+        for (int q = 1; q <= 2; q++)
+          bw_check_near(at(ns, c_, 6 + q, j, k), at(ns, c_, 6, j, k), 0);
+        differ = fmax(differ, fabs(at(ns, c_, 6, j, k) - at(ns, c_, 5, j, k)));
+      }
+  ck_assert_double_gt(differ, 0.01); /* a mirror image would be another number */
+  ns_free(&ns);
+}
+END_TEST
+
 /* The Poiseuille profile brings exactly U_b H, is near 6 U_b y/H (1 - y/H), and what a step lets
  * out is what comes in. */
 START_TEST(poiseuille_inflow_brings_its_bulk_velocity)
@@ -250,6 +272,7 @@ END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(ghosts_mirror_about_the_sides),
                                       BW_TEST(pressure_ghosts_are_even),
+                                      BW_TEST(an_outflow_repeats_its_last_cells),
                                       BW_TEST(poiseuille_inflow_brings_its_bulk_velocity),
                                       BW_TEST(callback_inflow_is_met_at_the_new_time),
                                       BW_TEST(free_stream_is_kept),

@@ -148,6 +148,32 @@ START_TEST(round_bodies_have_their_normals_and_areas)
 }
 END_TEST
 
+/* Half a ball on a wall: its images take part in the fit as mirror images, so that normals beside
+ * the wall lie along it, as those of the whole ball do there. The goal of round bodies, to within
+ * two spacings of the wall. */
+START_TEST(normals_beside_a_wall_are_those_of_the_whole_body)
+{
+  const bw_shape dome[] = {
+      {.kind = BW_SHAPE_SPHERE, .centre = {20, 0, 20}, .radius = 10},
+      {.kind = BW_SHAPE_BOX, .remove = true, .lower = {0, -20, 0}, .upper = {40, 0, 40}}};
+  bw_pd_interface_config ic = bw_pd_interface_config_default();
+  const bw_solid_config c = body_config(false);
+  double angle[2], beside[2] = {0.0, 0.0};
+  ic.walled[1][0] = true;
+  ic.lower[1] = 0.0;
+  body b = body_create(2, dome, &c, &ic);
+  angles(&b, dome[0].centre, 3, -INFINITY, INFINITY, angle);
+  ck_assert_msg(angle[0] < 5.0 && angle[1] < 2.5, "dome: %g, %g", angle[0], angle[1]);
+  /* On the first two layers n_y is y/R, which the images balance. */
+  const bw_pd_surface s = bw_pd_interface_surface(b.pi);
+  for (size_t q = 0; q < s.n; q++)
+    if (s.X[3 * q + 1] < 2.0) beside[0] += s.N[3 * q + 1] - s.X[3 * q + 1] / 10.0, beside[1] += 1.0;
+  bw_comm_sum(bw_check_world(), 2, beside);
+  bw_check_near(beside[0] / beside[1], 0.0, 0.02); /* in the mean a degree */
+  body_destroy(&b);
+}
+END_TEST
+
 /* A smooth fit stops at edges: beside one, 3.45 knows the side from the edge (45 degrees) and both
  * from the flat face a horizon away; ridges between pores keep their direction. */
 START_TEST(edges_stay_sharp)
@@ -339,6 +365,7 @@ static const bw_check_test tests[] = {
     BW_TEST(clouds_have_normals_and_areas),
     BW_TEST(flat_faces_are_exact),
     BW_TEST(thin_things_have_normals),
+    BW_TEST(normals_beside_a_wall_are_those_of_the_whole_body),
     BW_TEST(walls_feet_and_seams_are_no_surface),
     BW_TEST(a_block_that_leaves_its_wall_shows_that_side),
     BW_TEST(wrong_settings_are_refused),

@@ -153,6 +153,66 @@ START_TEST(a_settled_state_holds_no_settling_damping)
 }
 END_TEST
 
+/* A checkpoint holds the damping of its accelerations: the book of the next kick is the same. */
+START_TEST(the_book_of_damping_goes_on)
+{
+  bw_comm *self = pd_alone();
+  pd_body body = pd_box(8, 6, 5);
+  bw_solid_config c = pd_soft(BW_PD_3D);
+  c.damping_pair = 0.05;
+  bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
+  const double dt = 0.4 * bw_solid_dt_max(one);
+  pd_set(many, NULL, shake);
+  pd_steps(many, 20, dt);
+  pd_restart_from(many, one);
+  const double before = ledger_of(many).damping;
+  pd_steps(many, 1, dt);
+  pd_steps(one, 1, dt);
+  const double taken = ledger_of(many).damping - before;
+  ck_assert_double_gt(fabs(taken), 1e-6 * ledger_of(many).kinetic);
+  /* Half of it is taken by the kick with the stored damping. The book is a difference of sums. */
+  bw_check_near((ledger_of(one).damping - before) / taken, 1.0,
+                1e3 * BW_REAL_EPSILON * fabs(before / taken));
+  bw_solid_destroy(&many);
+  bw_solid_destroy(&one);
+  pd_body_release(&body);
+  bw_comm_destroy(&self);
+}
+END_TEST
+
+/* Whoever moves a particle does the work on it; a force on top of that does none. */
+START_TEST(forces_on_prescribed_particles_do_no_work)
+{
+  pd_body body = pd_box(8, 6, 5);
+  for (int64_t q = 0; q < body.n; q++)
+    if (body.site[3 * q] < 2) body.kind[q] = BW_PD_PRESCRIBED;
+  const bw_solid_config c = pd_soft(BW_PD_3D);
+  double external[2];
+  for (int pushed = 0; pushed < 2; pushed++) {
+    bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+    const size_t n = bw_solid_count(pd);
+    double *V = NULL, *F = NULL;
+    bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+    bw_check_ok(BW_ALLOCATE(&F, 3 * n));
+    for (size_t i = 0; i < n; i++) {
+      if (!(bw_solid_kind(pd)[i] & BW_PD_PRESCRIBED)) continue;
+      V[3 * i] = 0.01;
+      F[3 * i] = 0.5 * pushed;
+    }
+    bw_solid_set_prescribed(pd, V);
+    bw_solid_set_force(pd, F);
+    pd_steps(pd, 20, 0.4 * bw_solid_dt_max(pd));
+    external[pushed] = ledger_of(pd).external;
+    bw_release(&V);
+    bw_release(&F);
+    bw_solid_destroy(&pd);
+  }
+  ck_assert_double_gt(external[0], 0);
+  ck_assert_double_eq(external[0], external[1]);
+  pd_body_release(&body);
+}
+END_TEST
+
 /* The same number on any number of ranks, another one for another place, kind or horizon. */
 START_TEST(a_fingerprint_tells_bodies_apart)
 {
@@ -276,6 +336,8 @@ static const bw_check_test tests[] = {BW_TEST(same_motion_and_bonds_on_any_numbe
                                       BW_TEST(a_wide_plate_moves_as_its_parts_do),
                                       BW_TEST(restart_on_another_number_of_ranks),
                                       BW_TEST(a_settled_state_holds_no_settling_damping),
+                                      BW_TEST(the_book_of_damping_goes_on),
+                                      BW_TEST(forces_on_prescribed_particles_do_no_work),
                                       BW_TEST(a_fingerprint_tells_bodies_apart),
                                       BW_TEST(periods_are_an_endless_body),
                                       BW_TEST(orientation_does_not_matter)};

@@ -95,7 +95,7 @@ START_TEST(an_outflow_repeats_its_last_cells)
   bw_check_ok(bw_ns_channel_set_velocity(ns, ns_smooth, NULL, 0));
   const bw_grid_view *g = ns->g;
   double differ = 0.0;
-  for (int c_ = 1; c_ < 3; c_++)
+  for (int c_ = 0; c_ < 3; c_++)
     for (int k = 1; k <= g->m[2]; k++)
       for (int j = 1; j <= g->m[1]; j++) {
         for (int q = 1; q <= 2; q++)

@@ -29,6 +29,7 @@ bending_case bending_case_default(void);            /* required values NaN or IN
 /* A run. */
 typedef struct {
   const bending_case *config; /* borrowed */
+  const bw_comm *comm;        /* borrowed */
   bw_case *run;               /* borrowed */
   bending_flow flow;
   bw_history *history;
@@ -37,8 +38,10 @@ typedef struct {
   int64_t rows;         /* of history.csv, when the checkpoint was written */
 } bending_run;
 
-/* Sizes, dimensionless groups, the step against its limits. Collective. */
-bw_status bending_describe(bending_run *p) BW_MUST_CHECK;
+/* Before anything is built: counts the steps; what cannot run is refused, as the run would; sizes,
+ * dimensionless groups, the step against its limits and memory to the log. From a small set-up of
+ * the same kind: time and memory do not grow with the channel (bending_plan.c). Collective. */
+bw_status bending_plan(bending_run *p) BW_MUST_CHECK;
 /* The steps of the run from its times; refused where nobody can wait for them. Local. */
 bw_status bending_count_steps(bending_run *p) BW_MUST_CHECK;
 /* Creates history.csv, or goes on with it from the checkpoint that was read. Collective. */

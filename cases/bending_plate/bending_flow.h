@@ -137,18 +137,25 @@ static inline void bending_stream(const double x[3], double t, void *context, do
   u[1] = u[2] = 0.0;
 }
 
+/* One cell deep: its depth is h, so that cells are cubes. */
+static inline bw_grid_config bending_grid(const bending_config *c)
+{
+  const double h = c->channel.height / c->channel.cells[1];
+  bw_grid_config grid = bw_grid_config_default();
+  grid.n[0] = c->channel.cells[0], grid.n[1] = c->channel.cells[1], grid.n[2] = 1;
+  for (int d = 0; d < 3; d++)
+    grid.length[d] = grid.n[d] * h;
+  grid.periodic[2] = true;
+  grid.halo = 2;
+  return grid;
+}
+
 static inline bw_status bending_make_fluid(bending_flow *f)
 {
   const bending_config *c = &f->config;
-  bw_grid_config grid = bw_grid_config_default();
+  const bw_grid_config grid = bending_grid(c);
   bw_ns_channel_config fluid = bw_ns_channel_config_default();
   f->h = c->channel.height / c->channel.cells[1];
-  /* One cell deep: its depth is h, so that cells are cubes. */
-  grid.n[0] = c->channel.cells[0], grid.n[1] = c->channel.cells[1], grid.n[2] = 1;
-  for (int d = 0; d < 3; d++)
-    grid.length[d] = grid.n[d] * f->h;
-  grid.periodic[2] = true;
-  grid.halo = 2;
   BW_TRY(bw_grid_create(f->comm, &grid, &f->grid));
   /* Laminar inflow, convective outflow; floor and ceiling are walls by default. */
   fluid.nu = c->fluid.viscosity;

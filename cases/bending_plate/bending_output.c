@@ -24,40 +24,6 @@ bw_status bending_count_steps(bending_run *p)
   return steps_until("release", time->release, time->step, &p->release);
 }
 
-/* What the stream does to the plate has to be more than rounding does. */
-static bw_status check_strain(const bending_config *c, double h)
-{
-  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
-  const double U = c->fluid.bulk_velocity;
-  const double stress = c->fluid.density * U * (U + c->fluid.viscosity / h);
-  BW_REQUIRE(stress / c->plate.young_modulus >= least, BW_EINPUT,
-             "physics.plate.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g "
-             "Pa, strains it by %.3g, which rounding hides; at least %g",
-             c->plate.young_modulus, stress, stress / c->plate.young_modulus, least);
-  return BW_OK;
-}
-
-bw_status bending_describe(bending_run *p)
-{
-  const bending_config *c = &p->flow.config;
-  const double U = c->fluid.bulk_velocity, rho = c->fluid.density, H = c->plate.height;
-  bw_log *log = bw_case_log(p->run);
-  bw_log_info(log, "channel    %d x %d cells of %g m; plate %g x %g m, %lld particles of %g m",
-              c->channel.cells[0], c->channel.cells[1], p->flow.h, c->plate.thickness, H,
-              (long long)bw_solid_total(p->flow.solid), p->flow.ds);
-  /* The numbers that the physics depends on. */
-  bw_log_info(log, "groups     Re = U_b H/nu = %g, E* = E/(rho_f U_b^2) = %g, density ratio %g",
-              U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
-              c->plate.density / rho);
-  const double dt = p->config->time.step;
-  BW_TRY(bw_coupler_check_substeps(p->flow.coupler, dt));
-  BW_TRY(check_strain(c, p->flow.h));
-  bw_log_info(log, "time step  %g s; solid %d sub-steps (limit %.3g s); %.0f steps, H/U_b = %g s",
-              dt, bw_coupler_substeps(p->flow.coupler, dt), bw_solid_dt_max(p->flow.solid),
-              p->config->time.end / dt, H / U);
-  return BW_OK;
-}
-
 static const char *const columns[] = {"time[s]",
                                       "tip_x_over_height[-]",
                                       "tip_y_over_height[-]",

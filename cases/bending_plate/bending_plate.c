@@ -54,11 +54,10 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
   bool stopped = false;
-  BW_TRY(bending_count_steps(p));
-  BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
-  BW_TRY(bending_describe(p));
-  /* --check ends here: everything was built, nothing was run. */
+  BW_TRY(bending_plan(p));
+  /* --check ends here: nothing was built. */
   if (args->check) return BW_OK;
+  BW_TRY(bending_create(comm, &p->config->physics, &p->flow));
   if (args->restart != NULL) {
     BW_TRY(bending_restart(p, args->restart));
     const double step = p->config->time.step; /* the checkpoint's, too: it may not change */
@@ -80,7 +79,7 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
 
 static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
 {
-  bending_run p = {.config = config, .run = run};
+  bending_run p = {.config = config, .comm = comm, .run = run};
   bw_status st = run_case(&p, comm);
   /* Closed also after a failure, so that the rows until then are on disk. */
   const bw_status closed = bw_history_close(comm, &p.history);

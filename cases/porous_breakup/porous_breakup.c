@@ -126,9 +126,11 @@ static bw_status check_end(const porous_run *p)
 static bw_status run_case(porous_run *p)
 {
   const bw_case_args *args = bw_case_args_of(p->run);
+  BW_TRY(porous_plan(p));
+  /* --check ends before anything is built. */
+  if (args->check) return BW_OK;
   BW_TRY(porous_build(p));
   BW_TRY(porous_describe(p));
-  if (args->check) return BW_OK;
   if (args->restart != NULL) {
     BW_TRY(porous_restart(p, args->restart));
     BW_TRY(check_end(p));

@@ -1,32 +1,9 @@
-/* The objects of a run of the porous medium, its phases, and what --check prints. */
+/* The objects of a run of the porous medium, and its phases. */
 #include "bw_memory.h"
 #include "porous_case.h"
 
 #include <math.h>
 #include <string.h>
-
-static bw_status check_combinations(const porous_config *q)
-{
-  const porous_domain *d = &q->domain;
-  const double h = d->length[1] / d->cells[1];
-  for (int k = 0; k < 3; k += 2)
-    BW_REQUIRE(fabs(d->length[k] / d->cells[k] / h - 1.0) < 1e-9, BW_EINPUT,
-               "domain.cells[%d] = %d: cells must be cubes, %g would give the spacing %g m of y", k,
-               d->cells[k], d->length[k] / h, h);
-  BW_REQUIRE(q->medium.front + q->medium.length < d->length[0], BW_EINPUT,
-             "medium.front + medium.length = %g m reaches the outflow at domain.length[0] = %g m",
-             q->medium.front + q->medium.length, d->length[0]);
-  /* Softer than this even the stream's own pressure would squeeze the solid to nothing. */
-  static const double softest = 1e-3;
-  const double U = q->fluid.bulk_velocity;
-  const double groups = q->solid.young_modulus / (q->fluid.density * U * U);
-  BW_REQUIRE(
-      groups >= softest, BW_EINPUT,
-      "solid.young_modulus = %g Pa is %.3g of the stream's dynamic pressure rho U_b^2 = %g Pa; "
-      "at least %g",
-      q->solid.young_modulus, groups, q->fluid.density * U * U, softest);
-  return BW_OK;
-}
 
 /* The medium's length as built: planes of sites across the stream. Where medium.length is whole
  * spacings it is that. Collective. */
@@ -56,15 +33,21 @@ static void measure_length(porous_run *p, int64_t n, const int32_t site[])
                 m->length, ds, p->length);
 }
 
-static bw_status build_fluid(porous_run *p)
+bw_grid_config porous_grid(const porous_config *q)
 {
-  const porous_config *q = p->config;
   bw_grid_config grid = bw_grid_config_default();
   memcpy(grid.n, q->domain.cells, sizeof grid.n);
   memcpy(grid.length, q->domain.length, sizeof grid.length);
   /* Markers and probes need a halo of two. */
   grid.periodic[2] = true;
   grid.halo = 2;
+  return grid;
+}
+
+static bw_status build_fluid(porous_run *p)
+{
+  const porous_config *q = p->config;
+  const bw_grid_config grid = porous_grid(q);
   BW_TRY(bw_grid_create(p->comm, &grid, &p->grid));
 
   /* Laminar inflow, convective outflow, walls in y by default. */
@@ -152,10 +135,14 @@ static bw_status watch_medium(porous_run *p)
 bw_status porous_build(porous_run *p)
 {
   /* Refused before anything is allocated. */
-  BW_TRY(check_combinations(p->config));
+  BW_TRY(porous_check(p->config));
+  const double before = (double)bw_memory_in_use();
   BW_TRY(build_fluid(p));
+  p->bytes.fluid = (double)bw_memory_in_use() - before;
   BW_TRY(build_solid(p));
+  p->bytes.solid = (double)bw_memory_in_use() - before - p->bytes.fluid;
   BW_TRY(build_coupler(p));
+  p->bytes.coupler = (double)bw_memory_in_use() - before - p->bytes.fluid - p->bytes.solid;
   BW_TRY(watch_medium(p));
   /* The flow begins uniform; the first phase waits until it has settled. */
   return bw_ns_channel_set_velocity(p->fluid, uniform_stream, (void *)(uintptr_t)p->config, 0.0);
@@ -167,81 +154,4 @@ void porous_destroy(porous_run *p)
   bw_solid_destroy(&p->solid);
   bw_ns_channel_destroy(&p->fluid);
   bw_grid_destroy(&p->grid);
-}
-
-/* Memory as it stands after building; time from nominal costs (the benches' on a quiet machine). */
-static bw_status describe_cost(porous_run *p)
-{
-  static const double fluid_ns = 45.0, bond_ns = 1.8; /* core-ns: cell and sub-step, bond */
-  const int *n = p->config->domain.cells;
-  const double cells = (double)n[0] * n[1] * n[2];
-  bw_solid_ledger e;
-  BW_TRY(bw_solid_account(p->solid, &e));
-  const double bonds = 2.0 * (double)e.bonds;
-  double bytes = (double)bw_memory_resident(), seconds = 0.0;
-  bw_comm_sum(p->comm, 1, &bytes);
-  /* Sub-steps of the solid dominate. */
-  for (int k = 0; k < PHASE_COUNT; k++) {
-    const porous_phase *f = porous_phase_of(p->config, k);
-    const int substeps = k == PHASE_FLOW ? 0 : bw_coupler_substeps(p->coupler, f->time_step);
-    seconds += 1e-9 * f->steps * (3.0 * cells * fluid_ns + substeps * bonds * bond_ns);
-  }
-  bw_log_info(bw_case_log(p->run),
-              "cost       %.0f MiB over all ranks; at most about %.1f min on as many quiet cores",
-              bytes / 1048576.0, seconds / 60.0 / bw_comm_size(p->comm));
-  return BW_OK;
-}
-
-/* What the stream does to the solid has to be more than rounding does. */
-static bw_status check_strain(const porous_config *q)
-{
-  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
-  const double h = q->domain.length[1] / q->domain.cells[1], U = q->fluid.bulk_velocity;
-  const double stress = q->fluid.density * U * (U + q->fluid.viscosity / h);
-  BW_REQUIRE(
-      stress / q->solid.young_modulus >= least, BW_EINPUT,
-      "solid.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g Pa, strains "
-      "it by %.3g, which rounding hides; at least %g",
-      q->solid.young_modulus, stress, stress / q->solid.young_modulus, least);
-  return BW_OK;
-}
-
-bw_status porous_describe(porous_run *p)
-{
-  const porous_config *q = p->config;
-  bw_log *log = bw_case_log(p->run);
-  const double h = q->domain.length[1], U = q->fluid.bulk_velocity, rho = q->fluid.density;
-  const double clamped = (double)q->medium.clamped_layers *
-                         round(p->length / q->domain.length[1] * q->domain.cells[1]) *
-                         q->domain.cells[2];
-  const int64_t total = bw_solid_total(p->solid);
-  /* Sizes. */
-  bw_log_info(log, "channel    %d x %d x %d cells, spacing %g m, %d ranks", q->domain.cells[0],
-              q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
-              bw_comm_size(p->comm));
-  /* Then the groups that the physics depends on, and each phase's step against its limit. */
-  bw_log_info(log,
-              "medium     %lld particles in the channel, %lld with the clamped layer; "
-              "horizon/spacing %g",
-              (long long)(total - (int64_t)clamped), (long long)total, q->solid.horizon_ratio);
-  bw_log_info(log,
-              "groups     Re_b = %g, E* = E/(rho U_b^2) = %g, density ratio %g, Cauchy number %g, "
-              "s0 = %.4e",
-              U * h / q->fluid.viscosity, q->solid.young_modulus / (rho * U * U),
-              q->solid.density / rho, rho * U * U / q->solid.young_modulus,
-              bw_solid_critical_stretch(p->solid));
-  const double fluid_max = bw_ns_channel_dt_max(p->fluid), solid_max = bw_solid_dt_max(p->solid);
-  for (int k = 0; k < PHASE_COUNT; k++) {
-    const porous_phase *f = porous_phase_of(q, k);
-    if (k != PHASE_FLOW) BW_TRY(bw_coupler_check_substeps(p->coupler, f->time_step));
-    bw_log_info(log,
-                "phase %d    %-11s %d steps of %g s: %.2f of the fluid's limit, %s%d solid "
-                "sub-steps each",
-                k + 1, porous_phase_name[k], f->steps, f->time_step, f->time_step / fluid_max,
-                k == PHASE_FLOW ? "no solid; else " : "",
-                bw_coupler_substeps(p->coupler, f->time_step));
-  }
-  BW_TRY(check_strain(q));
-  bw_log_info(log, "solid      stable to %.4g s per sub-step", solid_max);
-  return describe_cost(p);
 }

@@ -88,6 +88,12 @@ extern const char *const porous_phase_name[PHASE_COUNT];
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
+/* About how many particles of it are in the channel, from some of its rows; the same refusals, but
+ * that nothing flows through is only seen in a channel of some million cells. Nothing is kept.
+ * Collective. */
+bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_log *log,
+                            double *particles) BW_MUST_CHECK;
+
 /* ---- the objects of a run (porous_build.c) ---- */
 enum { N_PROGRESS = 6 }; /* numbers of a checkpoint: phase, steps, settling check, rows */
 typedef struct {
@@ -109,7 +115,10 @@ typedef struct {
   bool stopped;                     /* asked for an end in good order ... */
   bool phase_done;                  /* ... when the phase was over, or on the way */
   double length;                    /* of the medium as built [m] */
-  int64_t rows;                     /* of history.csv, when the checkpoint was written */
+  struct {
+    double fluid, solid, coupler; /* of this rank [bytes] */
+  } bytes;
+  int64_t rows; /* of history.csv, when the checkpoint was written */
 } porous_run;
 
 /* Fluid, solid and coupler from p->config, the stream uniform. Destroy also after a failure.
@@ -118,7 +127,16 @@ bw_status porous_build(porous_run *p) BW_MUST_CHECK;
 /* What p->phase allows the solid to do; the same again changes nothing. Local. */
 void porous_enter_phase(porous_run *p);
 void porous_destroy(porous_run *p);
-/* Print sizes, dimensionless groups and the step against each of its limits. Collective. */
+bw_grid_config porous_grid(const porous_config *q); /* that of the fluid. Local. */
+
+/* ---- before anything is built (porous_plan.c) ---- */
+/* Values that contradict each other are refused. Local. */
+bw_status porous_check(const porous_config *q) BW_MUST_CHECK;
+/* What cannot run is refused, as the run would; sizes, dimensionless groups, steps against their
+ * limits, memory and time to the log. From a small run of the same kind: time and memory do not grow
+ * with the channel. Collective. */
+bw_status porous_plan(porous_run *p) BW_MUST_CHECK;
+/* What was built, to the log. Collective. */
 bw_status porous_describe(porous_run *p) BW_MUST_CHECK;
 
 /* ---- what is measured (porous_measure.c) ---- */

@@ -220,3 +220,64 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64
   bw_shape_mask_destroy(&body.mask);
   return st;
 }
+
+/* Sites inside a body, from some of its rows if there are many. */
+static bw_status count_some(const medium_body *b, const bw_shape_lattice *lattice,
+                            double *particles)
+{
+  enum { ROWS = 512 };
+  int64_t lo[3], hi[3], n = 0, sum = 0;
+  BW_TRY(bw_shape_range(b->count, b->shape, lattice, lo, hi));
+  const double rows = (double)(hi[1] - lo[1]) * (double)(hi[2] - lo[2]);
+  const int parts = (int)fmin(rows, (double)INT32_MAX), looks = parts < ROWS ? parts : ROWS;
+  for (int q = 0; q < looks; q++) {
+    /* All rows, or some that keep no step with the pores: multiples of the golden section. */
+    const double place = fmod(0.61803398874989485 * (q + 0.5), 1.0);
+    const int part = looks == parts ? q : (int)(place * parts);
+    BW_TRY(bw_shape_count(b->count, b->shape, lattice, part, parts, &n));
+    sum += n;
+  }
+  /* Nothing in the rows that were looked at: in all of them? */
+  if (sum == 0)
+    BW_TRY(bw_shape_count(b->count, b->shape, lattice, 0, 1, &sum));
+  else
+    *particles = (double)sum * parts / looks;
+  if (*particles == 0.0) *particles = (double)sum;
+  return BW_OK;
+}
+
+bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_log *log,
+                            double *particles)
+{
+  static const double few = 2097152.0; /* cells whose ways are looked for */
+  static const double origin[3] = {0.0, 0.0, 0.0};
+  const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
+  const int *cells = q->domain.cells;
+  if ((double)cells[0] * cells[1] * cells[2] <= few) {
+    int64_t n = 0;
+    int32_t *site = NULL;
+    uint8_t *kind = NULL;
+    *particles = 0.0;
+    BW_TRY(porous_medium_sites(comm, q, &n, &site, &kind));
+    for (int64_t k = 0; k < n; k++)
+      *particles += site[3 * k + 1] >= 0;
+    bw_release(&site);
+    bw_release(&kind);
+    bw_comm_sum(comm, 1, particles);
+    return BW_OK;
+  }
+  medium_way way = NULL;
+  medium_body body = {0};
+  *particles = 0.0;
+  bw_status st = choose(&q->medium, &way);
+  BW_THEN(st, way(q, &body));
+  BW_THEN(st, count_some(&body, &lattice, particles));
+  if (st == BW_OK && *particles == 0.0)
+    st = BW_FAIL(BW_EINPUT, "%s: no particle of spacing %g m is left; take smaller pores", body.key,
+                 spacing(q));
+  bw_release(&body.shape);
+  bw_shape_mask_destroy(&body.mask);
+  BW_TRY(bw_comm_agree(comm, st));
+  bw_log_info(log, "medium     whether a way leads through is looked for when the run begins");
+  return BW_OK;
+}

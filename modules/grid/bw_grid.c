@@ -82,21 +82,34 @@ static void set_view(bw_grid *g, const bw_grid_config *c)
   set_storage(v);
 }
 
+/* Sizes, blocks and faces. *out has to be destroyed also after a failure. Local. */
+static bw_status begin(const bw_comm *comm, const bw_grid_config *config, bw_grid **out)
+{
+  BW_TRY(BW_ALLOCATE(out, 1));
+  bw_grid *g = *out;
+  g->mpi = g->line[1] = g->line[2] = MPI_COMM_NULL;
+  g->comm = comm;
+  BW_TRY(check(config));
+  BW_TRY(bw_grid__divide(config, bw_comm_size(comm), g->view.ranks));
+  set_view(g, config);
+  return bw_grid__y_create(g, config);
+}
+
+bw_status bw_grid_plan(const bw_comm *comm, const bw_grid_config *config, bw_grid **out)
+{
+  *out = NULL;
+  const bw_status st = bw_comm_agree(comm, begin(comm, config, out));
+  if (st != BW_OK) bw_grid_destroy(out);
+  return st;
+}
+
 bw_status bw_grid_create(const bw_comm *comm, const bw_grid_config *config, bw_grid **out)
 {
   bw_grid *g = NULL;
   *out = NULL;
-  bw_status st = BW_ALLOCATE(&g, 1);
-  if (st == BW_OK) g->mpi = g->line[1] = g->line[2] = MPI_COMM_NULL;
   /* All that can fail on one rank alone comes first; nothing is sent before the ranks have
    * agreed. */
-  BW_THEN(st, check(config));
-  BW_THEN(st, bw_grid__divide(config, bw_comm_size(comm), g->view.ranks));
-  if (st == BW_OK) {
-    g->comm = comm;
-    set_view(g, config);
-    st = bw_grid__y_create(g, config);
-  }
+  bw_status st = begin(comm, config, &g);
   BW_THEN(st, bw_grid__halo_create(g));
   BW_THEN(st, bw_grid__line_create(g));
   st = bw_comm_agree(comm, st);

@@ -75,6 +75,11 @@ typedef struct {
   size_t size;                     /* bw_reals in one field, halos and padding included */
 } bw_grid_view;
 
+/* A grid that is only looked at: sizes, blocks and faces, checked as bw_grid_create does, with no
+ * memory but for the faces in y. Nothing is created on it; destroy as usual. Collective. */
+bw_status bw_grid_plan(const bw_comm *comm, const bw_grid_config *config,
+                       bw_grid **out) BW_MUST_CHECK;
+
 /* Divide the box over the ranks of `comm` (borrowed until destroy): blocks differ by at most one
  * cell per direction; rank = coord[1] + ranks[1] coord[2]. Fails with BW_EINPUT when a
  * size is not positive (n[0], n[1] >= 2), when ranks do not fit (at most n[1] x n[2], and each

@@ -86,6 +86,19 @@ bw_ns_channel_config bw_ns_channel_config_default(void);
 bw_status bw_ns_channel_config_check(const bw_grid_config *grid,
                                      const bw_ns_channel_config *config) BW_MUST_CHECK;
 
+/* What a fluid costs and which step it bears, before it is built. */
+typedef struct {
+  double bytes;  /* of memory on the rank that needs most, solver and all */
+  double dt_max; /* longest stable step of the fluid at rest: viscosity, and what is known of walls,
+                    inflows and forcing then [T]; a laminar inflow counts with its mean */
+} bw_ns_plan;
+
+/* The same for the grid of a bw_grid_plan, from two small fluids with cells of the same size and the
+ * same sides: time and memory do not grow with the grid. Errors of bw_ns_channel_create for the
+ * settings. Collective. */
+bw_status bw_ns_channel_plan(const bw_grid *grid, const bw_ns_channel_config *config,
+                             bw_ns_plan *plan) BW_MUST_CHECK;
+
 /* `grid` is borrowed until destroy. BW_EINPUT for impossible or contradictory boundaries (named),
  * nu <= 0 or NaN, forcing without periodic x; BW_EMEM. Fluid at rest. Collective. */
 bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config,

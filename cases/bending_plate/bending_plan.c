@@ -1,0 +1,108 @@
+/* What of a run can be known before it is built: what is refused, sizes, limits, memory. */
+#include "bending_case.h"
+
+#include <math.h>
+
+/* What the stream does to the plate has to be more than rounding does. */
+static bw_status check_strain(const bending_config *c, double h)
+{
+  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
+  const double U = c->fluid.bulk_velocity;
+  const double stress = c->fluid.density * U * (U + c->fluid.viscosity / h);
+  BW_REQUIRE(stress / c->plate.young_modulus >= least, BW_EINPUT,
+             "physics.plate.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g "
+             "Pa, strains it by %.3g, which rounding hides; at least %g",
+             c->plate.young_modulus, stress, stress / c->plate.young_modulus, least);
+  return BW_OK;
+}
+
+/* A set-up that is small itself; else one with cells, particles, material and stream of the case,
+ * in a channel and with a plate that are as small as they can be. */
+static bending_config small_of(const bending_config *c)
+{
+  enum { CELLS_X = 96, CELLS_Y = 48, FEW = 60000, ROWS = 24, ACROSS = 8 };
+  bending_config s = *c;
+  const double h = c->channel.height / c->channel.cells[1];
+  const double ds = c->plate.thickness / c->plate.particles_across;
+  const double particles = c->plate.thickness * c->plate.height / (ds * ds);
+  const double cells = (double)c->channel.cells[0] * c->channel.cells[1];
+  if (cells <= FEW && particles <= FEW) return s;
+  s.channel.cells[0] = CELLS_X, s.channel.cells[1] = CELLS_Y;
+  s.channel.length = CELLS_X * h, s.channel.height = CELLS_Y * h;
+  if (s.plate.particles_across > ACROSS) s.plate.particles_across = ACROSS;
+  s.plate.thickness = s.plate.particles_across * ds;
+  s.plate.height = fmin(ROWS, fmax(1.0, floor(0.5 * s.channel.height / ds))) * ds;
+  s.plate.front = 0.25 * s.channel.length;
+  return s;
+}
+
+/* Steps that neither the stream over the plate bears nor the coupler could divide. */
+static bw_status check_step(const bending_run *p, bending_flow *small, double *limit)
+{
+  static const double convective = 1.7320508; /* of bw_ns_channel_dt_max */
+  const bending_config *c = &p->config->physics;
+  const double dt = p->config->time.step;
+  /* What flows over the plate is squeezed between it and the other wall. */
+  const double open = 1.0 - c->plate.height / c->channel.height;
+  const double over = convective * small->h * open / c->fluid.bulk_velocity;
+  *limit = fmin(bw_ns_channel_dt_max(small->fluid), over);
+  BW_REQUIRE(
+      dt <= *limit * (1.0 + 1e-12), BW_EINPUT,
+      "time.step = %g s is over the fluid's limit: the stream of physics.fluid.bulk_velocity "
+      "= %g m/s over the plate bears %.3g s at most; take a shorter step",
+      dt, c->fluid.bulk_velocity, *limit);
+  return bw_coupler_check_substeps(small->coupler, dt);
+}
+
+static bw_status describe(const bending_run *p, bending_flow *small, double bytes)
+{
+  const bending_config *c = &p->config->physics;
+  const double U = c->fluid.bulk_velocity, rho = c->fluid.density, H = c->plate.height;
+  const double ds = c->plate.thickness / c->plate.particles_across, dt = p->config->time.step;
+  const double rows = H / ds + c->plate.clamped_layers, n = rows * c->plate.particles_across;
+  const int ranks = bw_comm_size(p->comm);
+  bw_log *log = bw_case_log(p->run);
+  double limit = 0.0;
+  BW_TRY(check_step(p, small, &limit));
+  bw_log_info(log, "channel    %d x %d cells of %g m; plate %g x %g m, %.4g particles of %g m",
+              c->channel.cells[0], c->channel.cells[1], small->h, c->plate.thickness, H, n, ds);
+  /* The numbers that the physics depends on. */
+  bw_log_info(log, "groups     Re = U_b H/nu = %g, E* = E/(rho_f U_b^2) = %g, density ratio %g",
+              U * H / c->fluid.viscosity, c->plate.young_modulus / (rho * U * U),
+              c->plate.density / rho);
+  bw_log_info(log,
+              "time step  %g s, %.2f of what the stream bears at most; solid %d sub-steps (limit "
+              "%.3g s); %.0f steps, H/U_b = %g s",
+              dt, dt / limit, bw_coupler_substeps(small->coupler, dt),
+              bw_solid_dt_max(small->solid), p->config->time.end / dt, H / U);
+  /* By what grows with cells and with particles: the larger of the two shares. */
+  const double cells = (double)c->channel.cells[0] * c->channel.cells[1];
+  const double by_cells = cells / small->config.channel.cells[0] / small->config.channel.cells[1];
+  const double by_particles = n / (double)bw_solid_total(small->solid);
+  bw_log_info(log, "memory     about %.3g MiB for each of %d ranks",
+              fmax(by_cells, by_particles) * bytes / 1048576.0 / ranks, ranks);
+  return BW_OK;
+}
+
+bw_status bending_plan(bending_run *p)
+{
+  const bending_config *c = &p->config->physics, small_config = small_of(c);
+  bending_flow small = {.h = 0.0};
+  bw_grid *grid = NULL;
+  bw_comm *self = NULL;
+  BW_TRY(bending_count_steps(p));
+  BW_TRY(bending_check(c));
+  BW_TRY(check_strain(c, c->channel.height / c->channel.cells[1]));
+  /* Ranks have to fit the grid. */
+  const bw_grid_config sizes = bending_grid(c);
+  BW_TRY(bw_grid_plan(p->comm, &sizes, &grid));
+  bw_grid_destroy(&grid);
+  bw_status st = bw_comm_self(&self);
+  const double before = (double)bw_memory_in_use();
+  BW_THEN(st, bending_create(self, &small_config, &small));
+  const double bytes = (double)bw_memory_in_use() - before;
+  BW_THEN(st, describe(p, &small, bytes));
+  bending_destroy(&small);
+  bw_comm_destroy(&self);
+  return bw_comm_agree(p->comm, st);
+}

@@ -1,0 +1,230 @@
+/* What of a run can be known before it is built: what is refused, its sizes, limits, memory, time. */
+#include "bw_memory.h"
+#include "porous_case.h"
+
+#include <math.h>
+#include <string.h>
+
+static bw_status check_combinations(const porous_config *q)
+{
+  const porous_domain *d = &q->domain;
+  const double h = d->length[1] / d->cells[1];
+  for (int k = 0; k < 3; k += 2)
+    BW_REQUIRE(fabs(d->length[k] / d->cells[k] / h - 1.0) < 1e-9, BW_EINPUT,
+               "domain.cells[%d] = %d: cells must be cubes, %g would give the spacing %g m of y", k,
+               d->cells[k], d->length[k] / h, h);
+  BW_REQUIRE(q->medium.front + q->medium.length < d->length[0], BW_EINPUT,
+             "medium.front + medium.length = %g m reaches the outflow at domain.length[0] = %g m",
+             q->medium.front + q->medium.length, d->length[0]);
+  /* Softer than this even the stream's own pressure would squeeze the solid to nothing. */
+  static const double softest = 1e-3;
+  const double U = q->fluid.bulk_velocity;
+  const double groups = q->solid.young_modulus / (q->fluid.density * U * U);
+  BW_REQUIRE(
+      groups >= softest, BW_EINPUT,
+      "solid.young_modulus = %g Pa is %.3g of the stream's dynamic pressure rho U_b^2 = %g Pa; "
+      "at least %g",
+      q->solid.young_modulus, groups, q->fluid.density * U * U, softest);
+  return BW_OK;
+}
+
+/* What the stream does to the solid has to be more than rounding does. */
+static bw_status check_strain(const porous_config *q)
+{
+  static const double least = 1e-15; /* of positions in a channel of length 1: 2^-53 is 1.1e-16 */
+  const double h = q->domain.length[1] / q->domain.cells[1], U = q->fluid.bulk_velocity;
+  const double stress = q->fluid.density * U * (U + q->fluid.viscosity / h);
+  BW_REQUIRE(
+      stress / q->solid.young_modulus >= least, BW_EINPUT,
+      "solid.young_modulus = %g Pa: the stream's stress, rho U_b (U_b + nu/h) = %g Pa, strains "
+      "it by %.3g, which rounding hides; at least %g",
+      q->solid.young_modulus, stress, stress / q->solid.young_modulus, least);
+  return BW_OK;
+}
+
+bw_status porous_check(const porous_config *q)
+{
+  BW_TRY(check_combinations(q));
+  return check_strain(q);
+}
+
+/* ---- a small run of the same kind ----
+ * Cells, particles, material, coupling and stream are those of the case; the channel is as small as
+ * cubes of pores allow. What it costs per cell and particle the case costs, too. */
+enum { EDGE = 24, BESIDE = 6, FEW = 4 * EDGE * EDGE * EDGE };
+
+static double cells_of(const porous_config *q)
+{
+  return (double)q->domain.cells[0] * q->domain.cells[1] * q->domain.cells[2];
+}
+
+/* A case that is small itself is its own. */
+static porous_config small_of(const porous_config *q)
+{
+  porous_config s = *q;
+  const double h = q->domain.length[1] / q->domain.cells[1];
+  if (cells_of(q) <= FEW) return s;
+  const int cells[3] = {EDGE + 2 * BESIDE, EDGE, EDGE};
+  for (int d = 0; d < 3; d++)
+    s.domain.cells[d] = cells[d], s.domain.length[d] = cells[d] * h;
+  s.medium.has_image = s.medium.has_surface = s.medium.has_random = false;
+  s.medium.lattice = BW_SHAPE_PORES_SC;
+  s.medium.front = BESIDE * h;
+  s.medium.length = s.medium.pitch = EDGE * h;
+  /* Pores that just join. */
+  s.medium.radius_over_pitch = 0.55;
+  for (int d = 0; d < 3; d++)
+    s.medium.offset[d] = 0.5;
+  return s;
+}
+
+/* What is known of the case from its small run and its medium. */
+typedef struct {
+  double particles, clamped; /* in the channel; under its wall */
+  double bytes;              /* of a rank */
+  double porosity;           /* of the medium */
+  double fluid_max;          /* no flow through the medium bears a longer step [s] */
+  double bonds;              /* from both ends */
+} porous_estimate;
+
+/* Memory by what grows with cells and with particles: of the coupler two fields; a checkpoint on
+ * its way holds the state once more. */
+static bw_status weigh(const porous_run *small, const porous_config *q, int ranks,
+                       porous_estimate *e)
+{
+  const double share = cells_of(q) / cells_of(small->config);
+  const double fields = 2.0 * sizeof(bw_real) * (double)bw_grid_look(small->grid)->size;
+  const double state = 4.0 * sizeof(bw_real) * (double)bw_grid_look(small->grid)->size;
+  const double n = (double)bw_solid_total(small->solid), all = e->particles + e->clamped;
+  const double row = 8.0 * (double)(bw_solid_restart_row(small->solid) + 9);
+  bw_solid_ledger ledger;
+  BW_TRY(bw_solid_account(small->solid, &ledger));
+  const double by_cells = small->bytes.fluid + fields + state;
+  const double by_particles =
+      (small->bytes.solid + fmax(0.0, small->bytes.coupler - fields)) / n + row;
+  e->bytes = (share * by_cells + all * by_particles) / ranks;
+  e->bonds = 2.0 * (double)ledger.bonds / n * all;
+  return BW_OK;
+}
+
+/* The stream is squeezed into the pores: somewhere it is at least so fast as their share says. */
+static void bound_step(const porous_run *small, const porous_config *q, porous_estimate *e)
+{
+  static const double convective = 1.7320508; /* of bw_ns_channel_dt_max */
+  const double h = q->domain.length[1] / q->domain.cells[1];
+  const double volume = q->medium.length * q->domain.length[1] * q->domain.length[2];
+  e->porosity = fmax(1e-3, 1.0 - e->particles * h * h * h / volume);
+  const double pores = convective * h * e->porosity / q->fluid.bulk_velocity;
+  e->fluid_max = fmin(bw_ns_channel_dt_max(small->fluid), pores);
+}
+
+/* A step that the stream alone does not bear is not begun with. */
+static bw_status check_steps(const porous_run *p, const porous_run *small, const porous_estimate *e)
+{
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const porous_phase *f = porous_phase_of(p->config, k);
+    if (k != PHASE_FLOW) BW_TRY(bw_coupler_check_substeps(small->coupler, f->time_step));
+    BW_REQUIRE(f->steps == 0 || f->time_step <= e->fluid_max * (1.0 + 1e-12), BW_EINPUT,
+               "%s.time_step = %g s is over the fluid's limit: the stream of fluid.bulk_velocity = "
+               "%g m/s through a porosity of %.2f bears %.3g s at most; take a shorter step",
+               porous_phase_name[k], f->time_step, p->config->fluid.bulk_velocity, e->porosity,
+               e->fluid_max);
+  }
+  return BW_OK;
+}
+
+/* Time from nominal costs (the benches' on a quiet machine). */
+static void describe_cost(const porous_run *p, const porous_run *small, const porous_estimate *e)
+{
+  static const double fluid_ns = 45.0, bond_ns = 1.8; /* core-ns: cell and sub-step, bond */
+  const int ranks = bw_comm_size(p->comm);
+  double seconds = 0.0;
+  /* Sub-steps of the solid dominate. */
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const porous_phase *f = porous_phase_of(p->config, k);
+    const int substeps = k == PHASE_FLOW ? 0 : bw_coupler_substeps(small->coupler, f->time_step);
+    seconds += 1e-9 * f->steps *
+               (3.0 * cells_of(p->config) * fluid_ns + (double)substeps * e->bonds * bond_ns);
+  }
+  bw_log_info(bw_case_log(p->run),
+              "cost       about %.3g MiB for each of %d ranks, a third more while it is built and "
+              "written; at most about %.1f min on as many quiet cores",
+              e->bytes / 1048576.0, ranks, seconds / 60.0 / ranks);
+}
+
+static void describe(const porous_run *p, const porous_run *small, const porous_estimate *e)
+{
+  const porous_config *q = p->config;
+  bw_log *log = bw_case_log(p->run);
+  const double h = q->domain.length[1], U = q->fluid.bulk_velocity, rho = q->fluid.density;
+  bw_log_info(log, "channel    %d x %d x %d cells, spacing %g m, %d ranks", q->domain.cells[0],
+              q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
+              bw_comm_size(p->comm));
+  bw_log_info(log,
+              "medium     about %.4g particles in the channel, %.4g with the clamped layer, "
+              "porosity %.3f; horizon/spacing %g",
+              e->particles, e->particles + e->clamped, e->porosity, q->solid.horizon_ratio);
+  /* The groups that the physics depends on, and each phase's step against its limit. */
+  bw_log_info(log,
+              "groups     Re_b = %g, E* = E/(rho U_b^2) = %g, density ratio %g, Cauchy number %g, "
+              "s0 = %.4e",
+              U * h / q->fluid.viscosity, q->solid.young_modulus / (rho * U * U),
+              q->solid.density / rho, rho * U * U / q->solid.young_modulus,
+              bw_solid_critical_stretch(small->solid));
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const porous_phase *f = porous_phase_of(q, k);
+    bw_log_info(log,
+                "phase %d    %-11s %d steps of %g s: %.2f of what the stream bears at most, %s%d "
+                "solid sub-steps each",
+                k + 1, porous_phase_name[k], f->steps, f->time_step, f->time_step / e->fluid_max,
+                k == PHASE_FLOW ? "no solid; else " : "",
+                bw_coupler_substeps(small->coupler, f->time_step));
+  }
+  bw_log_info(log, "solid      stable to about %.4g s per sub-step", bw_solid_dt_max(small->solid));
+  describe_cost(p, small, e);
+}
+
+static bw_status plan(porous_run *p, porous_run *small)
+{
+  const porous_config *q = p->config;
+  porous_estimate e = {0};
+  const double h = q->domain.length[1] / q->domain.cells[1];
+  e.clamped = (double)q->medium.clamped_layers * round(q->medium.length / h) * q->domain.cells[2];
+  BW_TRY(porous_medium_try(p->comm, q, bw_case_log(p->run), &e.particles));
+  /* Each rank builds its own small run. */
+  BW_TRY(bw_comm_agree(p->comm, porous_build(small)));
+  bw_status st = weigh(small, q, bw_comm_size(p->comm), &e);
+  bound_step(small, q, &e);
+  BW_THEN(st, check_steps(p, small, &e));
+  BW_TRY(bw_comm_agree(p->comm, st));
+  describe(p, small, &e);
+  return BW_OK;
+}
+
+bw_status porous_plan(porous_run *p)
+{
+  bw_grid *grid = NULL;
+  bw_comm *self = NULL;
+  BW_TRY(porous_check(p->config));
+  /* Ranks have to fit the grid. */
+  const bw_grid_config sizes = porous_grid(p->config);
+  BW_TRY(bw_grid_plan(p->comm, &sizes, &grid));
+  bw_grid_destroy(&grid);
+  const porous_config config = small_of(p->config);
+  bw_status st = bw_comm_agree(p->comm, bw_comm_self(&self));
+  porous_run small = {.config = &config, .comm = self};
+  BW_THEN(st, plan(p, &small));
+  porous_destroy(&small);
+  bw_comm_destroy(&self);
+  return st;
+}
+
+bw_status porous_describe(porous_run *p)
+{
+  const double limit = bw_ns_channel_dt_max(p->fluid), step = p->config->flow.time_step;
+  bw_log_info(bw_case_log(p->run),
+              "built      %lld particles; the first step of the flow %.2f of "
+              "the fluid's limit",
+              (long long)bw_solid_total(p->solid), step / limit);
+  return BW_OK;
+}

@@ -88,11 +88,11 @@ extern const char *const porous_phase_name[PHASE_COUNT];
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
-/* About how many particles of it are in the channel, from some of its rows; the same refusals, but
- * that nothing flows through is only seen in a channel of some million cells. Nothing is kept.
- * Collective. */
+/* How many particles of it are in the channel: counted up to some million cells, else told from some
+ * of its rows. The same refusals, but that nothing flows through is only seen where they are
+ * counted. Nothing is kept. Collective. */
 bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_log *log,
-                            double *particles) BW_MUST_CHECK;
+                            double *particles, bool *exact) BW_MUST_CHECK;
 
 /* ---- the objects of a run (porous_build.c) ---- */
 enum { N_PROGRESS = 6 }; /* numbers of a checkpoint: phase, steps, settling check, rows */

@@ -247,13 +247,14 @@ static bw_status count_some(const medium_body *b, const bw_shape_lattice *lattic
 }
 
 bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_log *log,
-                            double *particles)
+                            double *particles, bool *exact)
 {
   static const double few = 2097152.0; /* cells whose ways are looked for */
   static const double origin[3] = {0.0, 0.0, 0.0};
   const bw_shape_lattice lattice = bw_shape_lattice_straight(spacing(q), origin, false);
   const int *cells = q->domain.cells;
-  if ((double)cells[0] * cells[1] * cells[2] <= few) {
+  *exact = (double)cells[0] * cells[1] * cells[2] <= few;
+  if (*exact) {
     int64_t n = 0;
     int32_t *site = NULL;
     uint8_t *kind = NULL;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static bw_status check_combinations(const porous_config *q)
+bw_status porous_check(const porous_config *q)
 {
   const porous_domain *d = &q->domain;
   const double h = d->length[1] / d->cells[1];
@@ -42,12 +42,6 @@ static bw_status check_strain(const porous_config *q)
   return BW_OK;
 }
 
-bw_status porous_check(const porous_config *q)
-{
-  BW_TRY(check_combinations(q));
-  return check_strain(q);
-}
-
 /* ---- a small run of the same kind ----
  * Cells, particles, material, coupling and stream are those of the case; the channel is as small as
  * cubes of pores allow. What it costs per cell and particle the case costs, too. */
@@ -81,6 +75,7 @@ static porous_config small_of(const porous_config *q)
 /* What is known of the case from its small run and its medium. */
 typedef struct {
   double particles, clamped; /* in the channel; under its wall */
+  bool exact;                /* are the particles counted? */
   double bytes;              /* of a rank */
   double porosity;           /* of the medium */
   double fluid_max;          /* no flow through the medium bears a longer step [s] */
@@ -161,9 +156,10 @@ static void describe(const porous_run *p, const porous_run *small, const porous_
               q->domain.cells[1], q->domain.cells[2], h / q->domain.cells[1],
               bw_comm_size(p->comm));
   bw_log_info(log,
-              "medium     about %.4g particles in the channel, %.4g with the clamped layer, "
-              "porosity %.3f; horizon/spacing %g",
-              e->particles, e->particles + e->clamped, e->porosity, q->solid.horizon_ratio);
+              "medium     %s%.0f particles in the channel, %.0f with the clamped layer, porosity "
+              "%.3f; horizon/spacing %g",
+              e->exact ? "" : "about ", e->particles, e->particles + e->clamped, e->porosity,
+              q->solid.horizon_ratio);
   /* The groups that the physics depends on, and each phase's step against its limit. */
   bw_log_info(log,
               "groups     Re_b = %g, E* = E/(rho U_b^2) = %g, density ratio %g, Cauchy number %g, "
@@ -190,12 +186,13 @@ static bw_status plan(porous_run *p, porous_run *small)
   porous_estimate e = {0};
   const double h = q->domain.length[1] / q->domain.cells[1];
   e.clamped = (double)q->medium.clamped_layers * round(q->medium.length / h) * q->domain.cells[2];
-  BW_TRY(porous_medium_try(p->comm, q, bw_case_log(p->run), &e.particles));
+  BW_TRY(porous_medium_try(p->comm, q, bw_case_log(p->run), &e.particles, &e.exact));
   /* Each rank builds its own small run. */
   BW_TRY(bw_comm_agree(p->comm, porous_build(small)));
   bw_status st = weigh(small, q, bw_comm_size(p->comm), &e);
   bound_step(small, q, &e);
   BW_THEN(st, check_steps(p, small, &e));
+  BW_THEN(st, check_strain(q));
   BW_TRY(bw_comm_agree(p->comm, st));
   describe(p, small, &e);
   return BW_OK;

@@ -33,7 +33,7 @@ with pitch "pitch" --set medium.pitch=0.03
 # Porosity 0.02: the pores do not join; porosity 1: nothing is left.
 with closed_pores "radius_over_pitch = 0.168.*larger pores" --set medium.radius_over_pitch=0.168
 with no_solid "radius_over_pitch = 0.9.*no particle" --set medium.radius_over_pitch=0.9
-with too_large_step "at t = 0 .*limit" --set flow.time_step=0.5
+with too_large_step "flow.time_step = 0.5 s is over the fluid.s limit" --set flow.time_step=0.5
 # Numbers that cannot be meant, each with what it would lead to and the limit; --check says so, too.
 with no_stream "fluid.bulk_velocity = 1e-300: too small" --set fluid.bulk_velocity=1e-300
 with no_stiffness "solid.young_modulus = 1e-300: too small" --set solid.young_modulus=1e-300

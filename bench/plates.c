@@ -16,6 +16,7 @@
 #include "../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
 #include "../cases/notched_plate/specimen_crack.c"
 #include "../cases/notched_plate/specimen_input.c"
+#include "../cases/notched_plate/specimen_plan.c"
 #include "bw_bench_solid.h"
 #include "bw_shape.h"
 

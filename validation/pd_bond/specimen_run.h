@@ -4,6 +4,7 @@
 #include "../../cases/notched_plate/specimen.c" /* the case's own plate, not a second one */
 #include "../../cases/notched_plate/specimen_crack.c"
 #include "../../cases/notched_plate/specimen_input.c"
+#include "../../cases/notched_plate/specimen_plan.c"
 #include "bw_validation.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -88,8 +88,8 @@ extern const char *const porous_phase_name[PHASE_COUNT];
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 
-/* How many particles of it are in the channel: counted up to some million cells, else told from some
- * of its rows. The same refusals, but that nothing flows through is only seen where they are
+/* How many particles of it are in the channel: counted up to some million cells, else told from
+ * some of its rows. The same refusals, but that nothing flows through is only seen where they are
  * counted. Nothing is kept. Collective. */
 bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_log *log,
                             double *particles, bool *exact) BW_MUST_CHECK;
@@ -133,8 +133,8 @@ bw_grid_config porous_grid(const porous_config *q); /* that of the fluid. Local.
 /* Values that contradict each other are refused. Local. */
 bw_status porous_check(const porous_config *q) BW_MUST_CHECK;
 /* What cannot run is refused, as the run would; sizes, dimensionless groups, steps against their
- * limits, memory and time to the log. From a small run of the same kind: time and memory do not grow
- * with the channel. Collective. */
+ * limits, memory and time to the log. From a small run of the same kind: time and memory do not
+ * grow with the channel. Collective. */
 bw_status porous_plan(porous_run *p) BW_MUST_CHECK;
 /* What was built, to the log. Collective. */
 bw_status porous_describe(porous_run *p) BW_MUST_CHECK;

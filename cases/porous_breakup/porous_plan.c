@@ -1,4 +1,4 @@
-/* What of a run can be known before it is built: what is refused, its sizes, limits, memory, time. */
+/* What of a run can be known before it is built: what is refused, sizes, limits, memory, time. */
 #include "bw_memory.h"
 #include "porous_case.h"
 

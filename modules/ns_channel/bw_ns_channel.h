@@ -93,8 +93,8 @@ typedef struct {
                     inflows and forcing then [T]; a laminar inflow counts with its mean */
 } bw_ns_plan;
 
-/* The same for the grid of a bw_grid_plan, from two small fluids with cells of the same size and the
- * same sides: time and memory do not grow with the grid. Errors of bw_ns_channel_create for the
+/* The same for the grid of a bw_grid_plan, from two small fluids with cells of the same size and
+ * the same sides: time and memory do not grow with the grid. Errors of bw_ns_channel_create for the
  * settings. Collective. */
 bw_status bw_ns_channel_plan(const bw_grid *grid, const bw_ns_channel_config *config,
                              bw_ns_plan *plan) BW_MUST_CHECK;

@@ -98,8 +98,8 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_ca
 
 /* Which walls hold the medium, as bits; 0: none. Local. */
 int porous_clamps(const porous_medium *m);
-/* How many particles of it are in the channel: counted up to some million cells, else told from some
- * of its rows. The same refusals, but that nothing flows through is only seen where they are
+/* How many particles of it are in the channel: counted up to some million cells, else told from
+ * some of its rows. The same refusals, but that nothing flows through is only seen where they are
  * counted. Nothing is kept. Collective. */
 bw_status porous_medium_try(const bw_comm *comm, const porous_config *q, bw_case *run,
                             double *particles, bool *exact) BW_MUST_CHECK;

@@ -10,8 +10,9 @@
  * What is built follows from the file, and nothing else is: solids alone have no grid, a fluid
  * alone no particles; bodies that do not move beside others that do not deform are surfaces in the
  * fluid; what deforms in a flow is one solid of the coupler. bw_scene_blocks says what runs, and
- * why. Solids without fluid are stepped by bw_solid_step, several by bw_solid_assembly_step; a fluid by
- * bw_ns_channel_step; markers of bodies between its halves; fluid and solids by bw_coupler_step.
+ * why. Solids without fluid are stepped by bw_solid_step, several by bw_solid_assembly_step; a
+ * fluid by bw_ns_channel_step; markers of bodies between its halves; fluid and solids by
+ * bw_coupler_step.
  * Units    any consistent set: [M], [L], [T].
  * Life     config_default, read -> create -> { step, gauge }* -> destroy. Collective unless said
  *          otherwise. */

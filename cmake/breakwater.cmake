@@ -16,6 +16,19 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Fuzzers need sanitizers, and an engine where the compiler brings one.
+if(BW_FUZZ)
+  set(BW_SANITIZE ON)
+  include(CheckCSourceCompiles)
+  set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer)
+  check_c_source_compiles(
+    "#include <stddef.h>
+     int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size);
+     int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size) { return !data && size; }"
+    BW_FUZZ_ENGINE)
+  unset(CMAKE_REQUIRED_FLAGS)
+endif()
+
 add_library(bw_flags INTERFACE)
 target_compile_options(bw_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
@@ -26,6 +39,10 @@ target_compile_options(bw_flags INTERFACE
   $<$<BOOL:${BW_WERROR}>:-Werror> $<$<BOOL:${BW_NATIVE}>:-march=native>
   $<$<CONFIG:Release>:-O3> $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>
   $<$<BOOL:${BW_SANITIZE}>:-fno-omit-frame-pointer>)
+if(BW_FUZZ)
+  target_compile_options(bw_flags INTERFACE -g -fno-sanitize-recover=undefined
+    $<$<BOOL:${BW_FUZZ_ENGINE}>:-fsanitize=fuzzer-no-link>)
+endif()
 target_compile_definitions(bw_flags INTERFACE _POSIX_C_SOURCE=200809L
   $<$<STREQUAL:${BW_PRECISION},single>:BW_SINGLE>)
 target_link_options(bw_flags INTERFACE $<$<BOOL:${BW_SANITIZE}>:-fsanitize=address,undefined>)
@@ -322,6 +339,36 @@ function(bw_examples)
     get_filename_component(name ${head} NAME_WE)
     _bw_program(example_${name} "" ${head})
     _bw_run(example ${name} example_${name} ${head})
+  endforeach()
+endfunction()
+
+# tests/fuzz/fuzz_NAME.c: build/bin/fuzz_NAME, and a test that runs its seeds and some thousand inputs
+# made of them. BW_FUZZ=ON: everything with sanitizers and with libFuzzer (clang) or AFL++, where the
+# compiler has one of them; else with the driver that the test uses (tests/fuzz/README.md).
+function(bw_fuzzers)
+  set(driver tests/fuzz/driver.c)
+  if(BW_FUZZ_ENGINE)
+    set(driver "")
+  endif()
+  file(GLOB heads CONFIGURE_DEPENDS tests/fuzz/fuzz_*.c)
+  foreach(head ${heads})
+    get_filename_component(name ${head} NAME_WE)
+    string(REPLACE "fuzz_" "" short ${name})
+    _bw_program(${name} "" ${head} tests/fuzz/fuzz.c ${driver})
+    set(runs 3000)
+    if(short MATCHES "checkpoint|restart") # each input is a file of HDF5
+      set(runs 300)
+    endif()
+    set(amount --runs=${runs})
+    if(BW_FUZZ_ENGINE)
+      target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+      set(amount -runs=${runs} -max_len=4096 -timeout=20)
+    endif()
+    add_test(NAME fuzz.${short}
+             COMMAND ${name} ${amount} ${PROJECT_SOURCE_DIR}/tests/fuzz/seeds/${short}
+             WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
+    set_tests_properties(fuzz.${short} PROPERTIES LABELS fuzz TIMEOUT ${BW_TIMEOUT} ENVIRONMENT
+                         "${BW_MPI_ENVIRONMENT};ASAN_OPTIONS=detect_leaks=0")
   endforeach()
 endfunction()
 

@@ -92,7 +92,8 @@ extern const char *const porous_phase_name[PHASE_COUNT];
 /* ---- the medium (porous_medium.c) ---- */
 /* This rank's part of its particles on sites of the grid's cells, with the slab that holds it:
  * site (n,3), kind (n), the caller's (bw_release). Refused when nothing is left of it or nothing
- * flows through. With --check the log gets what it is like. Collective. */
+ * flows through. With --check the log of `run` gets what it is
+ * like; NULL: of no case. Collective. */
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_case *run, int64_t *n,
                               int32_t **site, uint8_t **kind) BW_MUST_CHECK;
 

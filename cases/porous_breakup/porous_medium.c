@@ -166,6 +166,7 @@ static bw_status fill(const bw_comm *comm, const porous_config *q, porous_body *
 bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_case *run, int64_t *n,
                               int32_t **site, uint8_t **kind)
 {
+  const bool tell = run != NULL && bw_case_args_of(run)->check;
   medium_way way = NULL;
   porous_body body = {0};
   *site = NULL, *kind = NULL;
@@ -174,10 +175,10 @@ bw_status porous_medium_sites(const bw_comm *comm, const porous_config *q, bw_ca
   BW_THEN(st, way(q, &body));
   st = bw_comm_agree(comm, st); /* a file may fail on one rank alone */
   /* What the file holds is told first, as it may be the reason why nothing is left of it. */
-  if (st == BW_OK && bw_case_args_of(run)->check) st = porous_tell_mask(comm, q, &body, run);
+  if (st == BW_OK && tell) st = porous_tell_mask(comm, q, &body, run);
   BW_THEN(st, fill(comm, q, &body, n, site, kind));
   BW_THEN(st, check_way(comm, q, body.key, *n, *site));
-  if (st == BW_OK && bw_case_args_of(run)->check) st = porous_tell_pores(comm, q, *n, *site, run);
+  if (st == BW_OK && tell) st = porous_tell_pores(comm, q, *n, *site, run);
   bw_release(&body.shape);
   bw_shape_mask_destroy(&body.mask);
   return st;

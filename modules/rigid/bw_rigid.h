@@ -115,7 +115,7 @@ bw_status bw_rigid_step(bw_rigid *rigid, double dt) BW_MUST_CHECK;
 typedef struct {
   double kinetic; /* of the centres and the turns */
   double weight;  /* -m g.X */
-  double spring;
+  double spring;  /* of both kinds */
   double contact; /* between bodies and with walls */
 } bw_rigid_energy;
 bw_rigid_energy bw_rigid_energy_of(const bw_rigid *rigid); /* Collective. */
@@ -140,7 +140,7 @@ double bw_rigid_radius(const bw_rigid *rigid, int body);
 /* State for a restart: BW_RIGID_ROW numbers per body, the same on all ranks. Restored into bodies
  * that were created alike, the motion goes on to the last bit. save is local, restore
  * collective. */
-enum { BW_RIGID_ROW = 24 };
+enum { BW_RIGID_ROW = 24 /* numbers per body */ };
 void bw_rigid_save(const bw_rigid *rigid, double row[]);
 void bw_rigid_restore(bw_rigid *rigid, double time, const double row[]);
 

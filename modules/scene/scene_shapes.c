@@ -92,6 +92,10 @@ static bw_status add_mask(const bw_scene_body *b, const bw_scene_shape *part, in
     BW_TRY(bw_shape_mask_read_stl(part->stl.file, part->stl.unit, cell, mask));
   s->n_masks++;
   s->analytic = false;
+  BW_REQUIRE(
+      !part->has_image || (*mask)->about.has_spacing || !isnan(part->image.voxel), BW_EINPUT,
+      "bodies.%s.shape.%d.image: %s does not say how large a voxel is; give its edge (voxel)",
+      b->name, p, part->image.file);
   /* Where the file puts it, or where the scene does. */
   for (int d = 0; part->has_image && d < 3; d++) {
     if (!isnan(part->image.voxel)) (*mask)->spacing[d] = part->image.voxel;

@@ -79,10 +79,10 @@ typedef struct {
   double inside; /* of that, the part in the box that was asked about [L^3] */
 } bw_shape_solid;
 
-/* The solid of the layers first <= k < first + layers, and how much of it lies within lower ..
- * upper (3 each; [L]); cells that the box cuts count by their part. Layers are held a few at a
- * time. Sums over ranks that look at different layers are the whole. Errors as bw_shape_mask_hold.
- * Local. */
+/* The solid of the layers first <= k < first + layers, and how much of it lies in the box between
+ * the corners lower and upper (3 each; [L]); cells that the box cuts count by their part. Layers
+ * are held a few at a time. Sums over ranks that look at different layers are the whole. Errors as
+ * bw_shape_mask_hold. Local. */
 bw_status bw_shape_mask_measure(bw_shape_mask *mask, int64_t first, int64_t layers,
                                 const double lower[3], const double upper[3],
                                 bw_shape_solid *solid) BW_MUST_CHECK;

@@ -24,7 +24,7 @@ typedef struct bw_comm bw_comm; /* bw_comm.h */
 
 /* The box: cell (i,j,k) with 0 <= i < cells[0] and so on is site (i,j,k). */
 typedef struct {
-  int64_t cells[3];
+  int64_t cells[3]; /* 1 at least, BW_SHAPE_PORES_MOST in all */
   bool periodic[3]; /* the first and the last layer are neighbours, but for a way along this axis */
   bool wall[3];     /* beyond the sides is solid, but for a way along this axis */
 } bw_shape_pores_box;

@@ -10,7 +10,6 @@ typedef struct {
   bw_pd_material_point material[BW_PD_GROUPS], small[BW_PD_GROUPS]; /* the other: of small strain */
   double kappa;                /* tr K/d of a full family [L^5] */
   double spring[BW_PD_GROUPS]; /* c of the central springs, w c s per volume [M/(L^4 T^2)] */
-  double G_of_s2;              /* fracture energy over E s0^2 horizon */
   double s0[BW_PD_GROUPS][BW_PD_GROUPS];
   bool breakable, remembers;
   bw_real *inverse[6]; /* storage: K^-1, xx yy zz yz xz xy */

@@ -61,8 +61,13 @@ static void row_constants(bw_pd_body *pd, int g, int h, bw_real row[])
   const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
   const bw_pd_stencil *s = &pd->level->stencil;
   const bool cloud = pd->config.disorder > 0;
-  /* A bond holds w_c at most: with all bonds across a flat cut at it their sum is G0. */
-  const double held = bw_pd_state__joint_G0(&pd->config, g, h) / o->crossing;
+  /* With all bonds across a flat cut at w_c their sum is G0 (ERRATA-ADAPT 24). A crack breaks them
+   * one by one and needs more, by what strips have shown. */
+  static const double strip[2][BW_PD_STATE_KNOTS] = {{1.610, 1.851, 2.672}, {1.275, 1.429, 2.019}};
+  const bw_pd_body_config *c = &pd->config;
+  const double nu = 0.5 * (c->material[g].nu + c->material[h].nu);
+  const double held = bw_pd_state__joint_G0(c, g, h) /
+                      (o->crossing * bw_pd_state__by_strip(strip, c->horizon_ratio, nu));
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double w = cloud ? 1 : bw_pd_ordinary_influence(o, s->r0[q]);
     row[BW_PD_STIFFNESS] = (bw_real)(w * (cloud ? 1 : s->fraction[q]) * pd->level->dv);

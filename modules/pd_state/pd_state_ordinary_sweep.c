@@ -37,6 +37,24 @@ INLINE void rest_of(const ordinary *s, const bw_real *row, vec rest2, bool cloud
   if (s->inverse) b->weight *= q0;
 }
 
+/* |xi + eta| - |xi|. Doubles leave enough of the difference of both; in single precision it is
+ * (2 xi + eta).eta/(|xi + eta| + |xi|), which has no difference of large numbers. */
+INLINE vec extension(const ordinary *s, const bw_pd_slot *slot, const owners *h, const bond *x,
+                     const stretched *b, int dimension)
+{
+#ifdef BW_SINGLE
+  vec dot = vec_all(0);
+  for (int k = 0; k < dimension; k++) {
+    const vec eta = vec_load(s->all.u[k] + slot->base) - h->u[k];
+    dot = vec_fma(x->z[k] + (x->z[k] - eta), eta, dot);
+  }
+  return dot / (x->r2 * b->over + b->r0);
+#else
+  (void)s, (void)slot, (void)h, (void)dimension;
+  return x->r2 * b->over - b->r0;
+#endif
+}
+
 INLINE stretched stretched_of(const ordinary *s, const bw_pd_slot *slot, const bw_real *row,
                               const owners *h, int dimension, bool cloud)
 {
@@ -44,7 +62,7 @@ INLINE stretched stretched_of(const ordinary *s, const bw_pd_slot *slot, const b
   const bond x = bond_of(&s->all, slot, row, h, dimension, cloud);
   rest_of(s, row, x.rest2, cloud, &b);
   b.over = vec_rsqrt(x.r2);
-  b.e = x.r2 * b.over - b.r0;
+  b.e = extension(s, slot, h, &x, &b, dimension);
   for (int k = 0; k < dimension; k++)
     b.z[k] = x.z[k];
   return b;

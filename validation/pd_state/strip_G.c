@@ -4,13 +4,14 @@
  *            was asked for all along its way.
  * Reference  the energy that is released: G = W h, W the energy density far ahead of the crack and
  *            h the height between the grips, exact while the crack is long.
- * Measured   plane strain; 24 (full: 36) cells between the grips, three times as long, cracked over
- *            0.45 of its length. At rest (linear solve) the load at which the law breaks its first
- *            bond is found by halving, these bonds are broken, and so on until the crack has
- *            advanced by four spacings: the first load gives G at the start, the largest G all
- *            along. Strains of 1e-5.
- * Tolerance  5 %: the calibration is of a strip of 36 cells along the lattice; between 24 and 36
- *            cells G differs by 3 to 7 % (ERRATA-ULPH 47-48).
+ * Measured   plane strain; 24 cells between the grips, three times as long, cracked over 0.45 of
+ *            its length. At rest (linear solve) the load at which the law breaks its first bond is
+ *            found by halving, these bonds are broken, and so on until the crack has advanced by
+ *            four spacings: the first load gives the G of the first bond, the largest that of the
+ *            crack. Strains of 1e-5. nu = 0.3, which is no knot of the laws' table; full: also its
+ *            knots and a strip of 36 cells.
+ * Tolerance  5 %: the table's parabola, and what G still changes with the strip's height (3 to 7 %
+ *            from 24 to 36 cells, ERRATA-ULPH 47-48); 8 % with 36 cells.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 timeout=3600 */
 #include "pd_law.h"
@@ -177,19 +178,17 @@ static bw_status drive(bw_validation *v, const char *law, double nu, double m, i
 
 static bw_status run(bw_validation *v)
 {
-  static const double nu[] = {0.1, 0.25, 0.3, 0.4};
-  static const double m[] = {2, 3};
-  const bool full = bw_validation_full(v);
-  const int height = full ? 36 : 24;
-  for (int q = 0; q < 4; q++)
-    for (int k = 0; k < 2; k++) {
-      if (!full && !(q == 2 && k == 1)) continue;
-      BW_TRY(drive(v, "ordinary", nu[q], m[k], height, BW_PD_STATE_CUBIC, 0.05));
-      BW_TRY(drive(v, "correspondence", nu[q], m[k], height, BW_PD_STATE_CUBIC, 0.05));
-      if (full && k == 1)
-        BW_TRY(drive(v, "correspondence", nu[q], m[k], height, BW_PD_STATE_UNIFORM, 0.05));
-    }
-  return BW_OK;
+  static const double nu[] = {0.1, 0.25, 0.4}, m[] = {2, 3};
+  BW_TRY(drive(v, "ordinary", 0.3, 3, 24, BW_PD_STATE_CUBIC, 0.05));
+  BW_TRY(drive(v, "correspondence", 0.3, 3, 24, BW_PD_STATE_CUBIC, 0.05));
+  for (int q = 0; q < 6 && bw_validation_full(v); q++) {
+    BW_TRY(drive(v, "ordinary", nu[q / 2], m[q % 2], 24, BW_PD_STATE_CUBIC, 0.05));
+    BW_TRY(drive(v, "correspondence", nu[q / 2], m[q % 2], 24, BW_PD_STATE_CUBIC, 0.05));
+  }
+  if (!bw_validation_full(v)) return BW_OK;
+  BW_TRY(drive(v, "correspondence", 0.3, 3, 24, BW_PD_STATE_UNIFORM, 0.05));
+  BW_TRY(drive(v, "ordinary", 0.3, 3, 36, BW_PD_STATE_CUBIC, 0.08));
+  return drive(v, "correspondence", 0.3, 3, 36, BW_PD_STATE_CUBIC, 0.08);
 }
 
 int main(int argc, char **argv)

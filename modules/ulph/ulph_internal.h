@@ -39,7 +39,7 @@ typedef struct {
   double p;
   double m2; /* tr M/d */
   double
-      g[3]; /* gradient of the density. Walls: viscosity (no slip); 1 where it moves; artificial */
+      g[3]; /* gradient of the density. Walls: viscosity; 1 where it moves; artificial viscosity */
   double surface; /* 1 at the surface, else 0 */
 } bw_ulph__far;
 

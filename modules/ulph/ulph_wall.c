@@ -307,7 +307,7 @@ static void show_pressure(bw_ulph *u, size_t own, const moments *t, int l)
   p->p = f->p = pressure(u->shade[own].weight, t->p[l], u->shade[own].hydrostatic);
   for (int k = 0; k < 6; k++)
     f->P[k] = p->p * Minv[k];
-  f->g[0] = u->no_slip[p->wall] ? u->config.mu : 0;
+  f->g[0] = u->config.mu;
   f->g[2] = u->mu_wall;
   f->g[1] = u->moves[p->wall] ? 1 : 0;
 }

@@ -1,9 +1,9 @@
 /* Claim      A column of water collapses as in the experiment of Martin & Moyce.
- * Reference  data/particle_fluid/martin_moyce_front.csv and martin_moyce_height.csv (Phil. Trans. R.
- *            Soc. A 244 (1952) 312, tables 2 and 6; a = 57.15 mm, height 2 a).
- * Measured   20 (40) dx per a on a free-slip floor. Front and height at the times of the tables; the
- *            time of the front is shifted by the one number of 0 to 0.15 that fits best: the gate of
- *            the experiment takes that long to open.
+ * Reference  data/particle_fluid/martin_moyce_front.csv and martin_moyce_height.csv (Phil. Trans.
+ *            R. Soc. A 244 (1952) 312, tables 2 and 6; a = 57.15 mm, height 2 a).
+ * Measured   20 (40) dx per a on a free-slip floor. Front and height at the times of the tables;
+ *            the time of the front is shifted by the one number of 0 to 0.15 that fits best: the
+ *            gate of the experiment takes that long to open.
  *            The time of the height is not shifted.
  * Tolerance  Front 5 %, root of the mean square for T > 1; height 3 %.
  * BUILD modules=shape

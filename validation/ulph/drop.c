@@ -1,10 +1,10 @@
 /* Claim      A free drop that is stretched keeps its ellipse, its energy and its mass.
- * Reference  The exact solution, integrated to 1e-12: data/particle_fluid/elliptic_drop.csv (problem
- *            of Monaghan 1994): u = -A x, v = A y, A(0) = 1.
- * Measured   A disc of 25 (50) dx per radius until A0 t = 0.76: half-axes from the second moments of
- *            the mass, 2 sqrt(moment), and the energy.
- * Tolerance  Half-axes 0.5 % at 50 dx per radius, 1 % at 25 (first order at the surface). Energy 1 %
- *            at 50, 3 % at 25: alpha = 0.02 acts as nu = 0.02 h c0/8, which takes
+ * Reference  The exact solution, integrated to 1e-12: data/particle_fluid/elliptic_drop.csv
+ *            (problem of Monaghan 1994): u = -A x, v = A y, A(0) = 1.
+ * Measured   A disc of 25 (50) dx per radius until A0 t = 0.76: half-axes from the second moments
+ *            of the mass, 2 sqrt(moment), and the energy.
+ * Tolerance  Half-axes 0.5 % at 50 dx per radius, 1 % at 25 (first order at the surface). Energy 1
+ *            % at 50, 3 % at 25: alpha = 0.02 acts as nu = 0.02 h c0/8, which takes
  *            2 mu A^2 per area and time, 1.8 % of the energy at 25.
  * BUILD modules=shape
  * TEST  ranks=1 */

@@ -1,8 +1,8 @@
-/* Claim      A dam break in three dimensions meets a block when it does in the experiment, and presses
- *            on it as it does there.
- * Reference  data/particle_fluid/kleefsman_p1.csv (J. Comput. Phys. 206 (2005) 363, SPHERIC test 2):
- *            tank 3.22 x 1 x 1 m, water 1.228 x 0.55 x 1 m, block 0.161 m high and long, 0.403 m
- *            wide, sensor on its face to the water, 0.021 m above the bed.
+/* Claim      A dam break in three dimensions meets a block when it does in the experiment, and
+ *            presses on it as it does there.
+ * Reference  data/particle_fluid/kleefsman_p1.csv (J. Comput. Phys. 206 (2005) 363, SPHERIC test
+ *            2): tank 3.22 x 1 x 1 m, water 1.228 x 0.55 x 1 m, block 0.161 m high and long, 0.403
+ *            m wide, sensor on its face to the water, 0.021 m above the bed.
  * Measured   11 (27) dx per depth, half of the tank with a free-slip wall in the middle plane;
  *            pressure on the lower part of the face, of 0.06 m (3 dx at 27) square, averaged over
  *            0.1 in t* = t sqrt(g/H). Arrival: first sample above 0.3.

@@ -4,8 +4,8 @@
  * Reference  Closed forms. The symbol of the gradient along x on a lattice,
  *            sum w sin(k x) x/(k m2) - 1, is summed here from the weight alone.
  * Measured   What a step of 1e-6 dx/c0 does to the density, over the step.
- * Tolerance  Linear: 1e-6, the round-off of a density near 1 that changes by 1e-9 in the step over that
- *            change. Symbol: 1 % of
+ * Tolerance  Linear: 1e-6, the round-off of a density near 1 that changes by 1e-9 in the step over
+ *            that change. Symbol: 1 % of
  *            itself. Order: the next term is (k dx)^2/10, a hundredth at 20 dx, over log 2. Sums:
  *            1e-13 of the sum of absolutes, round-off.
  * BUILD modules=shape

@@ -1,9 +1,9 @@
 /* Claim      Water in a tank that is shaken along x sloshes as potential flow says, until the wave
  *            is about to break; the walls' work is found again in the book.
- * Reference  data/particle_fluid/sloshing_potential_h0.5_T1.875.csv: fully nonlinear potential flow by
- *            an independent program (slosh_potential.py beside it), two resolutions of which agree
- *            to 0.6 mm. Tank 1.73 m, depth 0.5 m, x = 0.032 cos(2 pi t/1.875) m from rest (ULPH
- *            4.3); elevation 0.05 m from the left wall.
+ * Reference  data/particle_fluid/sloshing_potential_h0.5_T1.875.csv: fully nonlinear potential
+ *            flow by an independent program (slosh_potential.py beside it), two resolutions of
+ *            which agree to 0.6 mm. Tank 1.73 m, depth 0.5 m, x = 0.032 cos(2 pi t/1.875) m from
+ *            rest (ULPH 4.3); elevation 0.05 m from the left wall.
  * Measured   dx = 25 (5) mm, depth of the column (a hat of 0.05 m), every 0.02 s to 4.5 s.
  * Tolerance  3 mm, the largest difference, at 5 mm; at 25 mm the differences are reported (43 mm at
  *            the steepest troughs, 14 mm on average). Book: 1e-3 of the first energy.

@@ -1,12 +1,12 @@
-/* Claim      A small standing wave has the period of linear theory, and its energy falls as viscosity
- *            makes it fall.
+/* Claim      A small standing wave has the period of linear theory, and its energy falls as
+ *            viscosity makes it fall.
  * Reference  omega^2 = g k tanh(k h), energy ~ exp(-4 nu k^2 t) (data/particle_fluid/
  *            standing_wave.csv; free-slip floor).
  * Measured   Half a wave between two free-slip walls, h = L/2, 40 (80) dx per L, velocity of the
  *            potential flow and a flat surface at first. Period: between zeros of the elevation
- *            near a wall, over three periods. Decay, with no artificial viscosity, and nu so that the
- *            energy halves in five periods: what the book has for viscosity over 4 nu k^2 times the
- *            integral of the energy; and that of the elevation's scatter.
+ *            near a wall, over three periods. Decay, with no artificial viscosity, and nu so that
+ *            the energy halves in five periods: what the book has for viscosity over 4 nu k^2
+ *            times the integral of the energy; and that of the elevation's scatter.
  * Tolerance  Period 1 % at 40 dx per L; viscosity 5 %. The decay of the elevation is reported: the
  *            images in the walls and the diffusion take a share that falls with dx (26 % of the
  *            viscosity's at 40, 14 % at 80).
@@ -34,7 +34,8 @@ static void start(const double x[3], void *context, double v[3], double *p)
   *p = RHO * tank_g * (w->h - x[1]);
 }
 
-/* Zeros of the elevation near the left wall: the time between the first and the last of 7, over 3. */
+/* Zeros of the elevation near the left wall: the time between the first and the last of 7, over 3.
+ * */
 typedef struct {
   double period, rms[3]; /* of the elevation about its mean, over each period */
   double energy, taken; /* integral of the energy over three periods; what viscosity took in them */

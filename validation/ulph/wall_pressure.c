@@ -1,13 +1,13 @@
-/* Claim      A dam break meets the end wall when it does in the experiment, and presses on its foot as
- *            it does there.
- * Reference  data/particle_fluid/lobovsky_3mm.csv (Lobovsky et al., J. Fluids Struct. 48 (2014) 407):
- *            tank 1.61 m, column H = 0.3 m high and 2 H long, sensor 3 mm above the bed.
+/* Claim      A dam break meets the end wall when it does in the experiment, and presses on its
+ *            foot as it does there.
+ * Reference  data/particle_fluid/lobovsky_3mm.csv (Lobovsky et al., J. Fluids Struct. 48 (2014)
+ *            407): tank 1.61 m, column H = 0.3 m high and 2 H long, sensor 3 mm above the bed.
  * Measured   20 (60) dx per H, t* = t sqrt(g/H) to 4.3. Pressure on the patch of the wall within
  *            (10 mm or dx) of the bed, averaged over 0.05 in t*. Arrival: first sample above 0.1.
  * Tolerance  Arrival 2.43 within 0.05 at 60 dx, 0.15 at 20, where a sheet of one particle is the
- *            front; impulse from arrival to 3.5 within 15 %. Plateau at t* = 4: 0.6 +- 0.1 at 60 dx;
- *            at 20 it is reported. The peak scatters by 50 % between repetitions of the experiment
- *            and is not judged.
+ *            front; impulse from arrival to 3.5 within 15 %. Plateau at t* = 4: 0.6 +- 0.1 at 60
+ *            dx; at 20 it is reported. The peak scatters by 50 % between repetitions of the
+ *            experiment and is not judged.
  * BUILD modules=shape
  * TEST  ranks=1 */
 #include "tank.h"

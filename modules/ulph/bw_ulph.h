@@ -93,20 +93,20 @@ typedef struct {
  * since the start, negative where it takes. kinetic + potential + compression - first = sum of the
  * lines + gap; gap is the error of the time integration. */
 typedef struct {
-  double kinetic, potential, compression;
-  double first;      /* kinetic + potential + compression at the start */
-  double walls;      /* work of moving walls */
-  double viscous;    /* by mu */
-  double artificial; /* by alpha */
-  double diffusion;  /* by delta */
-  double tension;    /* by the difference form */
-  double shifting;
-  double ghosts; /* what extrapolated wall particles hold beyond a mirror image */
-  double gap;
+  double kinetic, potential, compression; /* energies now */
+  double first;                           /* kinetic + potential + compression at the start */
+  double walls;                           /* work of moving walls */
+  double viscous;                         /* by mu */
+  double artificial;                      /* by alpha and alpha_wall */
+  double diffusion;                       /* by delta */
+  double tension;                         /* by the difference form */
+  double shifting;             /* by the shifts, with the changes of rho and v that go with them */
+  double ghosts;               /* what extrapolated wall particles give beyond a mirror image */
+  double gap;                  /* what no line explains */
   double mass;                 /* [M] */
-  double momentum[3], spin[3]; /* and about the origin [M L/T], [M L^2/T] */
-  /* What has been given of both: by gravity, walls, difference form, shifting. */
-  double push[4][3], turn[4][3];
+  double momentum[3], spin[3]; /* now, and about the origin [M L/T], [M L^2/T] */
+  double push[4][3];           /* momentum given by gravity, walls, difference form, shifting */
+  double turn[4][3];           /* angular momentum given by the same */
 } bw_ulph_ledger;
 
 /* The defaults above. Local. */

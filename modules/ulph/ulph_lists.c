@@ -122,7 +122,8 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
     q->begin = *used;
     BW_TRY(collect(u, &u->fluid, &b, used));
     q->walls = *used;
-    BW_TRY(collect(u, &u->wall, &b, used));
+    /* A wall without fluid in reach shows nothing. */
+    if (kind == &u->fluid || q->walls > q->begin) BW_TRY(collect(u, &u->wall, &b, used));
     q->end = *used;
   }
   return BW_OK;

@@ -25,7 +25,7 @@ static const double GROWN = 1.5;    /* of a window over the one before */
 static const double TOO_MUCH = 20.0; /* load over what the stream's speed explains */
 static const double NOTHING = 1e-6;  /* of the stream's energy in the solid's volume */
 
-enum { MISSED, GIVEN, RECEIVED, CHANGE, PRODUCT, KINETIC, FORCE, AREA };
+enum { MISSED, GIVEN, RECEIVED, CHANGE, PRODUCT, KINETIC, FORCE, AREA, LATE };
 enum { BOOK, SWING, LOAD, KINDS };
 
 void bw_coupler__book_open(bw_coupler *c)
@@ -83,9 +83,13 @@ static void add_step(bw_coupler *c)
     sum[AREA] += c->area[q];
   }
   add_motion(c, sum);
-  for (int w = 0; w < BW_COUPLER__WINDOWS; w++)
+  for (int w = 0; w < BW_COUPLER__WINDOWS; w++) {
+    /* What of CHANGE belongs to the second half of the window tells whether it grows within it. */
+    const bool late = c->book.steps % LENGTH[w] >= LENGTH[w] / 2;
+    sum[LATE] = late ? sum[CHANGE] : 0.0;
     for (int q = 0; q < BW_COUPLER__BOOK_SUMS; q++)
       c->book.window[w].sum[q] += sum[q];
+  }
 }
 
 /* Largest component of the fluid's velocity. Collective. */
@@ -129,8 +133,10 @@ static verdict judge(bw_coupler *c, const double sum[], const double before[], d
   const double nothing = NOTHING * 0.5 * c->config.rho * U * U * solid;
   const double turned = fmax(fabs(sum[GIVEN]), held) + nothing, missed = fabs(sum[MISSED]);
   const bool known = before != NULL, stirred = sum[KINETIC] > steps * (STIRRED * held + nothing);
-  verdict v = {.open = missed > OPEN * turned && stirred};
-  v.wrong[BOOK] = known && missed > CLOSED * turned && missed > fabs(before[MISSED]);
+  /* A body that rings while it settles also misses work, but less and less of it. */
+  const bool rises = sum[LATE] > GROWN * (sum[CHANGE] - sum[LATE]);
+  verdict v = {.open = missed > OPEN * turned && stirred && rises};
+  v.wrong[BOOK] = known && stirred && missed > CLOSED * turned && missed > fabs(before[MISSED]);
   v.wrong[SWING] = known && stirred && sum[PRODUCT] < SWINGING * sum[CHANGE] &&
                    sum[CHANGE] > GROWN * before[CHANGE];
   v.wrong[LOAD] = known && sum[FORCE] > steps * load_explained(c, sum[AREA] / steps);

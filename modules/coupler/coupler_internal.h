@@ -11,7 +11,7 @@ typedef struct {
 } bw_coupler__work;
 
 /* What the book of the coupling sums over the steps of a window (book.c), of this rank. */
-enum { BW_COUPLER__WINDOWS = 2, BW_COUPLER__BOOK_SUMS = 8 };
+enum { BW_COUPLER__WINDOWS = 2, BW_COUPLER__BOOK_SUMS = 9 };
 typedef struct {
   double sum[BW_COUPLER__BOOK_SUMS];
   double last[BW_COUPLER__BOOK_SUMS]; /* of the window before, of all ranks */

@@ -14,6 +14,8 @@
  * Tolerance  block and cylinder: 5 %, bisections to 3 % each. At four times the step they hold
  *            up to 10 % lower than that, not explained: reported. Plate: none, as its g is that of
  *            the plate moved as a whole.
+ * Virtual    mass of 1, the default: the limit of the block with w = 1, reported. There the
+ *            recurrence has w E for w, E = (1 - exp(-m_v/m)) m/m_v, m_v of all of the surface.
  * Iterated   coupling is m a_n = -sum_k g_k a_{n-k}, which decays for every ratio with all these
  *            g (zeros of sum g_k z^-k inside the unit circle). A tenth of the fluid's density has
  *            to hold, every step within its residual; the plate by probes is reported: there a
@@ -130,6 +132,23 @@ static bw_status critical(const bw_comm *comm, const double g[MEMORY], block_set
 static const char *const body_name[] = {"block", "cylinder", "plate"};
 static const char *const name[] = {[BW_LOAD_PROBES] = "probes", [BW_LOAD_REACTION] = "reaction"};
 
+/* The limit with the virtual mass that coupling has by default. */
+static bw_status virtual_row(bw_validation *v, block_set_up b, double plain)
+{
+  double limit = NAN;
+  char text[128], extra[128];
+  b.virtual_mass = 1.0;
+  BW_TRY(critical(bw_validation_comm(v), NULL, b, &limit));
+  snprintf(text, sizeof text, "smallest density ratio with virtual mass over that without, %s, %s",
+           body_name[b.body], name[b.load]);
+  snprintf(extra, sizeof extra, "\"body\": \"%s\", \"load\": \"%s\", \"w\": %g, \"limit\": %.4g",
+           body_name[b.body], name[b.load], b.w, limit);
+  bw_validation_row(v, &(bw_claim){text, "critical_density_ratio_virtual_mass", limit / plain, 1.0,
+                                   INFINITY, BW_ANALYTIC, "virtual mass makes nothing less stable",
+                                   extra});
+  return BW_OK;
+}
+
 static bw_status explicit_row(bw_validation *v, const double g[MEMORY], const block_set_up *b,
                               double total)
 {
@@ -147,7 +166,7 @@ static bw_status explicit_row(bw_validation *v, const double g[MEMORY], const bl
   bw_validation_row(v, &(bw_claim){text, "critical_density_ratio", measured, predicted,
                                    b->body != A_PLATE && b->dt <= DT ? 0.05 : INFINITY, BW_ANALYTIC,
                                    "recurrence with the fluid's answer", extra});
-  return BW_OK;
+  return b->body == A_BLOCK && b->w == 1.0 ? virtual_row(v, *b, measured) : BW_OK;
 }
 
 /* A tenth of the fluid's density; --full: and the limit. */

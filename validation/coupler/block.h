@@ -23,7 +23,8 @@ typedef struct {
   block_body body;
   double ratio; /* density of the block over the fluid's */
   double w;     /* load relaxation */
-  double dt;    /* of the steps to come: says what is stiff */
+  double virtual_mass;
+  double dt; /* of the steps to come: says what is stiff */
   bw_coupler_load_kind load;
   double speed;
   int iterations; /* 0: explicit */
@@ -124,6 +125,7 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   c.nu = NU;
   c.load = b->load;
   c.load_relaxation = b->w;
+  c.virtual_mass = b->virtual_mass;
   c.count_work = true;
   c.walled[1][0] = b->body == A_PLATE;
   if (b->iterations > 0) {

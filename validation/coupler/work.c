@@ -40,7 +40,10 @@ static bw_status brake(const bw_comm *comm, bw_coupler_load_kind load, double dt
   bw_solid_ledger e = {.external = NAN}, e0 = e;
   *a = (account){0};
   bw_status st = block_create(
-      comm, &(block_set_up){.ratio = 20.0, .w = w, .dt = DT, .load = load, .speed = 1.0}, &s);
+      comm,
+      &(block_set_up){
+          .ratio = 20.0, .w = w, .virtual_mass = 1.0, .dt = DT, .load = load, .speed = 1.0},
+      &s);
   a->substeps = st == BW_OK ? bw_coupler_substeps(s.coupler, dt) : 0;
   for (int n = 1; st == BW_OK && n <= end; n++) {
     st = bw_coupler_step(s.coupler, dt);

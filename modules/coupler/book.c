@@ -22,6 +22,7 @@ static const double SWINGING = -0.8; /* correlation of successive changes of the
                                         it changes its sign every step, -0.5 of noise */
 static const double STIRRED = 1e-3; /* kinetic energy over the energy held, from which it matters */
 static const double GROWN = 1.5;    /* of a window over the one before */
+static const double FALLING = 0.9;  /* a window below this of the one before */
 static const double TOO_MUCH = 20.0; /* load over what the stream's speed explains */
 static const double NOTHING = 1e-6;  /* of the stream's energy in the solid's volume */
 
@@ -139,7 +140,9 @@ static verdict judge(bw_coupler *c, const double sum[], const double before[], d
   v.wrong[BOOK] = known && stirred && missed > CLOSED * turned && missed > fabs(before[MISSED]);
   v.wrong[SWING] = known && stirred && sum[PRODUCT] < SWINGING * sum[CHANGE] &&
                    sum[CHANGE] > GROWN * before[CHANGE];
-  v.wrong[LOAD] = known && sum[FORCE] > steps * load_explained(c, sum[AREA] / steps);
+  /* What falls is a start, or a body that settles. */
+  v.wrong[LOAD] = known && sum[FORCE] > FALLING * before[FORCE] &&
+                  sum[FORCE] > steps * load_explained(c, sum[AREA] / steps);
   return v;
 }
 

@@ -11,11 +11,11 @@ typedef struct {
 } bw_coupler__work;
 
 /* What the book of the coupling sums over the steps of a window (book.c), of this rank. */
-enum { BW_COUPLER__WINDOWS = 2, BW_COUPLER__BOOK_SUMS = 9 };
+enum { BW_COUPLER__WINDOWS = 2, BW_COUPLER__BOOK_SUMS = 7 };
 typedef struct {
   double sum[BW_COUPLER__BOOK_SUMS];
   double last[BW_COUPLER__BOOK_SUMS]; /* of the window before, of all ranks */
-  int strikes[3]; /* windows in a row of each kind: book, swing, load; -1: nothing seen yet */
+  int strikes[2];                     /* windows in a row that look wrong: the book, the swing */
 } bw_coupler__window;
 typedef struct {
   bw_coupler__window window[BW_COUPLER__WINDOWS];

@@ -70,6 +70,7 @@ bw_status bending_sample(bending_run *p, bending_measure *m)
                                                         (double)m->blocked,
                                                         m->report.leak};
   bw_coupler_warn_slip(p->flow.coupler, &m->report, bw_case_log(p->run));
+  bw_coupler_warn_load(p->flow.coupler, &m->report, bw_case_log(p->run));
   bw_history_append(p->history, row);
   return BW_OK;
 }

@@ -240,6 +240,7 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_LEAK] = r.leak;
   bw_coupler_warn_slip(p->coupler, &r, bw_case_log(p->run));
+  bw_coupler_warn_load(p->coupler, &r, bw_case_log(p->run));
   row[COL_BLOCKED] = (double)r.probes_blocked;
   row[COL_GIVEN] = r.work_given;
   row[COL_LATE] = r.work_late;

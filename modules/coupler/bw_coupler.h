@@ -207,6 +207,11 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHEC
  * The same on all ranks. Local. */
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log);
 
+/* One warning on `log` where probes load what they do not suit: a solid that nothing holds, which
+ * then falls too fast, or a surface on which more than a third of them are shortened, crowded or
+ * blocked. r is the report of bw_coupler_measure. Collective. */
+void bw_coupler_warn_load(bw_coupler *c, const bw_coupler_report *r, bw_log *log);
+
 /* Parts of a step whose time is measured. */
 typedef enum {
   BW_PART_MOMENTUM, /* predict, correction, halos */

@@ -126,6 +126,7 @@ struct bw_coupler {
   int64_t steps;  /* since create */
   size_t handed;  /* markers that this rank has handed over */
   int slip_above; /* reports in a row with much slip; -1: it was said */
+  bool load_told; /* bw_coupler_warn_load has looked */
 };
 
 /* Everything with a row per particle anew, after the set of particles changed. Collective. */

@@ -77,6 +77,29 @@ void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log
               100.0 * r->slip, 100.0 * r->leak);
 }
 
+void bw_coupler_warn_load(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
+{
+  static const double MANY =
+      1.0 / 3.0; /* of the probes: what they miss is then told by the forces */
+  const uint8_t *kind = bw_solid_kind(c->solid);
+  double count[2] = {0.0, (double)c->n_surface}; /* held particles, probes */
+  if (c->load_told || c->held || c->config.load != BW_LOAD_PROBES) return;
+  c->load_told = true;
+  for (size_t i = 0; i < c->n; i++)
+    count[0] += (kind[i] & BW_PD_PRESCRIBED) != 0;
+  bw_comm_sum(bw_solid_comm(c->solid), 2, count);
+  if (count[0] == 0.0)
+    bw_log_warn(log,
+                "nothing holds the solid, and probes load it: free bodies then move by a fifth "
+                "too fast; take coupling.load: reaction");
+  const double missed = (double)(r->probes_shortened + r->probes_blocked);
+  if (missed > MANY * count[1])
+    bw_log_warn(log,
+                "%.0f %% of the probes have no room of coupling.probe_length = %g cells: what they "
+                "load is too little; take coupling.load: reaction, or more cells in the gaps",
+                100.0 * missed / count[1], c->config.probe_length);
+}
+
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));

@@ -18,6 +18,7 @@ static const bw_config_word load_words[] = {
 #define V    BW_CONFIG_VALUE
 #define WORD BW_CONFIG_WORD
 #define OURS bw_coupler_config
+/* What a run that was stopped for its coupling is told to change may change with --restart. */
 const bw_config_field bw_coupler_fields[] = {
     WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "delta kernel of the forcing"),
     V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
@@ -33,14 +34,14 @@ const bw_config_field bw_coupler_fields[] = {
     WORD(OURS, probe_profile, BW_OPTIONAL, profile_words,
          "how the velocity is taken to vary along a probe"),
     WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
-    V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+    V(OURS, load_relaxation, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "share of the new fluid load in each step; 1: plain explicit coupling"),
-    V(OURS, virtual_mass, BW_OPTIONAL, BW_FROM_TO(0, 100), "",
+    V(OURS, virtual_mass, BW_OPTIONAL | BW_MAY_CHANGE, BW_FROM_TO(0, 100), "",
       "virtual mass of the surface, over load_relaxation x density x area x cell, which keeps "
       "motions faster than the step from being fed; 0: none"),
-    V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",
+    V(OURS, coupling_iterations, BW_OPTIONAL | BW_MAY_CHANGE, BW_FROM_TO(1, 1000), "",
       "repetitions of a step at most; 1: explicit coupling"),
-    V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",
+    V(OURS, coupling_residual, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "",
       "relative change of the surface's velocity that ends the repetitions"),
     V(OURS, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "solid sub-step over its stability limit"),

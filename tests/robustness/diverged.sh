@@ -15,6 +15,6 @@ cat "$out/run.txt"
 [ $code -eq 5 ] || [ $code -eq 6 ] || { echo "FAIL: exit code $code"; exit 1; }
 grep -qE 'error: step [0-9]+ \(deformation\): .*checkpoint-good.h5' "$out/run.txt" ||
   { echo "FAIL: no step, cause and file"; exit 1; }
-# With the relaxed load it goes on from there.
+# With the relaxed load and virtual mass it goes on from there.
 mpirun -n 1 "$program" "$case" --out "$out/again" --quiet --restart "$out/run/checkpoint-good.h5" \
-  --set deformation.steps=20 --set deformation.time_step=2.0e-5 --set breakage.steps=0 || { echo "FAIL: cannot go on"; exit 1; }
+  --set solid.density=1000 --set deformation.steps=20 --set deformation.time_step=2.0e-5 --set breakage.steps=0 || { echo "FAIL: cannot go on"; exit 1; }

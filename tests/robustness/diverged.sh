@@ -17,4 +17,4 @@ grep -qE 'error: step [0-9]+ \(deformation\): .*checkpoint-good.h5' "$out/run.tx
   { echo "FAIL: no step, cause and file"; exit 1; }
 # With the relaxed load and virtual mass it goes on from there.
 mpirun -n 1 "$program" "$case" --out "$out/again" --quiet --restart "$out/run/checkpoint-good.h5" \
-  --set solid.density=1000 --set deformation.steps=20 --set deformation.time_step=2.0e-5 --set breakage.steps=0 || { echo "FAIL: cannot go on"; exit 1; }
+  --set solid.density=1000 --set deformation.steps=200 --set deformation.time_step=2.0e-5 --set breakage.steps=0 || { echo "FAIL: cannot go on"; exit 1; }

@@ -5,6 +5,7 @@
 #include "bw_history.h"
 #include "bw_memory.h"
 
+#include <errno.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -208,6 +209,8 @@ START_TEST(a_full_disk)
   ck_assert_int_eq(bw_history_rows(h), speaks() ? 2 : 0);
   bw_check_status(bw_history_sync(comm, h), BW_EIO);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), history_path));
+  /* The system's own reason. */
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), strerror(EFBIG)));
   bw_check_status(bw_history_close(comm, &h), BW_EIO);
   h = open_history_of(0.1, 2);
   bw_check_ok(bw_history_close(comm, &h));

@@ -182,10 +182,18 @@ START_TEST(steps_beyond_the_limit_are_refused)
   bw_check_ok(bw_solid_step(pd, limit));
   bw_solid_set_damping(pd, 1, 0.1, 0.2);
   ck_assert_double_lt(bw_solid_dt_max(pd), limit);
+  /* A rate of damping as large as the frequency: Verlet with lagged damping ends at
+   * w^2 dt^2 + 2 g dt = 4, RK3's triangle at w dt/sqrt(3) + g dt/2.5127 = 1. */
+  const double w = 2 / limit, rho = c.rho;
+  bw_solid_set_damping(pd, 0, 0, w * rho);
+  const double damped = bw_solid_dt_max(pd) * w;
+  bw_check_near(damped * damped + 2 * damped, 4, 1e-12);
   bw_solid_destroy(&pd);
   c.integrator = BW_SOLID_RK3;
   pd = pd_make(bw_check_world(), &c, &body);
   bw_check_near(bw_solid_dt_max(pd) / limit, sqrt(3.0) / 2, 1e-12); /* ERRATA 6 */
+  bw_solid_set_damping(pd, 0, 0, w * rho);
+  bw_check_near(bw_solid_dt_max(pd) * w * (1 / sqrt(3.0) + 1 / 2.5127453), 1, 2e-3);
   bw_solid_destroy(&pd);
   pd_body_release(&body);
 }

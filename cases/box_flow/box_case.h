@@ -85,6 +85,9 @@ typedef struct {
 } box_run;
 
 /* box_run.c. All collective. */
+/* The grid with its faces to be looked at, nothing on it; the caller's (bw_grid_destroy). */
+bw_status box_plan(const box_run *b, const bw_comm *comm, const bw_grid_config *grid,
+                   bw_grid **plan) BW_MUST_CHECK;
 bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
                      const bw_ns_channel_config *fluid) BW_MUST_CHECK;
 void box_destroy(box_run *b);                        /* half-built objects, too */
@@ -96,7 +99,10 @@ bw_status box_restart(box_run *b, const char *path) BW_MUST_CHECK; /* goes on fr
 bw_status box_checkpoint(box_run *b) BW_MUST_CHECK;                /* checkpoint.h5 */
 
 /* box_output.c. All collective. */
-void box_describe(box_run *b); /* sizes, sides, steps, to the log */
+/* Sizes, sides, steps and memory to the log, from the grid as it would be built; a step that cannot
+ * be stable is refused. Takes no memory for fields. */
+bw_status box_describe(const box_run *b, const bw_grid *plan,
+                       const bw_ns_channel_config *fluid) BW_MUST_CHECK;
 /* Creates history.csv, or goes on with it from the checkpoint that was read. */
 bw_status box_open_history(box_run *b) BW_MUST_CHECK;
 void box_sample(box_run *b);                     /* a row of it */

@@ -57,6 +57,17 @@ static bw_status run_to_end(box_run *b)
   return bw_case_unfinished(b->run, "checkpoint.h5");
 }
 
+/* What will run, and whether it can. */
+static bw_status describe(const box_run *b, const bw_comm *comm, const bw_grid_config *grid,
+                          const bw_ns_channel_config *fluid)
+{
+  bw_grid *plan = NULL;
+  bw_status st = box_plan(b, comm, grid, &plan);
+  BW_THEN(st, box_describe(b, plan, fluid));
+  bw_grid_destroy(&plan);
+  return st;
+}
+
 static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
 {
   const bw_case_args *args = bw_case_args_of(b->run);
@@ -64,11 +75,11 @@ static bw_status run_case(box_run *b, const bw_comm *comm, box_config *config)
   bw_ns_channel_config fluid;
   /* All contradictions are found before anything exists. */
   BW_TRY(box_resolve(config, &grid, &fluid));
+  BW_TRY(describe(b, comm, &grid, &fluid));
+  /* --check ends here: nothing was built. */
+  if (args->check) return BW_OK;
   BW_TRY(box_create(b, comm, &grid, &fluid));
   BW_TRY(box_start_field(b));
-  box_describe(b);
-  /* --check ends here: built, described, not run. */
-  if (args->check) return BW_OK;
   if (args->restart != NULL) {
     BW_TRY(box_restart(b, args->restart));
     BW_TRY(bw_case_check_end(b->run, "time.end", config->time.end, bw_ns_channel_time(b->fluid)));

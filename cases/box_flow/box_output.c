@@ -26,19 +26,38 @@ static void describe_side(const box_run *b, int d, int s)
   bw_log_info(bw_case_log(b->run), "  %c %s: %s%s", axis[d], end_name[s], words[side->kind], more);
 }
 
-void box_describe(box_run *b)
+/* The step at the start: that of the fluid at rest, shortened by the speeds of `start`. */
+static double first_step(const box_config *c, const bw_grid_view *g, double at_rest)
+{
+  static const double convective = 1.7320508; /* of bw_ns_channel_dt_max */
+  double rate = 0.0;
+  for (int d = 0; d < (g->n[2] == 1 ? 2 : 3); d++)
+    rate += fabs(c->start.velocity[d]) / g->spacing[d];
+  for (int q = 0; q < c->start.n_vortices; q++)
+    rate += fabs(c->start.vortices[q].swirl) / fmin(g->spacing[0], g->spacing[1]);
+  return 1.0 / sqrt(1.0 / (at_rest * at_rest) + rate * rate / (convective * convective));
+}
+
+bw_status box_describe(const box_run *b, const bw_grid *plan, const bw_ns_channel_config *fluid)
 {
   bw_log *log = bw_case_log(b->run);
-  const bw_grid_view *g = bw_grid_look(b->grid);
-  const double cells = (double)g->n[0] * g->n[1] * g->n[2];
-  const double limit = bw_ns_channel_dt_max(b->fluid);
-  /* The step at the start, at the speed of walls and inflows; later ones follow the field. */
+  const bw_grid_view *g = bw_grid_look(plan);
   const box_time *time = &b->config->time;
+  bw_ns_plan known;
+  BW_TRY(bw_ns_channel_plan(plan, fluid, &known));
+  BW_REQUIRE(isnan(time->step) || time->step <= known.dt_max * (1.0 + 1e-12), BW_EINPUT,
+             "time.step = %g is over the limit at rest, with the speed of walls and inflows, %.4g; "
+             "take a shorter step, or leave it out",
+             time->step, known.dt_max);
+  /* Later steps follow the field. */
+  const double limit = first_step(b->config, g, known.dt_max);
   const double longest = isnan(time->step) ? time->limit_share * limit : time->step;
   /* Each interval between rows takes whole steps. */
-  const double each = ceil(b->config->output.sample_every / longest * (1.0 - 1e-12));
-  const double dt = b->config->output.sample_every / each;
+  const double every = b->config->output.sample_every;
+  const double each = fmax(1.0, ceil(every / longest * (1.0 - 1e-12))), dt = every / each;
   const double steps = each * (double)box_intervals(b->config);
+  const double cells = (double)g->n[0] * g->n[1] * g->n[2];
+  const int ranks = bw_comm_size(bw_grid_comm(plan));
   bw_log_info(log, "%d x %d x %d cells of %g x %g x %g, %s", g->n[0], g->n[1], g->n[2],
               g->spacing[0], g->spacing[1], g->spacing[2],
               g->n[2] == 1 ? "two-dimensional" : "three-dimensional");
@@ -51,10 +70,10 @@ void box_describe(box_run *b)
   /* 30 ns per cell and sub-step: one core of a server, in between 2D and 3D */
   bw_log_info(log,
               "largest stable step at the start, walls and inflows counted, %.3g, this run's %.3g: "
-              "about %.0f steps, more where the flow gets faster, %.2g s on one core\n"
-              "fields %.1f MB on this rank",
-              limit, dt, steps, steps * cells * 3.0 * 30e-9,
-              (double)bw_ns_channel_cost(b->fluid).bytes / 1e6);
+              "about %.0f steps, more where the flow gets faster, %.2g s on one core",
+              limit, dt, steps, steps * cells * 3.0 * 30e-9);
+  bw_log_info(log, "memory: about %.3g MiB for each of %d ranks", known.bytes / 1048576.0, ranks);
+  return BW_OK;
 }
 
 /* ---- history.csv: fixed columns, then those of the sides that have something to say ---- */

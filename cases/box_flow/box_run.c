@@ -6,20 +6,34 @@
 
 #include <math.h>
 
-bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
-                     const bw_ns_channel_config *fluid)
+typedef bw_status grid_maker(const bw_comm *, const bw_grid_config *, bw_grid **);
+
+/* A grid made by `make`. A table of faces takes the place of the stretching. */
+static bw_status make_grid(const box_run *b, const bw_comm *comm, const bw_grid_config *grid,
+                           grid_maker *make, bw_grid **out)
 {
   const char *path = b->config->domain.faces;
   bw_grid_config g = *grid;
   double *faces = NULL;
-  /* A table of faces takes the place of the stretching. */
   if (path[0] != 0) {
     BW_TRY(bw_grid_read_table(comm, path, g.n[1], g.length[1], &faces));
     g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
   }
-  const bw_status st = bw_grid_create(comm, &g, &b->grid);
+  const bw_status st = make(comm, &g, out);
   bw_release(&faces);
-  BW_TRY(st);
+  return st;
+}
+
+bw_status box_plan(const box_run *b, const bw_comm *comm, const bw_grid_config *grid,
+                   bw_grid **plan)
+{
+  return make_grid(b, comm, grid, bw_grid_plan, plan);
+}
+
+bw_status box_create(box_run *b, const bw_comm *comm, const bw_grid_config *grid,
+                     const bw_ns_channel_config *fluid)
+{
+  BW_TRY(make_grid(b, comm, grid, bw_grid_create, &b->grid));
   return bw_ns_channel_create(b->grid, fluid, &b->fluid);
 }
 

@@ -39,7 +39,8 @@ channel_case channel_case_default(void);       /* required values NaN or INT_MIN
 channel_config channel_config_of(const channel_case *c);
 
 /* channel_output.c: sizes and times of what will run. Local. */
-void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log);
+void channel_describe(const bw_grid *plan, const bw_ns_plan *known, const channel_case *c,
+                      bw_log *log);
 /* Creates history.csv, or goes on with it from the checkpoint that was read. Collective. */
 bw_status channel_open_history(const channel_flow *f, const bw_case *run,
                                bw_history **out) BW_MUST_CHECK;

@@ -121,12 +121,18 @@ static inline bw_status channel_symmetric(const bw_grid_view *g, const char *fac
   return BW_OK;
 }
 
-static inline bw_status channel_grid(const bw_comm *comm, const channel_config *q, bw_grid **grid)
+typedef bw_status channel_grid_maker(const bw_comm *, const bw_grid_config *, bw_grid **);
+
+/* The grid, made by `make`: bw_grid_create, or bw_grid_plan to look at it. */
+static inline bw_status channel_grid(const bw_comm *comm, const channel_config *q,
+                                     channel_grid_maker *make, bw_grid **grid)
 {
   double *faces = NULL;
   bw_grid_config g = bw_grid_config_default();
   for (int d = 0; d < 3; d++)
     g.n[d] = q->cells[d], g.length[d] = q->length[d], g.periodic[d] = d != 1;
+  BW_REQUIRE(q->length[1] == 1.0, BW_EINPUT,
+             "channel: the height is %g, but h is the unit of length; give 1", q->length[1]);
   BW_REQUIRE(
       q->stretch == 0.0 || q->faces == NULL, BW_EINPUT,
       "domain.stretch = %g and domain.faces = %s both say where the faces in y are; give one",
@@ -137,11 +143,26 @@ static inline bw_status channel_grid(const bw_comm *comm, const channel_config *
     BW_TRY(bw_grid_read_table(comm, q->faces, g.n[1], g.length[1], &faces));
     g.y_stretch = BW_STRETCH_TABLE, g.y_table = faces;
   }
-  bw_status st = bw_grid_create(comm, &g, grid);
+  bw_status st = make(comm, &g, grid);
   /* Both halves are averaged, so they must be alike. */
   if (faces != NULL) BW_THEN(st, channel_symmetric(bw_grid_look(*grid), q->faces));
   bw_release(&faces);
   return st;
+}
+
+/* What flows: walls in y by default, U_b = 1 by definition. Local. */
+static inline bw_ns_channel_config channel_fluid_of(const channel_config *config)
+{
+  bw_ns_channel_config c = bw_ns_channel_config_default();
+  for (int s = 0; s < 2; s++)
+    c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
+  c.nu = 1.0 / config->reynolds;
+  c.viscous = (bw_ns_viscous)config->viscous;
+  c.eddy = (bw_ns_eddy)config->eddy;
+  /* The gradient follows, and with it Re_tau. */
+  c.forcing = BW_FORCING_FLOW_RATE;
+  c.forcing_value = 1.0;
+  return c;
 }
 
 /* All objects; the fluid is at rest. `config` is borrowed until destroy. */
@@ -149,19 +170,8 @@ static inline bw_status channel_create(const bw_comm *comm, const channel_config
                                        channel_flow *f)
 {
   *f = (channel_flow){.config = config};
-  BW_REQUIRE(config->length[1] == 1.0, BW_EINPUT,
-             "channel: the height is %g, but h is the unit of length; give 1", config->length[1]);
-  BW_TRY(channel_grid(comm, config, &f->grid));
-  /* Walls in y are the default. */
-  bw_ns_channel_config c = bw_ns_channel_config_default();
-  for (int s = 0; s < 2; s++)
-    c.side[0][s].kind = c.side[2][s].kind = BW_SIDE_PERIODIC;
-  c.nu = 1.0 / config->reynolds;
-  c.viscous = (bw_ns_viscous)config->viscous;
-  c.eddy = (bw_ns_eddy)config->eddy;
-  /* U_b = 1 by definition: the gradient follows, and with it Re_tau. */
-  c.forcing = BW_FORCING_FLOW_RATE;
-  c.forcing_value = 1.0;
+  BW_TRY(channel_grid(comm, config, bw_grid_create, &f->grid));
+  const bw_ns_channel_config c = channel_fluid_of(config);
   BW_TRY(bw_ns_channel_create(f->grid, &c, &f->fluid));
   BW_TRY(bw_ns_statistics_create(f->fluid, &f->statistics));
   /* Correlations and spectra at five heights of both halves. */

@@ -4,9 +4,10 @@
 
 #include <stdio.h>
 
-void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log)
+void channel_describe(const bw_grid *plan, const bw_ns_plan *known, const channel_case *c,
+                      bw_log *log)
 {
-  const bw_grid_view *g = bw_grid_look(f->grid);
+  const bw_grid_view *g = bw_grid_look(plan);
   /* wall units of the expected Re_tau = 0.09 Re_b^0.88 (Pope 2000, eq. 7.54, with Re_b on h) */
   const double re_tau = 0.09 * pow(c->fluid.reynolds, 0.88), plus = 2.0 * re_tau;
   bw_log_info(log,
@@ -15,6 +16,10 @@ void channel_describe(const channel_flow *f, const channel_case *c, bw_log *log)
               c->fluid.reynolds, g->n[0], g->n[1], g->n[2], re_tau, g->spacing[0] * plus,
               g->spacing[1] * plus, g->spacing[2] * plus, c->time.spin_up, c->time.statistics,
               c->time.interval);
+  bw_log_info(log,
+              "largest stable step of the bulk flow %.3g h/U_b; memory: about %.3g MiB for each "
+              "of %d ranks",
+              known->dt_max, known->bytes / 1048576.0, bw_comm_size(bw_grid_comm(plan)));
 }
 
 bw_status channel_open_history(const channel_flow *f, const bw_case *run, bw_history **out)

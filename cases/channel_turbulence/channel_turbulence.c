@@ -79,6 +79,20 @@ static bw_status check_times(const channel_case *c)
   return BW_OK;
 }
 
+/* What will run, and whether it can; no memory for fields. */
+static bw_status describe(const bw_comm *comm, const channel_config *config, const channel_case *c,
+                          const bw_case *run)
+{
+  const bw_ns_channel_config fluid = channel_fluid_of(config);
+  bw_grid *plan = NULL;
+  bw_ns_plan known;
+  bw_status st = channel_grid(comm, config, bw_grid_plan, &plan);
+  BW_THEN(st, bw_ns_channel_plan(plan, &fluid, &known));
+  if (st == BW_OK) channel_describe(plan, &known, c, bw_case_log(run));
+  bw_grid_destroy(&plan);
+  return st;
+}
+
 static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
 {
   const channel_case *c = context;
@@ -86,11 +100,12 @@ static bw_status simulate(const bw_comm *comm, void *context, bw_case *run)
   const channel_config config = channel_config_of(c);
   bw_history *history = NULL;
   channel_flow f = {0};
-  bw_status st = check_times(c);
-  BW_THEN(st, channel_create(comm, &config, &f));
-  if (st == BW_OK) channel_describe(&f, c, bw_case_log(run));
-  /* --check has built and described everything, and ends. */
-  if (st == BW_OK && !args->check) {
+  BW_TRY(check_times(c));
+  BW_TRY(describe(comm, &config, c, run));
+  /* --check ends here: nothing was built. */
+  if (args->check) return BW_OK;
+  bw_status st = channel_create(comm, &config, &f);
+  if (st == BW_OK) {
     bw_stop_install();
     st = args->restart != NULL ? channel_load(&f, args->restart) : channel_start(&f);
     f.run = run;

@@ -34,4 +34,7 @@ big plate_in_stream 9000 bending_plate cases/bending_plate/bending_plate.yaml \
   --set time.step=1e-6
 big branching 300000 crack_branching cases/crack_branching/crack_branching.yaml \
   --set shape.particles=60000 --set time.step=4e-10
+big box 40000 box_flow cases/box_flow/duct.yaml --set "domain.cells=[1024, 1024, 1024]"
+big channel 40000 channel_turbulence cases/channel_turbulence/channel_turbulence.yaml \
+  --set "domain.cells=[1024, 1024, 1024]"
 exit $failed

@@ -136,6 +136,7 @@ void fuzz_mask(bw_status st, bw_shape_mask **mask, const uint8_t *data, size_t s
     if (size > 0) cut(m, data, size);
     st = bw_shape_mask_hold(m, m->size[2] / 2, 1);
     if (st == BW_OK) st = bw_shape_mask_hold(m, 0, m->size[2]);
+    if (st == BW_OK && (m->first != 0 || m->held != m->size[2])) abort();
   }
   bw_shape_mask_destroy(mask);
 }

@@ -78,7 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if ((st == BW_OK) != (ck != NULL) || (st != BW_OK && bw_last_message()[0] == 0)) abort();
   if (st == BW_OK) {
     read_all(ck, grid);
-    st = bw_checkpoint_close(&ck);
+    if (bw_checkpoint_close(&ck) != BW_OK || ck != NULL) abort();
   }
   return 0;
 }

@@ -84,20 +84,7 @@ static bw_status check_law(const bw_scene_material *m)
   BW_REQUIRE(bw_solid_law_by_name(m->law) != NULL, BW_EINPUT,
              "materials.%s.law = %s: not in this build; this build has: %s", m->name, m->law,
              known);
-  /* Keys that the law does not read must not look as if they did something. */
-  const double numbers[] = {m->cohesion, m->friction_angle, m->dilation_angle, m->yield_stress,
-                            m->hardening};
-  static const char *const keys[] = {"cohesion", "friction_angle", "dilation_angle", "yield_stress",
-                                     "hardening"};
-  BW_REQUIRE(m->plastic[0] == '\0', BW_EINPUT,
-             "materials.%s.plastic = %s: not in this build; leave it out", m->name, m->plastic);
-  BW_REQUIRE(m->elastic[0] == '\0', BW_EINPUT,
-             "materials.%s.elastic = %s: not in this build; leave it out", m->name, m->elastic);
-  for (int q = 0; q < 5; q++)
-    BW_REQUIRE(isnan(numbers[q]), BW_EINPUT,
-               "materials.%s.%s = %g: plastic laws are not in this build; leave it out", m->name,
-               keys[q], numbers[q]);
-  return BW_OK;
+  return bw_scene__check_state(m);
 }
 
 bw_status bw_scene__check_materials(const bw_scene_config *c)

@@ -10,6 +10,9 @@ bw_status bw_scene__check_loads(const bw_scene_config *c) BW_MUST_CHECK;  /* and
 bw_status bw_scene__check_phases(const bw_scene_config *c) BW_MUST_CHECK; /* and output */
 bw_status bw_scene__check_gauges(const bw_scene_config *c) BW_MUST_CHECK; /* and watch */
 
+/* Keys of state-based laws: those that the law of a material reads, and all that it needs. */
+bw_status bw_scene__check_state(const bw_scene_material *m) BW_MUST_CHECK;
+
 /* Does the scene have a fluid on a grid? */
 bool bw_scene__has_fluid(const bw_scene_config *c);
 /* Does the body deform? */

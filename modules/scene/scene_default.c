@@ -60,7 +60,7 @@ static void default_numerics(bw_scene_numerics *n)
                            .horizon_ratio = NAN,
                            .surface_correction = INT_MIN,
                            .volume_fraction = BW_PD_FRACTION_DEFAULT,
-                           .family_reach = BW_PD_REACH_HALF_CELL,
+                           .family_reach = INT_MIN,
                            .viscous = BW_VISCOUS_EXPLICIT,
                            .load = BW_LOAD_PROBES,
                            .forcing_iterations = INT_MIN,
@@ -117,7 +117,7 @@ static const knob knobs[] = {
     {D(horizon_ratio), OF_SOLIDS, {3.0, 3.0, 3.0}},
     {I(surface_correction),
      OF_SOLIDS,
-     {BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_TENSOR}},
+     {BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR}},
     {I(forcing_iterations), OF_MARKERS, {1, 1, 2}},
     {D(memory), OF_MARKERS, {0.2, 0.2, 0.2}},
     {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},
@@ -144,8 +144,26 @@ static void set_knob(const knob *k, int accuracy, bw_scene_numerics *n, unsigned
   n->set |= bit;
 }
 
+/* Families: within the horizon and half a cell; of the correspondence law, where nothing breaks,
+ * the nearest neighbours alone, which are the most accurate (bw_pd_state_law.h). */
+static void set_families(bw_scene_config *c)
+{
+  bool nearest = c->n_materials > 0;
+  for (int q = 0; q < c->n_materials; q++)
+    nearest = nearest && strcmp(c->materials[q].law, "correspondence") == 0;
+  for (int b = 0; b < c->n_bodies; b++)
+    nearest = nearest && c->bodies[b].motion != BW_SCENE_BREAKABLE;
+  bw_scene_numerics *n = &c->numerics;
+  if (nearest && isnan(n->horizon_ratio) && n->family_reach == INT_MIN) {
+    n->horizon_ratio = 1.5;
+    n->family_reach = BW_PD_REACH_HORIZON;
+  }
+  if (n->family_reach == INT_MIN) n->family_reach = BW_PD_REACH_HALF_CELL;
+}
+
 void bw_scene_resolve(bw_scene_config *c)
 {
+  set_families(c);
   for (int q = 0; q < KNOBS; q++)
     set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);
   const bool flat = c->has_domain && c->domain.cells[2] == 1;

@@ -1,6 +1,7 @@
 /* scene_impl.h -- the objects of a scene; shared inside `scene` only. */
 #pragma once
 #include "bw_coupler.h"
+#include "bw_pd_state_law.h"
 #include "bw_scene.h"
 #include "bw_solid_assembly.h"
 #include "bw_solid_load.h"
@@ -105,6 +106,13 @@ bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__solids_destroy(bw_scene *s);
 /* Body of an own particle. */
 int bw_scene__body_of(const bw_scene__solid *q, size_t i);
+/* scene_law.c: what the law of a solid is asked for; NULL: nothing. BW_EINPUT where its materials
+ * ask for what one solid cannot have. Local. */
+typedef struct {
+  bw_pd_state_correspondence_options correspondence;
+} bw_scene__options;
+bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
+                                bw_scene__options *room, const void **options) BW_MUST_CHECK;
 /* scene_sites.c: the sites of all bodies of a solid. */
 typedef struct {
   int64_t n;

@@ -275,12 +275,14 @@ static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
 static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
 {
   bw_solid_config c;
+  bw_scene__options room;
   bw_scene__sites sites = {0};
   settings_of(s, q, &c);
   BW_TRY(lattice_of(s, q, &c));
   /* Groups are numbered while sites are filled; materials follow them. */
   bw_status st = bw_scene__sites_make(s, q, &c, &sites);
   BW_THEN(st, materials_of(s, q, &c));
+  BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
   BW_THEN(st,
           bw_solid_create(s->comm, &c, &(bw_pd_sites){sites.n, sites.site, sites.kind, sites.group},
                           &q->solid));

@@ -1,0 +1,113 @@
+/* Materials of state-based laws: their words, and what a law is asked for. */
+#include "scene_impl.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The energies of the correspondence law, by the words of `elastic`. */
+static const bw_config_word elastic_words[] = {{"linear", BW_PD_MATERIAL_LINEAR, NULL},
+                                               {"saint_venant", BW_PD_MATERIAL_SAINT_VENANT, NULL},
+                                               {"neo_hookean", BW_PD_MATERIAL_NEO_HOOKEAN, NULL},
+                                               {"hencky", BW_PD_MATERIAL_HENCKY, NULL},
+                                               {NULL, 0, NULL}};
+
+static bool find_elastic(const char *word, bw_pd_material_elastic *out)
+{
+  for (const bw_config_word *w = elastic_words; w->word != NULL; w++)
+    if (strcmp(w->word, word) == 0) {
+      *out = (bw_pd_material_elastic)w->value;
+      return true;
+    }
+  return false;
+}
+
+enum { NUMBERS = 5 };
+
+/* Numbers that belong to one plastic law must not look as if they did something for another. */
+static bw_status check_numbers(const bw_scene_material *m)
+{
+  static const struct {
+    const char *key, *of;
+    bool needed;
+  } rows[NUMBERS] = {{"cohesion", "drucker_prager", true},
+                     {"friction_angle", "drucker_prager", true},
+                     {"dilation_angle", "drucker_prager", false},
+                     {"yield_stress", "j2", true},
+                     {"hardening", "j2", false}};
+  const double numbers[NUMBERS] = {m->cohesion, m->friction_angle, m->dilation_angle,
+                                   m->yield_stress, m->hardening};
+  for (int q = 0; q < NUMBERS; q++) {
+    const bool read = strcmp(m->plastic, rows[q].of) == 0;
+    BW_REQUIRE(read || isnan(numbers[q]), BW_EINPUT,
+               "materials.%s.%s = %g: it belongs to plastic: %s; leave it out", m->name,
+               rows[q].key, numbers[q], rows[q].of);
+    BW_REQUIRE(!read || !rows[q].needed || !isnan(numbers[q]), BW_EINPUT,
+               "materials.%s.%s is missing: plastic: %s needs it", m->name, rows[q].key,
+               rows[q].of);
+  }
+  return BW_OK;
+}
+
+bw_status bw_scene__check_state(const bw_scene_material *m)
+{
+  const bool correspondence = strcmp(m->law, "correspondence") == 0;
+  bw_pd_material_elastic elastic;
+  BW_REQUIRE(
+      m->elastic[0] == '\0' || correspondence, BW_EINPUT,
+      "materials.%s.elastic = %s: it belongs to law: correspondence, this is %s; leave it out",
+      m->name, m->elastic, m->law);
+  BW_REQUIRE(
+      m->plastic[0] == '\0' || correspondence, BW_EINPUT,
+      "materials.%s.plastic = %s: it belongs to law: correspondence, this is %s; leave it out",
+      m->name, m->plastic, m->law);
+  BW_REQUIRE(m->elastic[0] == '\0' || find_elastic(m->elastic, &elastic), BW_EINPUT,
+             "materials.%s.elastic = %s: must be one of linear, saint_venant, neo_hookean, hencky",
+             m->name, m->elastic);
+  BW_REQUIRE(m->plastic[0] == '\0' || strcmp(m->plastic, "drucker_prager") == 0 ||
+                 strcmp(m->plastic, "j2") == 0,
+             BW_EINPUT, "materials.%s.plastic = %s: must be one of drucker_prager, j2", m->name,
+             m->plastic);
+  BW_REQUIRE(!correspondence || !isnan(m->poisson_ratio), BW_EINPUT,
+             "materials.%s.poisson_ratio is missing: law: correspondence has none of its own",
+             m->name);
+  return check_numbers(m);
+}
+
+/* Where a material yields, as the keys of its plastic law say. */
+static bw_pd_material_yield yield_of(const bw_scene *s, const bw_scene_material *m)
+{
+  const double degree = acos(-1.0) / 180.0;
+  const double dilation = isnan(m->dilation_angle) ? 0.0 : m->dilation_angle;
+  /* In plane strain the cones that are Mohr-Coulomb's there. */
+  const bw_pd_material_cone cone = s->config.plane != BW_SCENE_STRAIN
+                                       ? BW_PD_MATERIAL_COMPRESSION_CONE
+                                   : dilation > 0.0 ? BW_PD_MATERIAL_PLANE_ASSOCIATED
+                                                    : BW_PD_MATERIAL_PLANE_ISOCHORIC;
+  if (strcmp(m->plastic, "j2") == 0)
+    return bw_pd_material_j2(m->yield_stress, isnan(m->hardening) ? 0.0 : m->hardening);
+  return bw_pd_material_drucker_prager(cone, m->cohesion, m->friction_angle * degree,
+                                       dilation * degree);
+}
+
+bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
+                                bw_scene__options *room, const void **options)
+{
+  const char *elastic = NULL;
+  *options = NULL;
+  room->correspondence = bw_pd_state_correspondence_options_default();
+  for (int g = 0; g < q->n_groups; g++) {
+    /* What does not deform is as stiff as what it holds, and does not yield. */
+    if (!bw_scene__deforms(&s->config.bodies[q->body_of[g]])) continue;
+    const bw_scene_material *m = &s->config.materials[q->material_of[g]];
+    if (strcmp(m->law, "correspondence") != 0) return BW_OK;
+    BW_REQUIRE(elastic == NULL || strcmp(elastic, m->elastic) == 0, BW_EINPUT,
+               "materials.%s.elastic = %s: another material of the same lattice has %s; a lattice "
+               "has one",
+               m->name, m->elastic, elastic);
+    elastic = m->elastic;
+    if (elastic[0] != '\0') (void)find_elastic(elastic, &room->correspondence.elastic);
+    if (m->plastic[0] != '\0') room->correspondence.yield[g] = yield_of(s, m);
+    *options = &room->correspondence;
+  }
+  return BW_OK;
+}

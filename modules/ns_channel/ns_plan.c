@@ -90,7 +90,7 @@ bw_status bw_ns_channel_plan(const bw_grid *grid, const bw_ns_channel_config *co
   BW_THEN(st, try_small(self, g, config, edge + edge / 2, large));
   bw_comm_destroy(&self);
   BW_TRY(bw_comm_agree(bw_grid_comm(grid), st));
-  /* What the two differ in grows with the cells; where they hardly differ, the fluid is as small. */
+  /* What the two differ in grows with the cells; where they hardly differ, the fluid is small. */
   const double values = (double)g->size, more = large[1] - small[1];
   const double each = more > 0.25 * small[1] ? (large[0] - small[0]) / more : large[0] / large[1];
   plan->dt_max = large[2];

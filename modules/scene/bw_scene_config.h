@@ -75,8 +75,8 @@ typedef struct {
   bw_scene_side lower, upper; /* at 0 and at the length */
 } bw_scene_pair;
 typedef struct {
-  bw_scene_pair x, y, z;
-  bool has_z; /* are there sides in z? Not in two dimensions */
+  bw_scene_pair x, y, z; /* normal to x, y and z */
+  bool has_z;            /* are there sides in z? Not in two dimensions */
 } bw_scene_sides;
 
 /* A vortex along z, u_theta = swirl s exp((1 - s^2)/2) with s = r/radius. */
@@ -86,9 +86,9 @@ typedef struct {
   double swirl;     /* largest velocity [L/T]; > 0: counterclockwise */
 } bw_scene_vortex;
 typedef struct {
-  double velocity[3]; /* everywhere [L/T] */
-  bool developed;     /* laminar profile of the inflow everywhere */
-  int n_vortices;
+  double velocity[3];                          /* everywhere [L/T] */
+  bool developed;                              /* laminar profile of the inflow everywhere */
+  int n_vortices;                              /* how many of vortices */
   bw_scene_vortex vortices[BW_SCENE_VORTICES]; /* added to it */
   char file[BW_SCENE_PATH];                    /* a checkpoint to take the fluid from */
 } bw_scene_start;
@@ -98,18 +98,18 @@ typedef struct {
   double value; /* bulk velocity [L/T], or -dp/dx over the density [L/T^2] */
 } bw_scene_forcing;
 typedef struct {
-  int model;        /* bw_scene_fluid_model */
-  double density;   /* [M/L^3] */
-  double viscosity; /* kinematic [L^2/T] */
-  bw_scene_sides sides;
-  bw_scene_start start;
-  bool has_forcing;
-  bw_scene_forcing forcing;
+  int model;                /* bw_scene_fluid_model */
+  double density;           /* [M/L^3] */
+  double viscosity;         /* kinematic [L^2/T] */
+  bw_scene_sides sides;     /* of the box */
+  bw_scene_start start;     /* the flow at the beginning */
+  bool has_forcing;         /* is it given? */
+  bw_scene_forcing forcing; /* what drives the flow */
 } bw_scene_fluid;
 
 /* A material. Keys of laws that this build does not have are read, and refused. */
 typedef struct {
-  char name[BW_SCENE_NAME];
+  char name[BW_SCENE_NAME];    /* how others call it */
   char law[BW_SCENE_NAME];     /* a row of bw_solid_laws */
   char elastic[BW_SCENE_NAME]; /* of a state-based law */
   char plastic[BW_SCENE_NAME]; /* of a state-based law */
@@ -146,18 +146,19 @@ typedef struct {
   double voxel;             /* edge of a voxel [L]; NaN: the file's */
 } bw_scene_image;
 typedef struct {
-  char file[BW_SCENE_PATH];
-  double unit; /* of the file's lengths [L] */
-  double cell; /* cells it is filled with [L]; NaN: half the spacing */
+  char file[BW_SCENE_PATH]; /* binary or text STL */
+  double unit;              /* of the file's lengths [L] */
+  double cell;              /* cells it is filled with [L]; NaN: half the spacing */
 } bw_scene_stl;
 typedef struct {
-  bool has_box, has_cylinder, has_sphere, has_pores, has_image, has_stl;
-  bw_scene_box box;
-  bw_scene_cylinder cylinder;
-  bw_scene_sphere sphere;
-  bw_scene_pores pores;
-  bw_scene_image image;
-  bw_scene_stl stl;
+  bool has_box, has_cylinder, has_sphere, has_pores, has_image,
+      has_stl;                  /* which of the following is given */
+  bw_scene_box box;             /* particles in it */
+  bw_scene_cylinder cylinder;   /* of has_cylinder */
+  bw_scene_sphere sphere;       /* of has_sphere */
+  bw_scene_pores pores;         /* of has_pores */
+  bw_scene_image image;         /* of has_image */
+  bw_scene_stl stl;             /* of has_stl */
   char minus[BW_SCENE_NAME];    /* a body whose shapes are taken away */
   bool remove;                  /* this shape is taken away */
   char material[BW_SCENE_NAME]; /* of the sites of this shape; "": the body's */
@@ -168,8 +169,8 @@ typedef struct {
   char by[BW_SCENE_NAME];   /* a body; its sites become held particles of this one */
   char side[BW_SCENE_NAME]; /* x_lower ... z_upper of the body's own extent */
   int layers;               /* of that side */
-  bool has_box;
-  bw_scene_box box;
+  bool has_box;             /* is it given? */
+  bw_scene_box box;         /* particles in it */
 } bw_scene_held;
 typedef struct {
   double from[3], to[3]; /* the segment, in 3D two corners of the cut [L] */
@@ -185,22 +186,22 @@ typedef struct {
   double frequency;    /* [1/T] */
 } bw_scene_swing;
 typedef struct {
-  char name[BW_SCENE_NAME];
-  int n_shape;
-  bw_scene_shape shape[BW_SCENE_PARTS];
-  char material[BW_SCENE_NAME];
-  int motion;         /* bw_scene_motion */
-  double spacing;     /* [L]; NaN: the fluid's */
-  double turn;        /* of the lattice about z [deg] */
-  double velocity[3]; /* of a prescribed body always, of others at the start [L/T] */
-  bool has_rotation;
-  bw_scene_rotation rotation; /* of a prescribed body */
-  bool has_swing;
-  bw_scene_swing swing; /* of a prescribed body */
-  int n_held;
-  bw_scene_held held[BW_SCENE_HELD];
-  int n_cracks;
-  bw_scene_crack cracks[BW_SCENE_CRACKS];
+  char name[BW_SCENE_NAME];             /* how others call it */
+  int n_shape;                          /* how many of shape */
+  bw_scene_shape shape[BW_SCENE_PARTS]; /* in order: added, or taken away */
+  char material[BW_SCENE_NAME];         /* name of a material */
+  int motion;                           /* bw_scene_motion */
+  double spacing;                       /* [L]; NaN: the fluid's */
+  double turn;                          /* of the lattice about z [deg] */
+  double velocity[3];                /* of a prescribed body always, of others at the start [L/T] */
+  bool has_rotation;                 /* is it given? */
+  bw_scene_rotation rotation;        /* of a prescribed body */
+  bool has_swing;                    /* is it given? */
+  bw_scene_swing swing;              /* of a prescribed body */
+  int n_held;                        /* how many of held */
+  bw_scene_held held[BW_SCENE_HELD]; /* where it is held */
+  int n_cracks;                      /* how many of cracks */
+  bw_scene_crack cracks[BW_SCENE_CRACKS]; /* there from the start */
   int self_contact; /* does what breaks off collide with the rest? INT_MIN: if it breaks */
 } bw_scene_body;
 
@@ -215,21 +216,22 @@ typedef enum {
 typedef struct {
   char side[BW_SCENE_NAME]; /* x_lower ... z_upper of the body's extent, or `crack` */
   int layers;               /* of that side */
-  bool has_box;
-  bw_scene_box box;
+  bool has_box;             /* is it given? */
+  bw_scene_box box;         /* particles in it */
 } bw_scene_where;
 typedef struct {
   char on[BW_SCENE_NAME]; /* a body */
   int kind;               /* bw_scene_load_kind */
-  bool has_where;
-  bw_scene_where where; /* left out: all of the body */
-  double value[3];
-  double ramp;      /* until all of it acts [T] */
-  double start;     /* when it begins [T] */
-  bool smooth;      /* the ramp has no corners */
-  bool unbreakable; /* bonds of the particles it acts on do not break */
+  bool has_where;         /* is it given? */
+  bw_scene_where where;   /* left out: all of the body */
+  double value[3];        /* by kind, see above */
+  double ramp;            /* until all of it acts [T] */
+  double start;           /* when it begins [T] */
+  bool smooth;            /* the ramp has no corners */
+  bool unbreakable;       /* bonds of the particles it acts on do not break */
 } bw_scene_load;
 
+/* Who may touch whom. */
 typedef struct {
   char between[BW_SCENE_NAMES]; /* all, none */
   double friction;              /* [-] */
@@ -242,9 +244,9 @@ typedef struct {
   double settled; /* kinetic over elastic energy, or change of the flow; NaN: not given */
 } bw_scene_until;
 typedef struct {
-  char name[BW_SCENE_NAME];
-  bool has_until;
-  bw_scene_until until;
+  char name[BW_SCENE_NAME];  /* how others call it */
+  bool has_until;            /* is it given? */
+  bw_scene_until until;      /* when it ends */
   char hold[BW_SCENE_NAMES]; /* bodies that stand still */
   double damp;               /* against rest [M/(L^3 T)] */
   int breaking;              /* may bonds break? 0, 1; INT_MIN: as the bodies say */
@@ -253,44 +255,45 @@ typedef struct {
 /* Gauges. */
 typedef struct {
   double from[3], to[3]; /* [L] */
-  int points;
+  int points;            /* places, ends included */
 } bw_scene_line;
 typedef struct {
   int axis;  /* 0, 1, 2 */
   double at; /* [L] */
 } bw_scene_slice;
 typedef struct {
-  char name[BW_SCENE_NAME];
+  char name[BW_SCENE_NAME];  /* how others call it */
   char of[BW_SCENE_NAMES];   /* quantities: see bw_scene_quantity */
   char body[BW_SCENE_NAMES]; /* bodies */
   double nearest[3];         /* the particle of the body that is nearest to this place [L] */
-  bool has_region;
-  bw_scene_box region; /* mean over the particles in it */
-  double point[3];     /* a place in the fluid [L] */
-  double minus[3];     /* another one, whose value is taken away [L] */
-  bool has_line;
-  bw_scene_line line;
-  bool has_slice;
-  bw_scene_slice slice;
-  double origin[3]; /* where a crack begins [L] */
-  double every;     /* time between files of lines and slices [T] */
+  bool has_region;           /* is it given? */
+  bw_scene_box region;       /* mean over the particles in it */
+  double point[3];           /* a place in the fluid [L] */
+  double minus[3];           /* another one, whose value is taken away [L] */
+  bool has_line;             /* is it given? */
+  bw_scene_line line;        /* places in a row */
+  bool has_slice;            /* is it given? */
+  bw_scene_slice slice;      /* a plane */
+  double origin[3];          /* where a crack begins [L] */
+  double every;              /* time between files of lines and slices [T] */
 } bw_scene_gauge_config;
 
 /* What is printed of a gauge at the end, and limits that stop a run. */
 typedef struct {
-  char name[BW_SCENE_NAME]; /* GAUGE or GAUGE.COMPONENT */
-  int mean;                 /* 0: none, 1: midrange, 2: time */
-  bool amplitude, frequency;
-  int last_periods;    /* that go in */
-  double from;         /* time from which is looked at [T] */
-  double above, below; /* the run stops beyond; NaN: no limit */
+  char name[BW_SCENE_NAME];  /* GAUGE or GAUGE.COMPONENT */
+  int mean;                  /* 0: none, 1: midrange, 2: time */
+  bool amplitude, frequency; /* are they asked for? */
+  int last_periods;          /* that go in */
+  double from;               /* time from which is looked at [T] */
+  double above, below;       /* the run stops beyond; NaN: no limit */
 } bw_scene_watch;
 
+/* What a run leaves. */
 typedef struct {
   double sample_every;                  /* [T] */
   double picture_every;                 /* [T]; 0: at the end only */
   char checkpoint_every[BW_SCENE_NAME]; /* "600 s" of wall clock, or a time of the run */
-  bool figures;
+  bool figures;                         /* draw history.csv at the end? */
 } bw_scene_output;
 
 /* Every knob by name; NaN or INT_MIN: `accuracy` decides. */
@@ -301,44 +304,51 @@ typedef struct {
   int integrator;       /* bw_solid_integrator */
   double horizon_ratio; /* m */
   int surface_correction, volume_fraction, family_reach; /* of bw_solid.h */
-  double damping_mean, damping_pair, damping_absolute;
-  double disorder;
-  int disorder_seed;
-  int viscous; /* bw_ns_viscous */
-  int load;    /* bw_coupler_load_kind */
-  int forcing_iterations;
-  double memory, retraction, marker_spacing, probe_length, load_relaxation, coupling_residual;
-  int coupling_iterations;
+  double damping_mean;      /* against the mean motion of a family [M/(L^3 T)] */
+  double damping_pair;      /* between the ends of bonds [M/(L^6 T)] */
+  double damping_absolute;  /* against rest [M/(L^3 T)] */
+  double disorder;          /* of a cloud of particles, share of the spacing [-]; 0: a lattice */
+  int disorder_seed;        /* of the random numbers for it */
+  int viscous;              /* bw_ns_viscous */
+  int load;                 /* bw_coupler_load_kind */
+  int forcing_iterations;   /* of the immersed boundary */
+  double memory;            /* of the forcing, beta [-] */
+  double retraction;        /* of markers, over the grid spacing [-] */
+  double marker_spacing;    /* over the grid spacing [-] */
+  double probe_length;      /* over the grid spacing [-] */
+  double load_relaxation;   /* of the load, w [-] */
+  double coupling_residual; /* at which the iterations of a step end [-] */
+  int coupling_iterations;  /* of a step, at most; 0: none */
   unsigned set; /* bits of the knobs that `accuracy` has set, by rows of its table; no key */
 } bw_scene_numerics;
 
 /* A scene. */
 typedef struct {
-  char name[BW_SCENE_NAMES];
-  int accuracy;     /* bw_scene_accuracy */
-  int plane;        /* bw_scene_plane; INT_MIN: strain with one cell in z, else space */
-  double thickness; /* of the layer in two dimensions [L]; NaN: of the domain, else 1 */
-  bool has_domain;
-  bw_scene_domain domain;
-  bool has_fluid;
-  bw_scene_fluid fluid;
-  int n_materials;
-  bw_scene_material materials[BW_SCENE_MATERIALS];
-  int n_bodies;
-  bw_scene_body bodies[BW_SCENE_BODIES];
-  int n_loads;
-  bw_scene_load loads[BW_SCENE_LOADS];
-  double gravity[3]; /* [L/T^2] */
-  bool has_contact;
-  bw_scene_contact contact;
-  int n_phases;
-  bw_scene_phase phases[BW_SCENE_PHASES];
-  int n_gauges;
-  bw_scene_gauge_config gauges[BW_SCENE_GAUGES];
-  int n_watch;
-  bw_scene_watch watch[BW_SCENE_WATCHED];
-  bw_scene_output output;
-  bw_scene_numerics numerics;
+  char name[BW_SCENE_NAMES]; /* how others call it */
+  int accuracy;              /* bw_scene_accuracy */
+  int plane;                 /* bw_scene_plane; INT_MIN: strain with one cell in z, else space */
+  double thickness;          /* of the layer in two dimensions [L]; NaN: of the domain, else 1 */
+  bool has_domain;           /* is there a box of the fluid? */
+  bw_scene_domain domain;    /* that box */
+  bool has_fluid;            /* is there a fluid? */
+  bw_scene_fluid fluid;      /* it */
+  int n_materials;           /* how many of materials */
+  bw_scene_material materials[BW_SCENE_MATERIALS]; /* of the bodies */
+  int n_bodies;                                    /* how many of bodies */
+  bw_scene_body bodies[BW_SCENE_BODIES];           /* solids */
+  int n_loads;                                     /* how many of loads */
+  bw_scene_load loads[BW_SCENE_LOADS];             /* on bodies */
+  double gravity[3];                               /* [L/T^2] */
+  bool has_contact;                                /* is it given? */
+  bw_scene_contact contact;                        /* between bodies */
+  int n_phases;                                    /* how many of phases */
+  bw_scene_phase phases[BW_SCENE_PHASES];          /* in order */
+  int n_gauges;                                    /* how many of gauges */
+  bw_scene_gauge_config gauges[BW_SCENE_GAUGES];   /* what is measured */
+  int n_watch;                                     /* how many of watch */
+  bw_scene_watch watch[BW_SCENE_WATCHED];          /* what is said of gauges at the end */
+  bw_scene_output output;                          /* what is written */
+  bw_scene_numerics numerics;                      /* knobs */
 } bw_scene_config;
 
 /* The keys of a scene file, for bw_config_load and bw_case_main. */

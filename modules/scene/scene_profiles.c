@@ -60,7 +60,7 @@ bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge)
   const bw_scene_gauge_config *g = &s->config.gauges[gauge];
   char name[BW_SCENE_NAME + 32], *path = NULL;
   double *X = NULL, *u = NULL, *p = NULL;
-  const size_t n = places(s, g, NULL);
+  size_t n = places(s, g, NULL);
   const bool velocity = bw_scene__listed(g->of, "velocity");
   const bool pressure = bw_scene__listed(g->of, "pressure");
   bw_status st = BW_ALLOCATE(&X, 3 * n);
@@ -68,7 +68,7 @@ bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge)
   if (pressure) BW_THEN(st, BW_ALLOCATE(&p, n));
   st = bw_comm_agree(s->comm, st);
   if (st == BW_OK) {
-    (void)places(s, g, X);
+    n = places(s, g, X);
     if (velocity) bw_scene__sample(s, false, n, X, u);
     if (pressure) bw_scene__sample(s, true, n, X, p);
     snprintf(name, sizeof name, "%s-%06lld.csv", g->name, llround(s->time / g->every));

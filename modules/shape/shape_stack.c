@@ -327,6 +327,6 @@ bw_status bw_shape__open_stack(const char *path, bool folder, double low, double
   stack *s = NULL;
   bw_status st = BW_ALLOCATE(&s, 1);
   BW_THEN(st, folder ? list_folder(path, s) : list_pattern(path, s));
-  if (st == BW_OK) qsort(s->name, s->n, sizeof *s->name, by_number);
+  if (st == BW_OK && s->n > 0) qsort(s->name, s->n, sizeof *s->name, by_number);
   return open_names(st, s, path, low, high, out);
 }

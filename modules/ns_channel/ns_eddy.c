@@ -94,7 +94,8 @@ BW_NS_INLINE void gradients_at(const row_of_cells *r, int i, int n, gradients g)
   for (int c = 0; c < 3; c++)
     for (int d = 0; d < 3; d++) {
       const bw_real *u = r->u[c] + i;
-      const ptrdiff_t own = r->stride[c], step = r->stride[d];
+      /* Along the component itself two faces are enough, and a halo of one cell has no third. */
+      const ptrdiff_t own = r->stride[c], step = d == c ? 0 : r->stride[d];
       const double rd = r->own[d], up = 0.25 * r->up[d], down = 0.25 * r->down[d];
 #pragma omp simd
       for (int l = 0; l < LANES; l++) {

@@ -151,14 +151,18 @@ typedef struct {
   double cell;              /* cells it is filled with [L]; NaN: half the spacing */
 } bw_scene_stl;
 typedef struct {
-  bool has_box, has_cylinder, has_sphere, has_pores, has_image,
-      has_stl;                  /* which of the following is given */
+  bool has_box;                 /* box is given */
+  bool has_cylinder;            /* cylinder is given */
+  bool has_sphere;              /* sphere is given */
+  bool has_pores;               /* pores is given */
+  bool has_image;               /* image is given */
+  bool has_stl;                 /* stl is given */
   bw_scene_box box;             /* particles in it */
-  bw_scene_cylinder cylinder;   /* of has_cylinder */
-  bw_scene_sphere sphere;       /* of has_sphere */
-  bw_scene_pores pores;         /* of has_pores */
-  bw_scene_image image;         /* of has_image */
-  bw_scene_stl stl;             /* of has_stl */
+  bw_scene_cylinder cylinder;   /* when has_cylinder */
+  bw_scene_sphere sphere;       /* when has_sphere */
+  bw_scene_pores pores;         /* when has_pores */
+  bw_scene_image image;         /* when has_image */
+  bw_scene_stl stl;             /* when has_stl */
   char minus[BW_SCENE_NAME];    /* a body whose shapes are taken away */
   bool remove;                  /* this shape is taken away */
   char material[BW_SCENE_NAME]; /* of the sites of this shape; "": the body's */

@@ -31,14 +31,17 @@ double bw_ibm_mdf_retraction(const bw_ibm_mdf_config *config)
  * line in n_x^4 + n_y^4 + n_z^4 through data/forcing_sheet/sheet_displacement.csv. */
 static double displacement(bw_kernel_delta_id kernel, const double n[3])
 {
-  static const double at_zero[BW_KERNEL_COUNT] = {
-      [BW_KERNEL_ROMA3] = 0.3095, [BW_KERNEL_PESKIN4] = 0.408, [BW_KERNEL_HAT2] = 0.233};
-  static const double slope[BW_KERNEL_COUNT] = {
-      [BW_KERNEL_ROMA3] = -0.0435, [BW_KERNEL_PESKIN4] = -0.027, [BW_KERNEL_HAT2] = -0.066};
+  static const struct {
+    double at_zero, slope;
+  } line[BW_KERNEL_COUNT] = {
+      [BW_KERNEL_ROMA3] = {0.3095, -0.0435},
+      [BW_KERNEL_PESKIN4] = {0.408, -0.027},
+      [BW_KERNEL_HAT2] = {0.233, -0.066},
+  };
   double n4 = 0.0;
   for (int d = 0; d < 3; d++)
     n4 += n[d] * n[d] * n[d] * n[d];
-  return at_zero[kernel] + slope[kernel] * n4;
+  return line[kernel].at_zero + line[kernel].slope * n4;
 }
 
 static bw_status check_normals(const bw_ibm_mdf *ib, const double N[], double nu)

@@ -44,7 +44,8 @@ end=$(($(tail -n 1 "$out/two/history.csv" | cut -d, -f1) + 2))
 mkdir "$out/own" && echo "my own table" > "$out/own/history.csv"
 refused own "holds history.csv, which is no result" "$program" "$case" --out "$out/own" --quiet
 refused own_2 "holds history.csv" "$program" "$case" --out "$out/own" --quiet --overwrite
-refused own_3 "holds history.csv" "$program" "$case" --out "$out/own" --quiet --restart "$last"
+refused own_3 "holds history.csv" "$program" "$case" --out "$out/own" $box --set time.end=$end \
+  --restart "$last"
 [ "$(cat "$out/own/history.csv")" = "my own table" ] && [ "$(ls "$out/own")" = history.csv ] ||
   { echo "FAIL: the user's folder has changed"; failed=1; }
 exit $failed

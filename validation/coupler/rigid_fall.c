@@ -21,14 +21,10 @@
  * TEST  ranks=1,2 timeout=3600 */
 #include "bw_coupler_rigid.h"
 #include "bw_validation.h"
+#include "cylinder_in_channel.h"
 
 #include <math.h>
 #include <stdio.h>
-
-typedef enum { FALL, COUETTE, POISEUILLE, MOTIONS } motion;
-enum { HEIGHTS = 4 }; /* of the channel, in diameters; diameter, viscosity, fluid's density are 1 */
-static const double RE = 0.1;
-static const char *const name[MOTIONS] = {"fall", "couette", "poiseuille"};
 
 typedef struct {
   motion motion;
@@ -53,54 +49,14 @@ static void destroy(scene *s)
   bw_grid_destroy(&s->grid);
 }
 
-static void couette(const double x[3], double t, void *context, double u[3])
-{
-  (void)t, (void)context;
-  u[0] = RE * (x[1] - 0.5 * HEIGHTS);
-  u[1] = u[2] = 0.0;
-}
-
-static void poiseuille(const double x[3], double t, void *context, double u[3])
-{
-  const double y = x[1] / HEIGHTS;
-  (void)t, (void)context;
-  u[0] = 6.0 * RE * y * (1.0 - y);
-  u[1] = u[2] = 0.0;
-}
-
-static bw_status make_fluid(const bw_comm *comm, const set_up *b, scene *s)
-{
-  bw_grid_config grid = bw_grid_config_default();
-  bw_ns_channel_config flow = bw_ns_channel_config_default();
-  s->h = 1.0 / b->cells;
-  grid.n[0] = (b->motion == FALL ? 3 : 2) * HEIGHTS * b->cells; /* disturbances: exp(-4.2 x/H) */
-  grid.n[1] = HEIGHTS * b->cells, grid.n[2] = 1;
-  for (int d = 0; d < 3; d++)
-    grid.length[d] = grid.n[d] * s->h;
-  grid.periodic[0] = b->motion != FALL;
-  grid.periodic[2] = true;
-  grid.halo = 2;
-  flow.nu = 1.0;
-  for (int q = 0; q < 2; q++) {
-    if (b->motion != FALL) flow.side[0][q].kind = BW_SIDE_PERIODIC;
-    if (b->motion == COUETTE) flow.side[1][q].velocity[0] = (q - 0.5) * RE * HEIGHTS;
-    flow.side[2][q].kind = BW_SIDE_PERIODIC;
-  }
-  if (b->motion == POISEUILLE) flow.forcing = BW_FORCING_FLOW_RATE, flow.forcing_value = RE;
-  BW_TRY(bw_grid_create(comm, &grid, &s->grid));
-  BW_TRY(bw_ns_channel_create(s->grid, &flow, &s->fluid));
-  s->dt = 0.08 * s->h * s->h;
-  if (b->motion == FALL) return BW_OK;
-  return bw_ns_channel_set_velocity(s->fluid, b->motion == COUETTE ? couette : poiseuille, NULL,
-                                    0.0);
-}
-
 static bw_status make(const bw_comm *comm, const set_up *b, scene *s)
 {
   bw_rigid_config rigid = bw_rigid_config_default();
   bw_coupler_rigid_config c = bw_coupler_rigid_config_default();
   *s = (scene){.dt = NAN};
-  BW_TRY(make_fluid(comm, b, s));
+  s->h = 1.0 / b->cells;
+  s->dt = 0.08 * s->h * s->h;
+  BW_TRY(cylinder_fluid(comm, b->motion, b->cells, &s->grid, &s->fluid));
   const bw_grid_view *g = bw_grid_look(s->grid);
   const bw_shape cylinder = {.kind = BW_SHAPE_CYLINDER,
                              .centre = {0.5 * g->length[0], 0.5 * g->length[1], 0.0},

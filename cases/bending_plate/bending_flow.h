@@ -185,9 +185,9 @@ static inline bw_solid_config bending_material(const bending_flow *f)
   s.rho = p->density;
   s.E = p->young_modulus;
   s.surface_correction = (bw_pd_surface_correction)p->surface_correction;
-  s.damping_mean = p->damping_mean;
-  s.damping_pair = p->damping_pair;
-  s.damping_absolute = p->damping_absolute;
+  s.damping.mean = p->damping_mean;
+  s.damping.pair = p->damping_pair;
+  s.damping.absolute = p->damping_absolute;
   s.origin[0] = p->front;
   s.origin[2] = 0.5 * f->h;
   return s;

@@ -73,7 +73,7 @@ static bw_status build_solid(porous_run *p)
   solid.G0 = q->solid.fracture_energy;
   solid.surface_correction = (bw_pd_surface_correction)q->solid.surface_correction;
   solid.integrator = (bw_solid_integrator)q->solid.integrator;
-  solid.damping_pair = q->solid.damping_pair;
+  solid.damping.pair = q->solid.damping_pair;
   solid.contact = q->solid.contact;
   /* Bonds cross the periodic seam as the fluid does. */
   solid.period[2] = q->domain.length[2];

@@ -44,7 +44,7 @@ static bw_status make_solid(const bw_comm *world, scene *s)
         site[3 * n] = i, site[3 * n + 1] = j, site[3 * n++ + 2] = 0;
   bw_solid_config material = bw_solid_config_default();
   material.geometry = BW_PD_PLANE_STRAIN, material.thickness = spacing;
-  material.ds = spacing, material.rho = 1.0, material.E = 1000.0, material.damping_mean = 100.0;
+  material.ds = spacing, material.rho = 1.0, material.E = 1000.0, material.damping.mean = 100.0;
   material.origin[0] = 0.5 * H, material.origin[1] = 0.5 * H - 0.5 * ACROSS * spacing;
   material.origin[2] = 0.5 * spacing;
   material.period[0] = 2 * H; /* it may swim across the seam */

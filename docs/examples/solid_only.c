@@ -15,7 +15,7 @@ static bw_status pull(const bw_comm *world)
   config.rho = 1200;
   config.E = 3e9;
   config.G0 = 300;
-  config.damping_pair = 1e14;
+  config.damping.pair = 1e14;
 
   const uint8_t grip = BW_PD_PRESCRIBED | BW_PD_UNBREAKABLE;
   const bw_shape shapes[] = {/* 60 x 15 mm with 4 mm of grip at either end and a notch */

@@ -130,6 +130,10 @@ typedef struct {
 
 enum { BW_PD_FIELDS = 32 };             /* fields of a law, at most */
 typedef struct bw_pd_field bw_pd_field; /* pd_law.h */
+typedef struct {
+  int n;            /* at most BW_PD_FIELDS */
+  bw_pd_field *row; /* (n) */
+} bw_pd_fields;
 
 struct bw_pd_body {
   const bw_comm *comm;      /* borrowed */
@@ -154,8 +158,7 @@ struct bw_pd_body {
   const bw_pd_law *law; /* borrowed */
   void *state;          /* of the law */
   double frequency2;    /* bound of the squared largest frequency without damping [1/T^2] */
-  int n_field;          /* fields of the law, at most BW_PD_FIELDS */
-  bw_pd_field *field;   /* (n_field) */
+  bw_pd_fields fields;  /* of the law */
 };
 
 /* pd_create.c */

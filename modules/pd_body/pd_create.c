@@ -24,15 +24,15 @@ void bw_pd_body_release_storage_array(bw_real **array)
 
 bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved, bw_real **value)
 {
-  BW_REQUIRE(pd->n_field < BW_PD_FIELDS, BW_EINPUT, "solid: the law %s wants more than %d fields",
+  BW_REQUIRE(pd->fields.n < BW_PD_FIELDS, BW_EINPUT, "solid: the law %s wants more than %d fields",
              pd->law->name, (int)BW_PD_FIELDS);
   /* Counted once its array stands, so that a half-built body can be destroyed. */
-  bw_pd_field *f = &pd->field[pd->n_field];
+  bw_pd_field *f = &pd->fields.row[pd->fields.n];
   BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &f->value));
   f->after = after;
   f->saved = saved;
   *value = f->value;
-  pd->n_field++;
+  pd->fields.n++;
   return BW_OK;
 }
 
@@ -41,7 +41,7 @@ static bw_status state_arrays(bw_pd_body *pd)
   const size_t n = pd->n;
   BW_TRY(BW_ALLOCATE(&pd->held.mobile, n));
   /* Room for all fields that a law may ask for: their addresses stay. */
-  BW_TRY(BW_ALLOCATE(&pd->field, BW_PD_FIELDS));
+  BW_TRY(BW_ALLOCATE(&pd->fields.row, BW_PD_FIELDS));
   /* What neighbours read lies in storage order; what only its owner reads lies in own order. */
   for (int k = 0; k < 3; k++) {
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->u[k]));
@@ -180,15 +180,15 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
   if (pd == NULL) return;
   /* The law's state may refer to the body's arrays: it goes first. */
   if (pd->law != NULL) pd->law->destroy(pd);
-  for (int q = 0; q < pd->n_field; q++)
-    bw_pd_body_release_storage_array(&pd->field[q].value);
+  for (int q = 0; q < pd->fields.n; q++)
+    bw_pd_body_release_storage_array(&pd->fields.row[q].value);
   if (pd->level != NULL) release_level(pd->level);
   bw_particles_copies_destroy(&pd->halo.copies);
   void *plain[] = {&pd->weight,          &pd->level,        &pd->points.site,  &pd->points.id,
                    &pd->points.kind,     &pd->points.group, &pd->points.place, &pd->points.occupant,
                    &pd->halo.extended_X, &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,
                    &pd->bonds.hit,       &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle,
-                   &pd->held.velocity,   &pd->field};
+                   &pd->held.velocity,   &pd->fields.row};
   for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
     bw_release(plain[q]);
   for (int k = 0; k < 3; k++) {

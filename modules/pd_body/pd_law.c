@@ -10,8 +10,8 @@ void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping)
     const bool last = pass == law->n_sweep - 1;
     law->sweep[pass](pd, 0, pd->bonds.n_block, check && pd->breakage && last, damping && last);
     /* The next pass reads neighbours: those that others own have to be told. */
-    for (int q = 0; q < pd->n_field; q++)
-      if (pd->field[q].after == pass) bw_pd_body_fill_places(pd, pd->field[q].value);
+    for (int q = 0; q < pd->fields.n; q++)
+      if (pd->fields.row[q].after == pass) bw_pd_body_fill_places(pd, pd->fields.row[q].value);
   }
 }
 

@@ -13,9 +13,9 @@ static const double SKIN = 0.5; /* of the search, in r_c: a new one after a move
 /* What an own particle of kind a feels of one of kind b. */
 static bw_pd_pair pair_law(const bw_pd_contact_between *c, int a, int b)
 {
-  const bw_pd_body *p = c->body[c->body_of[a]], *q = c->body[c->body_of[b]];
+  const bw_pd_body *p = c->body[c->kinds.body[a]], *q = c->body[c->kinds.body[b]];
   if (p == q) return (bw_pd_pair){.closest = INFINITY};
-  const int g = a - c->first_kind[c->body_of[a]], h = b - c->first_kind[c->body_of[b]];
+  const int g = a - c->kinds.first[c->kinds.body[a]], h = b - c->kinds.first[c->kinds.body[b]];
   const double x = p->law->micromodulus(p, g), y = q->law->micromodulus(q, h);
   const double modulus = x == y ? x : 2 * x * y / (x + y), rho = p->config.material[g].rho;
   return (bw_pd_pair){.reach = fmin(p->level->ds, q->level->ds),
@@ -78,18 +78,18 @@ static bw_status check(int n, bw_pd_body *const body[])
 static bw_status constants(bw_pd_contact_between *c)
 {
   for (int b = 0; b < c->n_body; b++) {
-    c->first_kind[b] = c->n_kind;
-    c->n_kind += c->body[b]->config.n_group;
+    c->kinds.first[b] = c->kinds.n;
+    c->kinds.n += c->body[b]->config.n_group;
   }
-  BW_TRY(BW_ALLOCATE(&c->body_of, (size_t)c->n_kind));
-  BW_TRY(BW_ALLOCATE(&c->law, (size_t)c->n_kind * (size_t)c->n_kind));
+  BW_TRY(BW_ALLOCATE(&c->kinds.body, (size_t)c->kinds.n));
+  BW_TRY(BW_ALLOCATE(&c->kinds.law, (size_t)c->kinds.n * (size_t)c->kinds.n));
   for (int b = 0; b < c->n_body; b++)
     for (int g = 0; g < c->body[b]->config.n_group; g++)
-      c->body_of[c->first_kind[b] + g] = b;
-  for (int a = 0; a < c->n_kind; a++)
-    for (int b = 0; b < c->n_kind; b++) {
-      c->law[a * c->n_kind + b] = pair_law(c, a, b);
-      c->reach = fmax(c->reach, c->law[a * c->n_kind + b].reach);
+      c->kinds.body[c->kinds.first[b] + g] = b;
+  for (int a = 0; a < c->kinds.n; a++)
+    for (int b = 0; b < c->kinds.n; b++) {
+      c->kinds.law[a * c->kinds.n + b] = pair_law(c, a, b);
+      c->reach = fmax(c->reach, c->kinds.law[a * c->kinds.n + b].reach);
     }
   c->skin = SKIN * c->reach;
   return BW_OK;
@@ -119,7 +119,7 @@ static bw_status arrays_of(bw_pd_contact_between *c)
 static bw_status build(bw_pd_contact_between *c, int n, bw_pd_body *const body[])
 {
   BW_TRY(BW_ALLOCATE(&c->body, (size_t)n));
-  BW_TRY(BW_ALLOCATE(&c->first_kind, (size_t)n));
+  BW_TRY(BW_ALLOCATE(&c->kinds.first, (size_t)n));
   for (int k = 0; k < 3; k++) {
     BW_TRY(BW_ALLOCATE(&c->u_built[k], (size_t)n));
     c->period[k] = body[0]->config.period[k];
@@ -157,9 +157,9 @@ void bw_pd_contact_between_destroy(bw_pd_contact_between **between)
     bw_release(&c->u_built[k]);
   }
   bw_release(&c->body);
-  bw_release(&c->first_kind);
-  bw_release(&c->body_of);
-  bw_release(&c->law);
+  bw_release(&c->kinds.first);
+  bw_release(&c->kinds.body);
+  bw_release(&c->kinds.law);
   bw_release(between);
 }
 
@@ -233,7 +233,7 @@ static double act(bw_pd_contact_between *c, bool force)
     double sum[3] = {0}, d[3];
     for (size_t p = c->pair_start[q]; p < c->pair_start[q + 1]; p++) {
       const size_t l = (size_t)c->pair[p];
-      bw_pd_pair pair = c->law[c->kind[q] * c->n_kind + c->kind[l]];
+      bw_pd_pair pair = c->kinds.law[c->kind[q] * c->kinds.n + c->kind[l]];
       bw_particles_difference(c->period, c->y + 3 * q, c->y + 3 * l, d);
       const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       energy += bw_pd_contact__repel(&pair, d, r2, sum);
@@ -261,9 +261,10 @@ double bw_pd_contact_between_energy(bw_pd_contact_between *c)
 double bw_pd_contact_between_time(const bw_pd_contact_between *c)
 {
   double most = 0;
-  for (int a = 0; a < c->n_kind; a++)
-    for (int b = 0; b < c->n_kind; b++) {
-      const bw_pd_pair *p = &c->law[a * c->n_kind + b], *q = &c->law[b * c->n_kind + a];
+  for (int a = 0; a < c->kinds.n; a++)
+    for (int b = 0; b < c->kinds.n; b++) {
+      const bw_pd_pair *p = &c->kinds.law[a * c->kinds.n + b],
+                       *q = &c->kinds.law[b * c->kinds.n + a];
       if (p->reach > 0) most = fmax(most, (p->k + q->k) / p->reach);
     }
   return most > 0 ? 1 / sqrt(most) : INFINITY;

@@ -12,17 +12,22 @@ typedef struct {
   int32_t body, particle;
 } bw_pd_between_row;
 
+/* Bodies and their groups in one numbering. */
+typedef struct {
+  int n;
+  int *first;      /* (n_body) kind of a body's first group */
+  int *body;       /* (n) */
+  bw_pd_pair *law; /* (n, n) owner's kind, other's; reach 0: the same body */
+} bw_pd_between_kinds;
+
 struct bw_pd_contact_between {
   int n_body;
   bw_pd_body **body;    /* (n_body) borrowed */
   bw_real **u_built[3]; /* (n_body)(n of the body) displacement at the last search [L] */
   double reach, skin;   /* the largest r_c; of the search [L] */
   double period[3];     /* of space [L], 0: not periodic */
-  int n_kind;
-  int *first_kind; /* (n_body) kind of a body's first group */
-  int *body_of;    /* (n_kind) */
-  bw_pd_pair *law; /* (n_kind, n_kind) owner's kind, other's; reach 0: the same body */
-  double closest;  /* least distance of a pair over its reach so far */
+  bw_pd_between_kinds kinds;
+  double closest; /* least distance of a pair over its reach so far */
   bool built;
   int64_t revision; /* of all bodies that the arrays are for */
 

@@ -124,7 +124,7 @@ static bw_status candidates(bw_pd_contact_between *c, const double *box, int **d
 
 static int32_t kind_of(const bw_pd_contact_between *c, bw_pd_between_row row)
 {
-  return c->first_kind[row.body] + c->body[row.body]->points.group[row.particle];
+  return c->kinds.first[row.body] + c->body[row.body]->points.group[row.particle];
 }
 
 /* Rows of all candidates that this rank sees. Collective. */
@@ -157,7 +157,8 @@ static bw_status pairs_in_cell(const bw_pd_contact_between *c, const bw_particle
                                size_t q, const int32_t cell[3], bw_pd_partners *found)
 {
   for (int32_t p = g->head[bw_particles_cells_bucket(g, cell)]; p >= 0; p = g->next[p]) {
-    const double reach = c->law[c->kind[q] * c->n_kind + c->kind[p]].reach, far = reach + c->skin;
+    const double reach = c->kinds.law[c->kind[q] * c->kinds.n + c->kind[p]].reach,
+                 far = reach + c->skin;
     double d[3];
     if (reach == 0 || !bw_particles_cells_holds(g, cell, p)) continue; /* of the same body */
     bw_particles_difference(c->period, c->y + 3 * q, c->y + 3 * (size_t)p, d);

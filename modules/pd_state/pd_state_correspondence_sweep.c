@@ -304,8 +304,8 @@ void bw_pd_state__tangent(const bw_pd_body *pd, bw_real *const x[3], double kx[]
       block_deform(&s, &pd->bonds.block[q], 2, cloud, true);
     else
       block_deform(&s, &pd->bonds.block[q], 3, cloud, true);
-  for (int q = 0; q < pd->n_field; q++)
-    if (pd->field[q].after == 0) bw_pd_body_fill_places(pd, pd->field[q].value);
+  for (int q = 0; q < pd->fields.n; q++)
+    if (pd->fields.row[q].after == 0) bw_pd_body_fill_places(pd, pd->fields.row[q].value);
   for (size_t q = 0; q < pd->bonds.n_block; q++) {
     const bw_pd_block *block = &pd->bonds.block[q];
     vec sum[3];

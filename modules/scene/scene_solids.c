@@ -150,8 +150,8 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
     c->rho = s->config.fluid.density;
     c->E = 1e-3 * c->rho * s->speed * s->speed;
     for (int g = 1; g < q->n_groups; g++)
-      c->more[g - 1] = (bw_pd_material){c->rho, c->E, NAN, INFINITY};
-    c->n_more = q->n_groups - 1;
+      c->more.material[g - 1] = (bw_pd_material){c->rho, c->E, NAN, INFINITY};
+    c->more.n = q->n_groups - 1;
     return BW_OK;
   }
   for (int g = 0; g < q->n_groups; g++) {
@@ -171,9 +171,9 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
     if (g == 0)
       c->rho = material.rho, c->E = material.E, c->nu = material.nu, c->G0 = material.G0;
     else
-      c->more[g - 1] = material;
+      c->more.material[g - 1] = material;
   }
-  c->n_more = q->n_groups - 1;
+  c->more.n = q->n_groups - 1;
   c->law = bw_solid_law_by_name(law);
   return BW_OK;
 }
@@ -208,9 +208,9 @@ static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_co
   c->surface_correction = (bw_pd_surface_correction)n->surface_correction;
   c->family_reach = (bw_pd_family_reach)n->family_reach;
   c->integrator = (bw_solid_integrator)n->integrator;
-  c->damping_mean = n->damping_mean;
-  c->damping_pair = n->damping_pair;
-  c->damping_absolute = n->damping_absolute;
+  c->damping.mean = n->damping_mean;
+  c->damping.pair = n->damping_pair;
+  c->damping.absolute = n->damping_absolute;
   c->disorder = n->disorder;
   c->disorder_seed = n->disorder_seed;
   c->contact = meets_itself(s, q);

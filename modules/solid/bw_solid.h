@@ -38,21 +38,33 @@ typedef enum {
   BW_SOLID_RK3     /* Runge-Kutta of third order (POROUS 3.47, 3.48 with ERRATA 5), three */
 } bw_solid_integrator;
 
-/* What a solid is made of and how it moves. Required values start as NaN: refused by name. */
+/* Materials of the particles of groups 1, 2, ..., and what joins them. */
 typedef struct {
-  bw_pd_geometry geometry; /* dimension and plane condition                         default 3D */
-  double ds;               /* lattice spacing [L]                  required */
-  double thickness;        /* 2D only [L]                          default 1 */
-  double horizon_ratio;    /* m = horizon/ds [-], 1 .. 12                            default 3 */
-  double rho;              /* density of group 0 [M/L^3]           required */
-  double E;                /* Young's modulus of group 0 [M/(L T^2)]                required */
-  double nu;               /* Poisson's ratio of group 0: NaN (the law's own); of bonds exactly
-                              1/4, or 1/3 in plane stress (ERRATA 14)                default NaN */
-  double G0;               /* fracture energy of group 0 [M/T^2]   default INFINITY */
-  int n_more;              /* materials of groups 1, 2, ...        default 0 */
-  bw_pd_material more[BW_PD_GROUPS - 1];       /* of particles of group 1 and above */
+  int n;                                     /* of them                                default 0 */
+  bw_pd_material material[BW_PD_GROUPS - 1]; /* of group 1 and above */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* bonds between two groups, symmetric [M/T^2];
                                                   default NaN: the smaller of the two */
+} bw_solid_groups;
+
+/* Coefficients of damping, zero by default. */
+typedef struct {
+  double pair;     /* k_d of 3.41, bonds that hold [M/(L^6 T)] */
+  double mean;     /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)] */
+  double absolute; /* -k V, for settling [M/(L^3 T)] */
+} bw_solid_damping;
+
+/* What a solid is made of and how it moves. Required values start as NaN: refused by name. */
+typedef struct {
+  bw_pd_geometry geometry;    /* dimension and plane condition                         default 3D */
+  double ds;                  /* lattice spacing [L]                  required */
+  double thickness;           /* 2D only [L]                          default 1 */
+  double horizon_ratio;       /* m = horizon/ds [-], 1 .. 12                            default 3 */
+  double rho;                 /* density of group 0 [M/L^3]           required */
+  double E;                   /* Young's modulus of group 0 [M/(L T^2)]                required */
+  double nu;                  /* Poisson's ratio of group 0: NaN (the law's own); of bonds exactly
+                              1/4, or 1/3 in plane stress (ERRATA 14)                default NaN */
+  double G0;                  /* fracture energy of group 0 [M/T^2]   default INFINITY */
+  bw_solid_groups more;       /* materials of groups 1, 2, ... and joints  default none */
   bw_solid_law_choice choice; /* law and its options; of bonds surface_correction and calibration
                                  below come to them                           default bonds */
   const bw_pd_law *law;       /* borrowed: a row of bw_solid_laws, or one's own (pd_law.h); NULL
@@ -67,9 +79,7 @@ typedef struct {
                             volume_fraction is linear or none, 2D and 3D     default 0 */
   int32_t disorder_seed; /* another number, another cloud                    default 0 */
   bw_solid_integrator integrator; /* default Verlet */
-  double damping_pair;            /* k_d of 3.41 [M/(L^6 T)], bonds that hold  default 0 */
-  double damping_mean;            /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)]  default 0 */
-  double damping_absolute;        /* -k V (settling) [M/(L^3 T)]          default 0 */
+  bw_solid_damping damping;       /* default none */
   bool contact;                   /* repulsion of particles nearer than ds that no intact bond joins
                                   (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
   double origin[3];               /* of the lattice [L]                   default 0 */

@@ -22,19 +22,19 @@ bw_solid_config bw_solid_config_default(void)
                        .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (int g = 0; g < BW_PD_GROUPS; g++)
     for (int h = 0; h < BW_PD_GROUPS; h++)
-      c.joint_G0[g][h] = NAN;
+      c.more.joint_G0[g][h] = NAN;
   return c;
 }
 
 static bw_status check_config(const bw_solid_config *c)
 {
-  const double value[] = {c->damping_pair, c->damping_mean, c->damping_absolute};
-  const char *name[] = {"damping_pair", "damping_mean", "damping_absolute"};
+  const double value[] = {c->damping.pair, c->damping.mean, c->damping.absolute};
+  const char *name[] = {"damping.pair", "damping.mean", "damping.absolute"};
   /* What is the body's to refuse the body refuses: geometry, materials, lattice. */
   BW_REQUIRE((unsigned)c->integrator <= BW_SOLID_RK3, BW_EINPUT,
              "solid: integrator = %d is unknown", (int)c->integrator);
-  BW_REQUIRE(c->n_more >= 0 && c->n_more < BW_PD_GROUPS, BW_EINPUT,
-             "solid: n_more = %d must be from 0 to %d", c->n_more, BW_PD_GROUPS - 1);
+  BW_REQUIRE(c->more.n >= 0 && c->more.n < BW_PD_GROUPS, BW_EINPUT,
+             "solid: more.n = %d must be from 0 to %d", c->more.n, BW_PD_GROUPS - 1);
   for (int q = 0; q < 3; q++)
     BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
                "solid: %s = %g must be zero or positive", name[q], value[q]);
@@ -61,7 +61,7 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
                          .family_reach = c->family_reach,
                          .disorder = c->disorder,
                          .disorder_seed = c->disorder_seed,
-                         .n_group = 1 + c->n_more,
+                         .n_group = 1 + c->more.n,
                          .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
   /* Two ways to say it: the number beside E, or that of the choice. */
   if (isnan(c->nu)) b.material[0].nu = c->choice.poisson_ratio;
@@ -69,9 +69,9 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
   memcpy(b.origin, c->origin, sizeof b.origin);
   memcpy(b.axes, c->axes, sizeof b.axes);
   memcpy(b.period, c->period, sizeof b.period);
-  memcpy(b.joint_G0, c->joint_G0, sizeof b.joint_G0);
-  for (int g = 0; g < c->n_more; g++)
-    b.material[1 + g] = c->more[g];
+  memcpy(b.joint_G0, c->more.joint_G0, sizeof b.joint_G0);
+  for (int g = 0; g < c->more.n; g++)
+    b.material[1 + g] = c->more.material[g];
   return b;
 }
 
@@ -99,7 +99,7 @@ static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *give
   BW_TRY(bw_pd_body_create(comm, &body, law, options, given, &s->body));
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;
-  bw_pd_body_set_damping(s->body, c->damping_pair, c->damping_mean, c->damping_absolute);
+  bw_pd_body_set_damping(s->body, c->damping.pair, c->damping.mean, c->damping.absolute);
   return bw_comm_agree(comm, own_arrays(s));
 }
 

@@ -14,6 +14,7 @@ bw_status bw_solid_set_drag(bw_solid *s, size_t n, const int32_t particle[], con
     const size_t room = s->body->n;
     BW_TRY(BW_ALLOCATE(&d->particle, room));
     BW_TRY(BW_ALLOCATE(&d->k, room));
+    BW_TRY(BW_ALLOCATE(&d->rate, room));
     BW_TRY(BW_ALLOCATE(&d->towards, 3 * room));
     BW_TRY(BW_ALLOCATE(&d->before, 3 * room));
     BW_TRY(BW_ALLOCATE(&d->other, 3 * room));
@@ -21,6 +22,7 @@ bw_status bw_solid_set_drag(bw_solid *s, size_t n, const int32_t particle[], con
   }
   d->n = 0;
   d->work = 0;
+  d->dt = 0; /* the rates are still to be found */
   /* Held and retired particles feel no force. */
   for (size_t q = 0; q < n; q++) {
     if (s->body->held.mobile[particle[q]] == 0) continue;
@@ -48,26 +50,37 @@ void bw_solid__drag_release(bw_solid__drag *d)
 {
   bw_release(&d->particle);
   bw_release(&d->k);
+  bw_release(&d->rate);
   bw_release(&d->towards);
   bw_release(&d->before);
   bw_release(&d->other);
   bw_release(&d->impulse);
 }
 
-/* f += -r (v - V), the change of v that k alone would make within dt, spread over it: however large
- * k dt is, it takes no more than the difference. */
+/* The part of v - V that k alone would take within dt, spread over it: however large k dt is, no
+ * more than all of it. Successive steps have the same dt, so the exponentials are rarely needed. */
+static void find_rates(const bw_pd_body *pd, bw_solid__drag *d, double dt)
+{
+  for (size_t q = 0; q < d->n; q++) {
+    const double rho = bw_pd_body_material(pd, (size_t)d->particle[q])->rho;
+    d->rate[q] = -expm1(-d->k[q] * dt / rho) / dt;
+  }
+  d->dt = dt;
+}
+
+/* f += -rate (v - V). */
 void bw_solid__drag_on(bw_solid *s, double dt)
 {
   bw_solid__drag *d = &s->drag;
   bw_pd_body *pd = s->body;
+  if (dt != d->dt) find_rates(pd, d, dt);
   for (size_t q = 0; q < d->n; q++) {
     const size_t i = (size_t)d->particle[q];
-    const double rate = -expm1(-d->k[q] * dt / bw_pd_body_material(pd, i)->rho) / dt;
     for (int c = 0; c < pd->dimension; c++) {
       const size_t at = 3 * q + (size_t)c;
       d->before[at] = (double)pd->v[c][i];
       d->other[at] = (double)pd->load.f[c][i];
-      pd->load.f[c][i] += (bw_real)(-rate * (d->before[at] - d->towards[at]));
+      pd->load.f[c][i] += (bw_real)(-d->rate[q] * (d->before[at] - d->towards[at]));
     }
   }
 }

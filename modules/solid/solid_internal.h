@@ -20,9 +20,10 @@ typedef struct {
 
 /* bw_solid_set_drag, of the particles that can move. */
 typedef struct {
-  size_t n;               /* of them */
-  int32_t *particle;      /* (n) own particles */
-  double *k, *towards;    /* (n) [M/(L^3 T)], (n,3) [L/T] */
+  size_t n;            /* of them */
+  int32_t *particle;   /* (n) own particles */
+  double *k, *towards; /* (n) [M/(L^3 T)], (n,3) [L/T] */
+  double *rate, dt;    /* (n) what takes part of v - towards per time [1/T], in a step of dt [T] */
   double *before, *other; /* (n,3) v and f at the beginning of a step, without the drag */
   double *impulse, work;  /* (n,3) [M/(L^2 T)], [M L^2/T^2]: since it was set */
 } bw_solid__drag;

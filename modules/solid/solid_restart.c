@@ -80,8 +80,8 @@ uint64_t bw_solid_fingerprint(const bw_solid *s)
 size_t bw_solid_restart_row(const bw_solid *s)
 {
   size_t width = BW_SOLID__ROW;
-  for (int q = 0; q < s->body->n_field; q++)
-    width += s->body->field[q].saved;
+  for (int q = 0; q < s->body->fields.n; q++)
+    width += s->body->fields.row[q].saved;
   return width;
 }
 
@@ -91,10 +91,10 @@ static void get_fields(const bw_solid *s, double rows[])
   const bw_pd_body *pd = s->body;
   const size_t width = bw_solid_restart_row(s);
   size_t column = BW_SOLID__ROW;
-  for (int q = 0; q < pd->n_field; q++) {
-    if (!pd->field[q].saved) continue;
+  for (int q = 0; q < pd->fields.n; q++) {
+    if (!pd->fields.row[q].saved) continue;
     for (size_t i = 0; i < pd->n; i++)
-      rows[width * i + column] = (double)pd->field[q].value[pd->points.place[i]];
+      rows[width * i + column] = (double)pd->fields.row[q].value[pd->points.place[i]];
     column++;
   }
 }
@@ -105,11 +105,11 @@ static void set_fields(bw_solid *s, const double rows[])
   bw_pd_body *pd = s->body;
   const size_t width = bw_solid_restart_row(s);
   size_t column = BW_SOLID__ROW;
-  for (int q = 0; q < pd->n_field; q++) {
-    if (!pd->field[q].saved) continue;
+  for (int q = 0; q < pd->fields.n; q++) {
+    if (!pd->fields.row[q].saved) continue;
     for (size_t i = 0; i < pd->n; i++)
-      pd->field[q].value[pd->points.place[i]] = (bw_real)rows[width * i + column];
-    if (pd->field[q].after >= 0) bw_pd_body_fill_places(pd, pd->field[q].value);
+      pd->fields.row[q].value[pd->points.place[i]] = (bw_real)rows[width * i + column];
+    if (pd->fields.row[q].after >= 0) bw_pd_body_fill_places(pd, pd->fields.row[q].value);
     column++;
   }
 }

@@ -85,9 +85,9 @@ static inline bw_status block_make_solid(const bw_comm *comm, const block_set_up
   const double carried = b->body == A_PLATE || b->iterations > 0 ? 0.0 : CARRIED;
   c.E = (b->ratio + carried) * speed_of_sound * speed_of_sound;
   if (b->body == A_PLATE)
-    c.damping_pair = b->ratio * 0.1 / (b->dt * 30.0 * H * H * H); /* 30 h^3: the family */
+    c.damping.pair = b->ratio * 0.1 / (b->dt * 30.0 * H * H * H); /* 30 h^3: the family */
   else
-    c.damping_mean = sqrt(c.E * b->ratio) / size; /* rests within a step */
+    c.damping.mean = sqrt(c.E * b->ratio) / size; /* rests within a step */
   c.origin[2] = 0.5 * H;
   int64_t n = 0;
   int32_t *site = NULL;

@@ -70,7 +70,7 @@ static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s
   c.rho = b->motion == FALL ? 2.0 : 1.0;
   c.E = 4.0 * c.rho / (s->dt * s->dt);
   /* pairs: damping against a mean would hold back its turning; the family has about 30 h^3 */
-  c.damping_pair = 1.0 * c.rho / (s->dt * 30.0 * s->h * s->h * s->h);
+  c.damping.pair = 1.0 * c.rho / (s->dt * 30.0 * s->h * s->h * s->h);
   c.origin[2] = 0.5 * s->h;
   const bw_shape_lattice lattice = bw_shape_lattice_straight(s->h, c.origin, true);
   bw_status st = bw_shape_fill(1, &cylinder, &lattice, 0, 1, &n, &site, &kind, NULL);

@@ -25,7 +25,7 @@ static bw_status make(const bw_comm *comm, double G0, double damping, bw_solid *
   c.rho = 1200;
   c.E = 1e8;
   c.G0 = G0;
-  c.damping_pair = damping;
+  c.damping.pair = damping;
   c.contact = true;
   int32_t *site = NULL;
   BW_TRY(BW_ALLOCATE(&site, 3 * NX * NY * NZ));

@@ -43,7 +43,7 @@ static bw_status snap(bw_validation *v)
   body_rows r;
   double worst = 0, time = 0;
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1e-3, c.rho = 1200, c.E = 3e9, c.G0 = 300;
-  c.damping_pair = 1e14, c.contact = true;
+  c.damping.pair = 1e14, c.contact = true;
   BW_TRY(body_make(bw_validation_comm(v), &c, (int[3]){60, 20, 1}, notched, NULL, &pd));
   BW_TRY(body_rows_make(pd, &r));
   BW_TRY(bw_solid_load_traction(pd, (double[3]){0, 0.017, -1}, (double[3]){0.02, FAR, 1}, 0.016,

@@ -34,8 +34,8 @@ static bw_solid_config halves(void)
 {
   bw_solid_config c = bw_solid_config_default();
   c.geometry = BW_PD_PLANE_STRESS, c.ds = 1, c.rho = RHO, c.E = E;
-  c.n_more = 1;
-  c.more[0] = (bw_pd_material){.rho = RHO2, .E = E2, .nu = NAN, .G0 = INFINITY};
+  c.more.n = 1;
+  c.more.material[0] = (bw_pd_material){.rho = RHO2, .E = E2, .nu = NAN, .G0 = INFINITY};
   return c;
 }
 

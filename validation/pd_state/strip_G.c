@@ -124,9 +124,9 @@ static bw_status make(const bw_comm *comm, bw_solid_config *c, strip *s)
   int32_t *site = NULL;
   uint8_t *kind = NULL, *group = NULL;
   /* The same material, that does not break. */
-  c->n_more = 1;
-  c->more[0] = (bw_pd_material){c->rho, c->E, c->choice.poisson_ratio, INFINITY};
-  c->joint_G0[0][1] = c->joint_G0[1][0] = INFINITY;
+  c->more.n = 1;
+  c->more.material[0] = (bw_pd_material){c->rho, c->E, c->choice.poisson_ratio, INFINITY};
+  c->more.joint_G0[0][1] = c->more.joint_G0[1][0] = INFINITY;
   BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)n));
   BW_TRY(BW_ALLOCATE(&kind, (size_t)n));
   BW_TRY(BW_ALLOCATE(&group, (size_t)n));

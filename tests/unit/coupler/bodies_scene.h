@@ -78,7 +78,7 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
   c.ds = c.thickness = H;
   c.rho = b->ratio;
   c.E = b->ratio * 4e4; /* sound crosses it four times in a step */
-  c.damping_mean = b->ratio * 800.0;
+  c.damping.mean = b->ratio * 800.0;
   c.contact = !b->no_contact;
   c.origin[2] = 0.5 * H;
   for (int q = 0; q < b->n_block; q++) {

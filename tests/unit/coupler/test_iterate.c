@@ -23,7 +23,7 @@ static double make_light(scene *s)
   bw_solid_destroy(&s->solid);
   material.rho = 0.1 * RHO;
   material.E = material.rho * c * c;
-  material.damping_mean = material.rho * c / (BLOCK * H);
+  material.damping.mean = material.rho * c / (BLOCK * H);
   const bw_shape_lattice lattice = bw_shape_lattice_straight(H, material.origin, false);
   bw_check_ok(bw_shape_fill(1, &cube, &lattice, 0, 1, &n, &site, &kind, NULL));
   bw_check_ok(bw_solid_create_same(bw_check_world(), &material, n, site, kind, &s->solid));

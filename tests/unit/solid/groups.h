@@ -35,8 +35,8 @@ static inline bw_solid *make(const bw_comm *comm, const bw_solid_config *c, cons
 /* The material of the second group of a config that has one. */
 static inline bw_solid_config with_second(bw_solid_config c, double rho, double E, double G0)
 {
-  c.n_more = 1;
-  c.more[0] = (bw_pd_material){.rho = rho, .E = E, .nu = NAN, .G0 = G0};
+  c.more.n = 1;
+  c.more.material[0] = (bw_pd_material){.rho = rho, .E = E, .nu = NAN, .G0 = G0};
   return c;
 }
 

@@ -57,7 +57,7 @@ START_TEST(a_bounce_does_not_depend_on_ranks)
 {
   bw_comm *self = pd_alone();
   bw_solid_config plate = plate_config(), ball = ball_config(HEIGHT);
-  plate.damping_pair = 0.01;
+  plate.damping.pair = 0.01;
   ball.contact = true;
   scene many = throw_ball(bw_check_world(), plate, ball, BW_PD_FREE, THROW);
   scene one = throw_ball(self, plate, ball, BW_PD_FREE, THROW);

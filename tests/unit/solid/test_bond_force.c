@@ -110,7 +110,7 @@ static void check_momenta(bw_pd_geometry geometry, double damping_pair, bool rk3
 {
   bw_solid_config c = pd_soft(geometry);
   c.integrator = rk3 ? BW_SOLID_RK3 : BW_SOLID_VERLET;
-  c.damping_pair = damping_pair;
+  c.damping.pair = damping_pair;
   c.origin[0] = -3;
   pd_body body = pd_box(7, 6, geometry == BW_PD_3D ? 5 : 1);
   bw_solid *pd = pd_make(bw_check_world(), &c, &body);
@@ -148,9 +148,9 @@ static double energy_error(bw_solid_integrator integrator, double fraction_of_li
 {
   bw_solid_config c = pd_soft(BW_PD_3D);
   c.integrator = integrator;
-  c.damping_pair = damping;
-  c.damping_mean = damping;
-  c.damping_absolute = damping;
+  c.damping.pair = damping;
+  c.damping.mean = damping;
+  c.damping.absolute = damping;
   pd_body body = pd_box(6, 5, 4);
   bw_solid *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, wobble, swirl);
@@ -221,8 +221,8 @@ START_TEST(damping_of_rigid_motion)
 {
   for (int q = 0; q < 2; q++) {
     bw_solid_config c = pd_soft(BW_PD_PLANE_STRAIN);
-    c.damping_absolute = q == 0 ? 0.02 : 0;
-    c.damping_mean = q == 1 ? 0.02 : 0;
+    c.damping.absolute = q == 0 ? 0.02 : 0;
+    c.damping.mean = q == 1 ? 0.02 : 0;
     pd_body body = pd_box(5, 5, 1);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
     pd_set(pd, NULL, drift);

@@ -68,7 +68,7 @@ static void reach(bw_solid_config *c)
 }
 static void damping(bw_solid_config *c)
 {
-  c->damping_mean = -1;
+  c->damping.mean = -1;
 }
 static void axes(bw_solid_config *c)
 {
@@ -118,7 +118,7 @@ static const struct {
            {surface, "surface_correction = 9"},
            {integrator, "integrator = 4"},
            {reach, "family_reach = 4"},
-           {damping, "damping_mean = -1"},
+           {damping, "damping.mean = -1"},
            {axes, "right angles"},
            {origin, "origin[1]"},
            {period, "period[0] = 3.3"},
@@ -252,7 +252,7 @@ START_TEST(the_limit_is_stable)
   for (int q = 0; q < 2; q++) {
     bw_solid_config c = pd_soft(BW_PD_3D);
     c.integrator = (bw_solid_integrator)q;
-    c.damping_pair = 0.5, c.damping_mean = 1, c.damping_absolute = 0.5;
+    c.damping.pair = 0.5, c.damping.mean = 1, c.damping.absolute = 0.5;
     pd_body body = pd_box(6, 6, 6);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
     pd_set(pd, zigzag, NULL);

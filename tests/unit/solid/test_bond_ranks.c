@@ -33,8 +33,8 @@ static bw_solid_config breaking(int way)
   const bool damped = way % 2 == 1;
   bw_solid_config c = pd_soft(BW_PD_3D);
   c.G0 = 0.003;
-  c.damping_pair = damped ? 0.02 : 0;
-  c.damping_mean = damped ? 0.01 : 0;
+  c.damping.pair = damped ? 0.02 : 0;
+  c.damping.mean = damped ? 0.01 : 0;
   c.surface_correction = way == 1 ? BW_PD_SURFACE_TENSOR : BW_PD_SURFACE_VOLUME;
   c.integrator = damped ? BW_SOLID_VERLET : BW_SOLID_RK3;
   c.disorder = way < 2 ? 0 : 0.3;
@@ -159,7 +159,7 @@ START_TEST(the_book_of_damping_goes_on)
   bw_comm *self = pd_alone();
   pd_body body = pd_box(8, 6, 5);
   bw_solid_config c = pd_soft(BW_PD_3D);
-  c.damping_pair = 0.05;
+  c.damping.pair = 0.05;
   bw_solid *many = pd_make(bw_check_world(), &c, &body), *one = pd_make(self, &c, &body);
   const double dt = 0.4 * bw_solid_dt_max(one);
   pd_set(many, NULL, shake);

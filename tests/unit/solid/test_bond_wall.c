@@ -260,7 +260,7 @@ static void part(const double X0[3], double v[3])
 static bw_solid *two_pieces(const bw_comm *comm, const pd_body *body, double damping)
 {
   bw_solid_config c = soft_contact();
-  c.damping_pair = damping;
+  c.damping.pair = damping;
   bw_solid *pd = pd_make(comm, &c, body);
   bw_check_ok(
       bw_solid_precrack(pd, (double[]){2, -9, -9}, (double[]){2, 9, -9}, (double[]){2, -9, 9}));

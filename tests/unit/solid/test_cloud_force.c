@@ -73,7 +73,7 @@ static double force_on(const pairs *p, int64_t a, double A[3])
     for (int d = 0; d < 3; d++)
       along += (p->V[3 * b + d] - p->V[3 * a + d]) * z[d] / r;
     for (int d = 0; d < 3; d++)
-      A[d] += (k * s + p->c->damping_pair * gamma * p->dv * along) * z[d] / r / p->c->rho;
+      A[d] += (k * s + p->c->damping.pair * gamma * p->dv * along) * z[d] / r / p->c->rho;
     energy += 0.5 * k * s * s * r0 * p->dv;
   }
   return energy;
@@ -85,7 +85,7 @@ static void check_force(bw_solid_config c, bool spread)
   pd_body body = planar ? pd_box(13, 9, 1) : pd_box(9, 7, 6);
   bw_solid *pd = pd_make(bw_check_world(), &c, &body);
   pd_set(pd, wobble, swirl);
-  if (spread) bw_solid_set_damping(pd, c.damping_pair, 1e-30, 0); /* another way through */
+  if (spread) bw_solid_set_damping(pd, c.damping.pair, 1e-30, 0); /* another way through */
   const double elastic = ledger_of(pd).elastic, horizon = bw_solid_horizon(pd);
   double *X0 = rows_of(pd, bw_solid_get_reference), *X = rows_of(pd, bw_solid_get_position);
   double *A = rows_of(pd, bw_solid_get_acceleration), *V = rows_of(pd, bw_solid_get_velocity);
@@ -116,7 +116,7 @@ START_TEST(forces_are_the_sum_over_pairs)
       for (int damped = 0; damped < 3; damped++) {
         bw_solid_config c = cloudy((bw_pd_geometry)g);
         c.surface_correction = (bw_pd_surface_correction)surface;
-        c.damping_pair = damped > 0 ? 0.2 : 0;
+        c.damping.pair = damped > 0 ? 0.2 : 0;
         check_force(c, damped == 2);
       }
 }

@@ -34,9 +34,9 @@ static bw_solid_config way(int q)
   c.surface_correction = surface[q];
   c.disorder = q >= 6 ? 0.3 : 0;
   c.integrator = q % 4 == 1 ? BW_SOLID_RK3 : BW_SOLID_VERLET;
-  c.damping_pair = q % 2 == 0 ? 0.02 : 0;
-  c.damping_mean = q == 4 || q == 7 ? 0.02 : 0;
-  c.damping_absolute = q == 8 ? 0.02 : 0;
+  c.damping.pair = q % 2 == 0 ? 0.02 : 0;
+  c.damping.mean = q == 4 || q == 7 ? 0.02 : 0;
+  c.damping.absolute = q == 8 ? 0.02 : 0;
   c.contact = q == 0 || q == 5 || q == 6;
   c.calibration = q == 3 ? BW_PD_CALIBRATION_LATTICE : BW_PD_CALIBRATION_NONE;
   c.G0 = 1e-3;
@@ -128,9 +128,9 @@ END_TEST
 START_TEST(motion_does_not_depend_on_ranks)
 {
   bw_solid_config c = two_halves(BW_PD_3D);
-  c.G0 = c.more[0].G0 = 0.004;
-  c.joint_G0[0][1] = c.joint_G0[1][0] = 0.001;
-  c.damping_pair = 0.02;
+  c.G0 = c.more.material[0].G0 = 0.004;
+  c.more.joint_G0[0][1] = c.more.joint_G0[1][0] = 0.001;
+  c.damping.pair = 0.02;
   c.contact = true;
   bw_comm *self = pd_alone();
   pd_body body = bar(false);
@@ -158,7 +158,7 @@ END_TEST
 START_TEST(a_restart_goes_on_to_the_same_bits)
 {
   bw_solid_config c = two_halves(BW_PD_PLANE_STRAIN);
-  c.G0 = c.more[0].G0 = 0.004;
+  c.G0 = c.more.material[0].G0 = 0.004;
   pd_body body = bar(true);
   bw_solid *first = make(bw_check_world(), &c, &body, by_half);
   bw_solid *second = make(bw_check_world(), &c, &body, by_half);

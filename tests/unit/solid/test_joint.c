@@ -78,8 +78,8 @@ START_TEST(a_weak_joint_breaks_at_the_joint)
   c.calibration = BW_PD_CALIBRATION_LATTICE;
   c.surface_correction = BW_PD_SURFACE_NONE;
   c.period[1] = c.period[2] = 2;
-  c.G0 = c.more[0].G0 = 1;
-  c.joint_G0[0][1] = c.joint_G0[1][0] = 1e-3;
+  c.G0 = c.more.material[0].G0 = 1;
+  c.more.joint_G0[0][1] = c.more.joint_G0[1][0] = 1e-3;
   pd_body body = pd_box(16, 4, 4);
   bw_solid *s = make(bw_check_world(), &c, &body, by_half);
   pd_set(s, NULL, part);
@@ -247,13 +247,13 @@ START_TEST(what_is_wrong_with_a_group_is_named)
 {
   const bw_solid_config good = two_halves(BW_PD_PLANE_STRESS);
   bw_solid_config c = good;
-  c.more[0].E = 0;
+  c.more.material[0].E = 0;
   refused(&c, by_half, "more[0].E");
   c = good;
-  c.more[0].nu = 0.3;
+  c.more.material[0].nu = 0.3;
   refused(&c, by_half, "nu = 0.3");
   c = good;
-  c.joint_G0[0][1] = 2;
+  c.more.joint_G0[0][1] = 2;
   refused(&c, by_half, "joint_G0[0][1]");
   refused(&good, third, "group 2");
 }

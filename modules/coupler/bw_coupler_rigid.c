@@ -191,6 +191,15 @@ static bool moves(const bw_rigid *r)
   return false;
 }
 
+/* Markers where the bodies are, with a memory or without. */
+static bw_status place(bw_coupler_rigid *c, const double *memory)
+{
+  bw_rigid_surface(c->rigid, c->X, c->V, c->N);
+  BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->dV, memory));
+  c->placed = true;
+  return bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu);
+}
+
 bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)
 {
   /* What is to be taken out of the reaction: the fluid inside now, against that after the step. */
@@ -198,10 +207,20 @@ bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)
   bw_ibm_mdf_begin_step(c->ibm);
   if (c->placed && !moves(c->rigid)) return BW_OK;
   if (c->placed) bw_ibm_mdf_memory(c->ibm, c->M);
-  bw_rigid_surface(c->rigid, c->X, c->V, c->N);
-  BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->dV, c->placed ? c->M : NULL));
-  c->placed = true;
-  return bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu);
+  return place(c, c->placed ? c->M : NULL);
+}
+
+void bw_coupler_rigid_get_state(bw_coupler_rigid *c, double M[], double load[])
+{
+  memset(M, 0, 3 * c->n * sizeof *M);
+  if (c->placed) bw_ibm_mdf_memory(c->ibm, M);
+  memcpy(load, c->load, 6 * (size_t)bw_rigid_count(c->rigid) * sizeof *load);
+}
+
+bw_status bw_coupler_rigid_set_state(bw_coupler_rigid *c, const double M[], const double load[])
+{
+  memcpy(c->load, load, 6 * (size_t)bw_rigid_count(c->rigid) * sizeof *load);
+  return place(c, M);
 }
 
 void bw_coupler_rigid_force(bw_coupler_rigid *c, double dt)

@@ -105,6 +105,7 @@ void bw_rigid_destroy(bw_rigid **rigid)
     bw_release(&r->body[q].shape);
   bw_release(&r->body);
   bw_release(&r->sum);
+  bw_release(&r->id);
   bw_release(&r->of);
   bw_release(&r->area);
   bw_release(&r->y);
@@ -171,9 +172,11 @@ double bw_rigid_dt_max(const bw_rigid *r)
     const bw_rigid__body *b = &r->body[q];
     const double least = fmin(b->inertia[0], fmin(b->inertia[1], b->inertia[2]));
     const double contact = 0.5 * r->config.stiffness * b->area;
+    /* What is held moves by no force. */
     for (int d = 0; d < 3; d++) {
-      fastest = fmax(fastest, (b->stiffness[d] + contact) / b->mass);
-      fastest = fmax(fastest, (b->stiffness[3 + d] + contact * b->radius * b->radius) / least);
+      if (!b->held[d]) fastest = fmax(fastest, (b->stiffness[d] + contact) / b->mass);
+      if (b->turns == RIGID_FREE || b->turns == d)
+        fastest = fmax(fastest, (b->stiffness[3 + d] + contact * b->radius * b->radius) / least);
     }
   }
   return fastest > 0.0 ? r->config.safety * 2.0 / sqrt(fastest) : HUGE_VAL;

@@ -110,6 +110,11 @@ double bw_rigid_dt_max(const bw_rigid *rigid);
 /* One step of dt [T]. BW_ECFL above bw_rigid_dt_max, BW_EDIVERGED when something is not finite.
  * Collective. */
 bw_status bw_rigid_step(bw_rigid *rigid, double dt) BW_MUST_CHECK;
+/* The same in two halves: kick and drift; new forces and kick. Between them a caller whose load
+ * depends on where the bodies are finds them there, and loads it for the second kick. Errors as of
+ * bw_rigid_step. Collective. */
+bw_status bw_rigid_begin(bw_rigid *rigid, double dt) BW_MUST_CHECK;
+bw_status bw_rigid_end(bw_rigid *rigid, double dt) BW_MUST_CHECK;
 
 /* Energies now [M L^2/T^2]; their sum is constant without load, damping and held motion. */
 typedef struct {
@@ -122,7 +127,9 @@ bw_rigid_energy bw_rigid_energy_of(const bw_rigid *rigid); /* Collective. */
 
 /* Points on the surfaces, with equal shares of all bodies on every rank: how many on this one. */
 size_t bw_rigid_points(const bw_rigid *rigid); /* Local. */
-/* Body of each of them (n), area [L^2] (planar: times the depth) (n). Borrowed. Local. */
+/* Number of each of them (n), from 0 over all bodies, whatever the ranks are; body (n); area [L^2]
+ * (planar: times the depth) (n). Borrowed. Local. */
+const int64_t *bw_rigid_point_id(const bw_rigid *rigid);
 const int *bw_rigid_point_body(const bw_rigid *rigid);
 const double *bw_rigid_point_area(const bw_rigid *rigid);
 /* Where they are now, how they move and look: X, V, N (n,3); any may be NULL. Local. */

@@ -28,6 +28,8 @@ struct bw_rigid {
   bw_rigid__body *body; /* (n) */
   double time, contact; /* contact: energy of the last evaluation */
   size_t points;        /* of this rank */
+  int64_t all;          /* points of all ranks */
+  int64_t *id;          /* (points) number among them */
   int *of;              /* (points) body */
   double *area;         /* (points) */
   double *y, *m;        /* (points,3) place and normal in the frame of the principal axes */

@@ -10,6 +10,11 @@ size_t bw_rigid_points(const bw_rigid *r)
   return r->points;
 }
 
+const int64_t *bw_rigid_point_id(const bw_rigid *r)
+{
+  return r->id;
+}
+
 const int *bw_rigid_point_body(const bw_rigid *r)
 {
   return r->of;
@@ -24,23 +29,27 @@ const double *bw_rigid_point_area(const bw_rigid *r)
 static bw_status grow(bw_rigid *r, size_t more)
 {
   const size_t n = r->points, room = n + more;
+  int64_t *id = NULL;
   int *of = NULL;
   double *area = NULL, *y = NULL, *m = NULL;
-  bw_status st = BW_ALLOCATE(&of, room);
+  bw_status st = BW_ALLOCATE(&id, room);
+  BW_THEN(st, BW_ALLOCATE(&of, room));
   BW_THEN(st, BW_ALLOCATE(&area, room));
   BW_THEN(st, BW_ALLOCATE(&y, 3 * room));
   BW_THEN(st, BW_ALLOCATE(&m, 3 * room));
   if (st == BW_OK && n > 0) {
+    memcpy(id, r->id, n * sizeof *id);
     memcpy(of, r->of, n * sizeof *of);
     memcpy(area, r->area, n * sizeof *area);
     memcpy(y, r->y, 3 * n * sizeof *y);
     memcpy(m, r->m, 3 * n * sizeof *m);
   }
+  bw_release(&r->id);
   bw_release(&r->of);
   bw_release(&r->area);
   bw_release(&r->y);
   bw_release(&r->m);
-  r->of = of, r->area = area, r->y = y, r->m = m;
+  r->id = id, r->of = of, r->area = area, r->y = y, r->m = m;
   return st;
 }
 
@@ -64,11 +73,13 @@ static bw_status add_points(bw_rigid *r, int q)
     if (p < begin || p >= end) continue;
     /* In the frame of the principal axes nothing moves any more. */
     const size_t i = r->points++;
+    r->id[i] = r->all + p;
     r->of[i] = q;
     r->area[i] = A[p] * (planar ? r->config.depth : 1.0);
     rigid_turn_back((const double(*)[3])b->axes, from, r->y + 3 * i);
     rigid_turn_back((const double(*)[3])b->axes, N + 3 * p, r->m + 3 * i);
   }
+  r->all += n;
   bw_release(&X);
   bw_release(&N);
   bw_release(&A);

@@ -176,7 +176,7 @@ static void drift(bw_rigid__body *b, double dt)
     b->angle[d] += angle[d];
 }
 
-bw_status bw_rigid_step(bw_rigid *r, double dt)
+bw_status bw_rigid_begin(bw_rigid *r, double dt)
 {
   const double most = bw_rigid_dt_max(r);
   BW_REQUIRE(dt > 0.0 && dt <= most, BW_ECFL, "rigid: dt = %g: must be > 0 and at most %g", dt,
@@ -186,8 +186,13 @@ bw_status bw_rigid_step(bw_rigid *r, double dt)
     kick(&r->body[q], 0.5 * dt, false);
     drift(&r->body[q], dt);
   }
-  bw_rigid__forces(r);
+  return BW_OK;
+}
+
+bw_status bw_rigid_end(bw_rigid *r, double dt)
+{
   bool finite = true;
+  bw_rigid__forces(r);
   for (int q = 0; q < r->n; q++) {
     bw_rigid__body *b = &r->body[q];
     kick(b, 0.5 * dt, true);
@@ -198,6 +203,12 @@ bw_status bw_rigid_step(bw_rigid *r, double dt)
   /* All ranks have the same numbers, so they agree. */
   BW_REQUIRE(finite, BW_EDIVERGED, "rigid: the motion is not finite at t = %g", r->time);
   return BW_OK;
+}
+
+bw_status bw_rigid_step(bw_rigid *r, double dt)
+{
+  BW_TRY(bw_rigid_begin(r, dt));
+  return bw_rigid_end(r, dt);
 }
 
 bw_rigid_energy bw_rigid_energy_of(const bw_rigid *r)

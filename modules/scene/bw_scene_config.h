@@ -189,6 +189,17 @@ typedef struct {
   double amplitude[3]; /* X = X0 + amplitude sin(2 pi frequency t) [L] */
   double frequency;    /* [1/T] */
 } bw_scene_swing;
+/* A rigid body: what its shapes and its material leave open. */
+typedef struct {
+  double mass;               /* [M]; NaN: of its shapes, filled with its material */
+  double centre[3];          /* of mass [L]; NaN: of its shapes, filled evenly */
+  double inertia[3];         /* about it, along x, y, z [M L^2]; NaN: of its shapes */
+  double stiffness[3];       /* of springs to where it starts [M/T^2] */
+  double damping[3];         /* beside them [M/T] */
+  double turn_stiffness;     /* of a spring against its turn [M L^2/T^2] */
+  double turn_damping;       /* beside it [M L^2/T] */
+  char held[BW_SCENE_NAMES]; /* directions it cannot move or turn in: x, y, z, turn_x, ... turn */
+} bw_scene_rigid;
 typedef struct {
   char name[BW_SCENE_NAME];             /* how others call it */
   int n_shape;                          /* how many of shape */
@@ -202,6 +213,8 @@ typedef struct {
   bw_scene_rotation rotation;        /* of a prescribed body */
   bool has_swing;                    /* is it given? */
   bw_scene_swing swing;              /* of a prescribed body */
+  bool has_rigid;                    /* is it given? */
+  bw_scene_rigid rigid;              /* of a rigid body */
   int n_held;                        /* how many of held */
   bw_scene_held held[BW_SCENE_HELD]; /* where it is held */
   int n_cracks;                      /* how many of cracks */
@@ -321,6 +334,9 @@ typedef struct {
   double marker_spacing;    /* over the grid spacing [-] */
   double probe_length;      /* over the grid spacing [-] */
   double load_relaxation;   /* of the load, w [-] */
+  double virtual_mass;      /* of bodies in a flow, see bw_coupler.h and bw_coupler_rigid.h [-] */
+  double contact_stiffness; /* of rigid bodies, see bw_rigid.h [M/(L^2 T^2)]; NaN: by the energy
+                               that gravity and velocities bring */
   double coupling_residual; /* at which the iterations of a step end [-] */
   int coupling_iterations;  /* of a step, at most; 0: none */
   unsigned set; /* bits of the knobs that `accuracy` has set, by rows of its table; no key */

@@ -123,6 +123,10 @@ bw_status bw_scene__check_phases(const bw_scene_config *c)
       const int b = bw_scene__body_named(c, name);
       BW_REQUIRE(b >= 0, BW_EINPUT, "phases.%d.hold = %s: there is no such body; there are: %s", q,
                  name, known);
+      BW_REQUIRE(c->bodies[b].motion != BW_SCENE_RIGID, BW_EINPUT,
+                 "phases.%d.hold = %s: this build does not hold rigid bodies for a phase; leave it "
+                 "out, or give rigid.held for the whole run",
+                 q, name);
       held += bw_scene__deforms(&c->bodies[b]);
     }
     int all = 0;

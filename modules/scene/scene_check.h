@@ -13,6 +13,17 @@ bw_status bw_scene__check_gauges(const bw_scene_config *c) BW_MUST_CHECK; /* and
 /* Keys of state-based laws: those that the law of a material reads, and all that it needs. */
 bw_status bw_scene__check_state(const bw_scene_material *m) BW_MUST_CHECK;
 
+/* Mass, springs and held directions of a rigid body, and where one can be. */
+bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b) BW_MUST_CHECK;
+
+/* Is some body rigid? */
+bool bw_scene__any_rigid(const bw_scene_config *c);
+/* Is body b one of bw_rigid's: a rigid one, or one that does not deform in a scene of rigid ones? */
+bool bw_scene__in_rigid(const bw_scene_config *c, int b);
+/* Bits 0 .. 5 <- directions that a rigid body is held in: x, y, z, turn about x, y, z. False: a word
+ * is none of them, *wrong (BW_SCENE_NAME). */
+bool bw_scene__held_bits(const char *held, unsigned *bits, char wrong[]);
+
 /* Does the scene have a fluid on a grid? */
 bool bw_scene__has_fluid(const bw_scene_config *c);
 /* Does the body deform? */

@@ -22,14 +22,10 @@ static bw_status check_material(const bw_scene_config *c, const bw_scene_body *b
 static bw_status check_motion(const bw_scene_config *c, const bw_scene_body *b)
 {
   const bool still = b->velocity[0] == 0 && b->velocity[1] == 0 && b->velocity[2] == 0;
-  BW_REQUIRE(b->motion != BW_SCENE_RIGID, BW_EINPUT,
-             "bodies.%s.motion = rigid: not in this build; this build has: fixed, prescribed, "
-             "elastic, breakable",
-             b->name);
   BW_REQUIRE(b->motion != BW_SCENE_FIXED || (still && !b->has_rotation && !b->has_swing), BW_EINPUT,
              "bodies.%s: a fixed body has no velocity, rotation or swing; make it prescribed",
              b->name);
-  BW_REQUIRE(!bw_scene__deforms(b) || !b->has_swing, BW_EINPUT,
+  BW_REQUIRE(b->motion == BW_SCENE_PRESCRIBED || !b->has_swing, BW_EINPUT,
              "bodies.%s.swing: it belongs to a prescribed body; leave it out", b->name);
   BW_REQUIRE(!bw_scene__planar(c) || b->velocity[2] == 0.0, BW_EINPUT,
              "bodies.%s.velocity[2] = %g: the scene has two dimensions; give 0", b->name,
@@ -38,6 +34,7 @@ static bw_status check_motion(const bw_scene_config *c, const bw_scene_body *b)
       b->turn == 0.0 || !bw_scene__has_fluid(c), BW_EINPUT,
       "bodies.%s.turn = %g deg: lattices in a flow are not turned in this build; leave it out",
       b->name, b->turn);
+  BW_TRY(bw_scene__check_rigid(c, b));
   if (!bw_scene__deforms(b)) return BW_OK;
   BW_TRY(check_material(c, b, b->material, "material"));
   for (int p = 0; p < b->n_shape; p++)

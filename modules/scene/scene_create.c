@@ -18,6 +18,7 @@ void bw_scene_destroy(bw_scene **scene)
   bw_scene *s = *scene;
   if (s == NULL) return;
   bw_scene__gauges_destroy(s);
+  bw_scene__rigid_destroy(s);
   bw_scene__fluid_destroy(s);
   bw_scene__solids_destroy(s);
   bw_release(scene);
@@ -27,6 +28,16 @@ bool bw_scene__asked(const bw_scene *s, const char *quantity)
 {
   for (int q = 0; q < s->config.n_gauges; q++)
     if (bw_scene__listed(s->config.gauges[q].of, quantity)) return true;
+  return false;
+}
+
+bool bw_scene__balances(const bw_scene *s)
+{
+  const bw_scene_config *c = &s->config;
+  for (int q = 0; q < c->n_gauges; q++)
+    if (bw_scene__listed(c->gauges[q].of, "force") &&
+        bw_scene__force_holds(c, &c->gauges[q], BW_SCENE__BY_BOX))
+      return true;
   return false;
 }
 
@@ -92,10 +103,12 @@ static bw_status build(bw_scene *s)
   const bw_scene_config *c = &s->config;
   if (bw_scene__has_fluid(c)) BW_TRY(bw_scene__fluid_create(s));
   find_speed(s);
+  BW_TRY(bw_scene__rigid_create(s));
   BW_TRY(bw_scene__solids_create(s));
   if (s->fluid != NULL && s->n_solids > 0) BW_TRY(bw_scene__coupled_create(s));
-  if (s->fluid != NULL && s->n_solids == 0 && c->n_bodies > 0) BW_TRY(bw_scene__surfaces_create(s));
-  if (s->fluid != NULL && c->n_bodies > 0 && bw_scene__asked(s, "force")) BW_TRY(watch_box(s));
+  if (s->fluid != NULL && s->n_solids == 0 && s->rigid == NULL && c->n_bodies > 0)
+    BW_TRY(bw_scene__surfaces_create(s));
+  if (bw_scene__balances(s)) BW_TRY(watch_box(s));
   BW_TRY(bw_scene__gauges_create(s));
   return bw_scene__phase_begin(s);
 }
@@ -115,7 +128,8 @@ bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw
   s->planar = bw_scene__planar(&s->config);
   s->alive = bw_scene__any_deforms(&s->config);
   for (int b = 0; b < s->config.n_bodies; b++)
-    s->alive = s->alive || s->config.bodies[b].motion == BW_SCENE_PRESCRIBED;
+    s->alive = s->alive || s->config.bodies[b].motion == BW_SCENE_PRESCRIBED ||
+               s->config.bodies[b].motion == BW_SCENE_RIGID;
   bw_status st = bw_comm_agree(comm, bw_scene_check(&s->config));
   BW_THEN(st, build(s));
   if (st != BW_OK) bw_scene_destroy(&s);
@@ -135,26 +149,29 @@ static void block(FILE *out, bool runs, const char *name, const char *yes, const
 
 void bw_scene_blocks(const bw_scene *s, FILE *out)
 {
-  const bool flow = s->fluid != NULL, force = bw_scene__asked(s, "force");
+  const bool flow = s->fluid != NULL, rigid = s->rigid != NULL;
+  const bool markers = s->markers != NULL || s->coupler != NULL || s->floats != NULL;
   bool contact = s->assembly != NULL;
   for (int q = 0; q < s->n_solids; q++)
     contact = contact || bw_solid_settings(s->solid[q].solid)->contact;
+  const bool meet = contact || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
   block(out, flow, "fluid, pressure", "the scene has a fluid", "no fluid");
   block(out, s->planar == false, "third dimension", "plane: none",
         flow ? "one cell in z" : "plane: stress or strain");
-  block(out, s->n_solids > 0, "particles, bonds", "a body deforms, or is an image in a flow",
-        s->config.n_bodies > 0 ? "no body deforms: their true surfaces are in the fluid"
-                               : "no body");
+  block(out, s->n_solids > 0, "particles, bonds",
+        rigid ? "a body deforms, others are what it meets"
+              : "a body deforms, or is an image in a flow",
+        s->config.n_bodies > 0 ? "no body deforms: they have true surfaces" : "no body");
   block(out, s->n_solids > 0 && s->alive, "solid steps", "a body deforms or is moved",
         "nothing of particles moves");
-  block(out, contact, "contact", "bodies, or pieces of one, can meet",
-        s->n_solids > 0 ? "contact: none, or nothing can meet" : "no particles");
-  block(out, s->markers != NULL || s->coupler != NULL, "markers", "bodies are in a flow",
-        "no body in a flow");
+  block(out, rigid, "rigid bodies", "a body moves as one piece", "no body is rigid");
+  block(out, meet, "contact", "bodies, or pieces of one, can meet",
+        s->n_solids > 0 || rigid ? "contact: none, or nothing can meet" : "no particles");
+  block(out, markers, "markers", "bodies are in a flow", "no body in a flow");
   block(out, s->probe != NULL || s->coupler != NULL, "probes",
         s->coupler != NULL ? "they load the solid" : "a gauge reads the force",
         "nobody reads the force by them");
-  block(out, flow && force && s->config.n_bodies > 0, "momentum balance", "a gauge reads the force",
+  block(out, bw_scene__balances(s), "momentum balance", "a gauge reads the force on all bodies",
         "no gauge reads it");
   block(out, bw_scene__asked(s, "fragments"), "fragments", "a gauge counts them",
         "no gauge counts them");

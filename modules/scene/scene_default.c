@@ -16,6 +16,7 @@ static void default_body(bw_scene_body *b)
   b->self_contact = INT_MIN;
   b->rotation = (bw_scene_rotation){NAN, {0, 0, 1}, {NAN, NAN, NAN}};
   b->swing = (bw_scene_swing){{NAN, NAN, NAN}, NAN};
+  b->rigid = (bw_scene_rigid){.mass = NAN, .centre = {NAN, NAN, NAN}, .inertia = {NAN, NAN, NAN}};
   b->held[0].layers = 1;
   b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
@@ -69,6 +70,8 @@ static void default_numerics(bw_scene_numerics *n)
                            .marker_spacing = NAN,
                            .probe_length = NAN,
                            .load_relaxation = NAN,
+                           .virtual_mass = NAN,
+                           .contact_stiffness = NAN,
                            .coupling_residual = NAN,
                            .coupling_iterations = INT_MIN};
 }
@@ -123,6 +126,7 @@ static const knob knobs[] = {
     {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},
     {D(probe_length), OF_MARKERS, {2.0, 2.0, 2.0}},
     {D(load_relaxation), OF_COUPLING, {0.1, 0.1, 0.1}},
+    {D(virtual_mass), OF_MARKERS, {1.0, 1.0, 1.0}},
     {I(coupling_iterations), OF_COUPLING, {1, 1, 20}},
     {D(coupling_residual), OF_COUPLING, {1e-3, 1e-4, 1e-5}},
 };

@@ -42,6 +42,20 @@ static void describe_fluid(bw_scene *s, bw_log *log)
   }
 }
 
+static void describe_rigid(bw_scene *s, bw_log *log)
+{
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    if (s->rigid_of[b] < 0 || s->config.bodies[b].motion != BW_SCENE_RIGID) continue;
+    const bw_rigid_state a = bw_rigid_state_of(s->rigid, s->rigid_of[b]);
+    bw_log_info(log,
+                "rigid      %s: mass %.5g, centre (%g, %g, %g), principal moments %.4g, %.4g, %.4g",
+                s->config.bodies[b].name, a.mass, a.position[0], a.position[1], a.position[2],
+                a.inertia[0], a.inertia[1], a.inertia[2]);
+  }
+  bw_log_info(log, "           step at most %.3g for springs and contact",
+              bw_rigid_dt_max(s->rigid));
+}
+
 /* Cells across what is thin, and steps of the solid. */
 void bw_scene__warn(bw_scene *s, bw_log *log)
 {
@@ -86,6 +100,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   bw_release(&text);
   if (s->fluid != NULL) describe_fluid(s, log);
   describe_solids(s, log);
+  if (s->rigid != NULL) describe_rigid(s, log);
   if (s->coupler != NULL && s->alive) {
     const double dt = bw_scene__limit(s);
     BW_TRY(bw_coupler_check_substeps(s->coupler, dt));

@@ -91,6 +91,12 @@ const bw_config_field bw_scene__numerics_fields[] = {
     V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "length of the normal probes"),
     V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "share of the new load of the fluid in each step"),
+    V(OURS, virtual_mass, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "of bodies in a flow, over that of the fluid they carry along"),
+    V(OURS, contact_stiffness, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L2 T2)",
+      "pressure per depth between rigid bodies and at walls; left out: so that weight and "
+      "velocities "
+      "press them half a spacing in"),
     V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",
       "change of the surface's velocity that ends iterations"),
     V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",

@@ -94,7 +94,7 @@ static const bw_config_field crack_fields[] = {
 const bw_config_word bw_scene__motion_words[] = {
     {"fixed", BW_SCENE_FIXED, "it does not move"},
     {"prescribed", BW_SCENE_PRESCRIBED, "it moves as velocity, rotation and swing say"},
-    {"rigid", BW_SCENE_RIGID, "it moves as one piece"},
+    {"rigid", BW_SCENE_RIGID, "it moves as one piece, by its mass and what acts on it"},
     {"elastic", BW_SCENE_ELASTIC, "it deforms"},
     {"breakable", BW_SCENE_BREAKABLE, "it deforms and breaks"},
     {NULL, 0, NULL}};
@@ -105,6 +105,24 @@ static const bw_config_field rotation_fields[] = {
 static const bw_config_field swing_fields[] = {
     V(bw_scene_swing, amplitude, BW_REQUIRED, BW_POINT, "L", "X = X0 + amplitude sin(2 pi f t)"),
     V(bw_scene_swing, frequency, BW_REQUIRED, BW_ABOVE(0), "1/T", "f"), BW_CONFIG_END};
+static const bw_config_field rigid_fields[] = {
+    V(bw_scene_rigid, mass, BW_OPTIONAL, BW_ABOVE(0), "M",
+      "left out: its shapes filled with its material"),
+    V(bw_scene_rigid, centre, BW_OPTIONAL, BW_POINT, "L",
+      "of mass; left out: of its shapes, filled evenly"),
+    V(bw_scene_rigid, inertia, BW_OPTIONAL, BW_POINT, "M L2",
+      "moments about the centre of mass along x, y, z; in two dimensions the last one counts; left "
+      "out: of its shapes"),
+    V(bw_scene_rigid, stiffness, BW_OPTIONAL, BW_POINT, "M/T2",
+      "of springs along x, y, z between its centre and where that starts"),
+    V(bw_scene_rigid, damping, BW_OPTIONAL, BW_POINT, "M/T", "of dampers beside these springs"),
+    V(bw_scene_rigid, turn_stiffness, BW_OPTIONAL, BW_AT_LEAST(0), "M L2/T2",
+      "of a spring against its turn"),
+    V(bw_scene_rigid, turn_damping, BW_OPTIONAL, BW_AT_LEAST(0), "M L2/T", "of a damper beside it"),
+    V(bw_scene_rigid, held, BW_OPTIONAL, BW_TEXTS, "",
+      "in which it keeps its velocity at the start, mostly none: x, y, z, turn_x, turn_y, turn_z, "
+      "turn (all three)"),
+    BW_CONFIG_END};
 static const bw_config_word self_words[] = {{"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 #define OURS bw_scene_body
 const bw_config_field bw_scene__body_fields[] = {
@@ -112,7 +130,7 @@ const bw_config_field bw_scene__body_fields[] = {
     BW_CONFIG_LIST(bw_scene_body, shape, n_shape, BW_REQUIRED, shape_fields,
                    "shapes in order: added, or taken away"),
     V(OURS, material, BW_OPTIONAL, BW_ANY, "",
-      "what it is made of; fixed and prescribed: not needed"),
+      "what it is made of; not needed: fixed, prescribed, rigid with a mass"),
     BW_CONFIG_WORD(bw_scene_body, motion, BW_REQUIRED, bw_scene__motion_words, "how it moves"),
     V(OURS, spacing, BW_OPTIONAL, BW_ABOVE(0), "L", "of its particles; left out: the fluid's"),
     V(OURS, turn, BW_OPTIONAL, BW_ANY, "deg", "of its lattice about z"),
@@ -121,6 +139,8 @@ const bw_config_field bw_scene__body_fields[] = {
     BW_CONFIG_MAP_IF(bw_scene_body, rotation, has_rotation, rotation_fields,
                      "of a prescribed body; of others that move, at the start"),
     BW_CONFIG_MAP_IF(bw_scene_body, swing, has_swing, swing_fields, "of a prescribed body"),
+    BW_CONFIG_MAP_IF(bw_scene_body, rigid, has_rigid, rigid_fields,
+                     "of a rigid body: mass, springs, directions that are held; left out: free"),
     BW_CONFIG_LIST(bw_scene_body, held, n_held, BW_OPTIONAL, held_fields, "where it is held"),
     BW_CONFIG_LIST(bw_scene_body, cracks, n_cracks, BW_OPTIONAL, crack_fields,
                    "cuts that are there from the start"),

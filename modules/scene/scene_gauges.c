@@ -28,10 +28,14 @@ static void list_columns(const bw_scene *s, int gauge, const bw_scene__quantity 
   const bw_scene_gauge_config *g = &s->config.gauges[gauge];
   if (g->has_line || g->has_slice) return; /* files of their own */
   for (int k = 0; k < what->n; k++) {
-    /* No third component in two dimensions. */
+    /* No third component in two dimensions; of what turns it is the only one. */
     const size_t length = strlen(what->component[k]);
-    if (s->planar && length > 0 && what->component[k][length - 1] == 'z' &&
-        (length == 1 || what->component[k][length - 2] == '.'))
+    const bool third = length > 0 && what->component[k][length - 1] == 'z' &&
+                       (length == 1 || what->component[k][length - 2] == '.');
+    if (s->planar && third != what->axial && (third || what->axial)) continue;
+    /* Only the routes to the force that hold. */
+    if (strcmp(what->word, "force") == 0 &&
+        !bw_scene__force_holds(&s->config, g, (bw_scene__route)(k / 3)))
       continue;
     if (column != NULL) column[*n] = (bw_scene__column){gauge, what, k};
     (*n)++;
@@ -122,11 +126,12 @@ static bw_status take_aim(bw_scene *s, int gauge)
 }
 
 /* Does a quantity of this gauge look at particles? */
-static bool looks_at_particles(const bw_scene_gauge_config *g)
+static bool looks_at_particles(const bw_scene *s, const bw_scene_gauge_config *g)
 {
   char word[BW_SCENE_NAME];
   for (const char *rest = g->of; bw_scene__next_name(&rest, word);) {
     const bw_scene__quantity *what = bw_scene__quantity_named(g, word);
+    if (bw_scene__of_rigid(&s->config, g, what)) continue;
     if (what->source == BW_SCENE__OF_PLACE || strcmp(word, "force_on_support") == 0 ||
         strcmp(word, "crack_tip") == 0)
       return true;
@@ -157,7 +162,7 @@ bw_status bw_scene__gauges_create(bw_scene *s)
       name_column(s, &s->column[k], name);
   }
   for (int g = 0; g < s->config.n_gauges; g++)
-    if (looks_at_particles(&s->config.gauges[g])) {
+    if (looks_at_particles(s, &s->config.gauges[g])) {
       BW_REQUIRE(
           s->n_solids > 0, BW_EINPUT,
           "gauges.%s: bodies of this scene do not deform, they have no particles to look at; "
@@ -179,6 +184,8 @@ static bw_status measure(bw_scene *s, int gauge, const bw_scene__quantity *what,
 {
   for (int k = 0; k < BW_SCENE__COMPONENTS; k++)
     value[k] = NAN;
+  if (bw_scene__of_rigid(&s->config, &s->config.gauges[gauge], what))
+    return bw_scene__measure_rigid(s, gauge, what, value);
   if (what->source >= BW_SCENE__OF_POINT || strcmp(what->word, "force") == 0)
     return bw_scene__measure_fluid(s, gauge, what, value);
   return bw_scene__measure_solid(s, gauge, what, value);

@@ -150,11 +150,33 @@ static bw_status fragments_of(bw_scene *s, const bw_scene_gauge_config *g, doubl
   return BW_OK;
 }
 
+/* Rigid bodies in the books: their own energies in place of those of the particles that follow
+ * them, and in place of the work that moves those. Collective. */
+static bw_status add_rigid(bw_scene *s, bw_solid_ledger *sum)
+{
+  for (int q = 0; q < s->n_solids; q++) {
+    bw_solid_ledger one;
+    if (s->solid[q].n_bodies > 1 || s->rigid_of[s->solid[q].body[0]] < 0) continue;
+    BW_TRY(bw_solid_account(s->solid[q].solid, &one));
+    sum->kinetic -= one.kinetic;
+    sum->external -= one.external;
+  }
+  const bw_rigid_energy e = bw_rigid_energy_of(s->rigid);
+  sum->kinetic += e.kinetic;
+  sum->elastic += e.spring;
+  sum->contact += e.contact;
+  sum->external -= e.weight - s->rigid_weight;
+  return BW_OK;
+}
+
 /* The books of the solids that a gauge names. Collective. */
 static bw_status book_of(bw_scene *s, const bw_scene_gauge_config *g, bw_solid_ledger *sum)
 {
+  const bool all = g->body[0] == '\0';
   *sum = (bw_solid_ledger){0};
-  if (g->body[0] == '\0' && s->assembly != NULL) return bw_solid_assembly_account(s->assembly, sum);
+  if (all && s->assembly != NULL) BW_TRY(bw_solid_assembly_account(s->assembly, sum));
+  if (all && s->rigid != NULL) BW_TRY(add_rigid(s, sum));
+  if (all && s->assembly != NULL) return BW_OK;
   for (int q = 0; q < s->n_solids; q++) {
     bw_solid_ledger one;
     if (!names_solid(s, g, q)) continue;

@@ -1,6 +1,7 @@
 /* scene_impl.h -- the objects of a scene; shared inside `scene` only. */
 #pragma once
 #include "bw_coupler.h"
+#include "bw_coupler_rigid.h"
 #include "bw_pd_state_law.h"
 #include "bw_scene.h"
 #include "bw_solid_assembly.h"
@@ -59,7 +60,7 @@ struct bw_scene {
   const bw_comm *comm; /* borrowed */
   bw_log *log;         /* borrowed, may be NULL */
   bool planar;
-  bool alive; /* some body deforms or is prescribed */
+  bool alive; /* some body deforms, or is rigid or prescribed */
 
   /* solids */
   int n_solids;
@@ -68,6 +69,15 @@ struct bw_scene {
   bw_solid_assembly *assembly;   /* several solids without fluid; NULL: none */
   int n_acting;
   bw_scene__acting acting[BW_SCENE_LOADS];
+
+  /* rigid bodies, and what does not deform beside them */
+  bw_rigid *rigid;               /* NULL: none */
+  bw_coupler_rigid *floats;      /* they are in a flow; NULL: they are not */
+  int rigid_of[BW_SCENE_BODIES]; /* number in `rigid` of each body; -1: it is none */
+  bw_rigid_state *rigid_start;   /* (count) */
+  bw_rigid_state *rigid_before;  /* (count) at the beginning of the step */
+  double *rigid_load;            /* (6 count) of contact with solids: forces, then torques */
+  double rigid_weight;           /* energy of the weights at the start */
 
   /* fluid */
   bw_grid *grid;
@@ -137,8 +147,29 @@ void bw_scene__motion(const bw_scene_body *b, const double X0[3], double time, d
 /* Velocity V (3) of a point of it that is at X (3) then. */
 void bw_scene__velocity(const bw_scene_body *b, const double X[3], double time, double V[3]);
 
+/* scene_rigid.c: bodies of six numbers. */
+bw_status bw_scene__rigid_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__rigid_destroy(bw_scene *s);
+/* Prescribed ones among them are told how to move in the step from s->time. Local. */
+void bw_scene__rigid_tell(bw_scene *s, double dt);
+/* A step of solids and rigid bodies without fluid: contact of the solids' particles loads the rigid
+ * ones, whose own particles move with them. */
+bw_status bw_scene__rigid_step(bw_scene *s, double dt,
+                               bw_status (*solids)(bw_scene *s, double dt)) BW_MUST_CHECK;
+/* Where the material point of body q, at X0 at the start, is in a state of it. Local. */
+void bw_scene__rigid_place(const bw_scene *s, int q, const bw_rigid_state *now, const double X0[3],
+                           double X[3]);
+double bw_scene__rigid_speed(const bw_scene *s); /* the fastest point now [L/T]. Local. */
+bw_status bw_scene__rigid_save(bw_scene *s, bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status bw_scene__rigid_restore(bw_scene *s, bw_checkpoint *ck) BW_MUST_CHECK;
+/* scene_gauges_rigid.c: a quantity for which bw_scene__of_rigid holds. */
+bw_status bw_scene__measure_rigid(bw_scene *s, int gauge, const bw_scene__quantity *what,
+                                  double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+
 /* scene_create.c: does some gauge ask for this quantity? */
 bool bw_scene__asked(const bw_scene *s, const char *quantity);
+/* Is the momentum of a box around the bodies balanced? */
+bool bw_scene__balances(const bw_scene *s);
 
 /* scene_fluid.c */
 bw_status bw_scene__fluid_create(bw_scene *s) BW_MUST_CHECK;

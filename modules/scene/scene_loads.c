@@ -136,7 +136,8 @@ bw_status bw_scene__loads_create(bw_scene *s)
   for (int q = 0; q < s->n_solids; q++) {
     s->solid[q].pushed = (s->solid[q].pushed || heavy) && !bw_scene__has_fluid(&s->config);
     for (int k = 0; k < s->solid[q].n_bodies; k++)
-      if (s->config.bodies[s->solid[q].body[k]].motion == BW_SCENE_PRESCRIBED)
+      if (s->config.bodies[s->solid[q].body[k]].motion == BW_SCENE_PRESCRIBED ||
+          s->rigid_of[s->solid[q].body[k]] >= 0)
         s->solid[q].moved = true;
   }
   return BW_OK;
@@ -171,11 +172,19 @@ static void move(bw_scene *s, int solid, double dt)
   bw_scene__solid *q = &s->solid[solid];
   memset(q->V, 0, 3 * q->n * sizeof *q->V);
   for (size_t i = 0; i < q->n; i++) {
-    const bw_scene_body *b = &s->config.bodies[bw_scene__body_of(q, i)];
+    const int b = bw_scene__body_of(q, i), rigid = s->rigid_of[b];
+    const bw_scene_body *body = &s->config.bodies[b];
     double from[3], to[3];
-    if (b->motion != BW_SCENE_PRESCRIBED) continue;
-    bw_scene__motion(b, q->X0 + 3 * i, s->time, from);
-    bw_scene__motion(b, q->X0 + 3 * i, s->time + dt, to);
+    if (body->motion != BW_SCENE_PRESCRIBED && rigid < 0) continue;
+    if (rigid >= 0) {
+      /* The body is there already. */
+      const bw_rigid_state now = bw_rigid_state_of(s->rigid, rigid);
+      bw_scene__rigid_place(s, rigid, &s->rigid_before[rigid], q->X0 + 3 * i, from);
+      bw_scene__rigid_place(s, rigid, &now, q->X0 + 3 * i, to);
+    } else {
+      bw_scene__motion(body, q->X0 + 3 * i, s->time, from);
+      bw_scene__motion(body, q->X0 + 3 * i, s->time + dt, to);
+    }
     for (int d = 0; d < (s->planar ? 2 : 3); d++)
       q->V[3 * i + (size_t)d] = (to[d] - from[d]) / dt;
   }

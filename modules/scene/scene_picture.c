@@ -29,6 +29,16 @@ static void undo(const bw_scene_body *b, double time, const double X[3], double 
   }
 }
 
+/* Is x (3) in a rigid body, or in its image across a periodic side? */
+static bool in_rigid(const bw_scene *s, const bw_grid_view *g, int q, const double x[3])
+{
+  const bw_rigid_state now = bw_rigid_state_of(s->rigid, q);
+  double at[3] = {x[0], x[1], s->planar ? 0.0 : x[2]};
+  for (int d = 0; d < (s->planar ? 2 : 3); d++)
+    if (g->periodic[d]) at[d] -= g->length[d] * round((x[d] - now.position[d]) / g->length[d]);
+  return bw_rigid_distance(s->rigid, q, at) < 0.0;
+}
+
 /* Cells whose centre is inside a true surface. */
 static bw_status mask_surfaces(bw_scene *s, bw_real *mask)
 {
@@ -43,8 +53,9 @@ static bw_status mask_surfaces(bw_scene *s, bw_real *mask)
           const double x[3] = {(i + g->lo[0] - 0.5) * g->spacing[0], g->y_centre[j + g->lo[1]],
                                (k + g->lo[2] - 0.5) * g->spacing[2]};
           double X0[3];
-          undo(&s->config.bodies[b], s->time, x, X0);
-          if (bw_shape_distance(shapes.n, shapes.shape, s->planar, X0) < 0.0)
+          if (s->rigid == NULL) undo(&s->config.bodies[b], s->time, x, X0);
+          if (s->rigid != NULL ? in_rigid(s, g, s->rigid_of[b], x)
+                               : bw_shape_distance(shapes.n, shapes.shape, s->planar, X0) < 0.0)
             mask[bw_at(g, i, j, k)] = (bw_real)(b + 1);
         }
     bw_scene__shapes_release(&shapes);
@@ -171,6 +182,38 @@ static bw_status write_solid(bw_scene *s, int solid, const char *path)
   return st;
 }
 
+/* The surface points of rigid bodies. */
+static bw_status write_surfaces(bw_scene *s, int solid, const char *path)
+{
+  (void)solid;
+  const size_t n = bw_rigid_points(s->rigid);
+  double *X = NULL, *V = NULL, *N = NULL;
+  int32_t *body = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&N, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&body, n));
+  st = bw_comm_agree(s->comm, st);
+  if (st == BW_OK) {
+    bw_rigid_surface(s->rigid, X, V, N);
+    for (int b = 0; b < s->config.n_bodies; b++)
+      for (size_t i = 0; i < n; i++)
+        if (bw_rigid_point_body(s->rigid)[i] == s->rigid_of[b]) body[i] = b + 1;
+    for (size_t i = 0; i < n && s->planar && s->grid != NULL; i++)
+      X[3 * i + 2] = 0.5 * bw_grid_look(s->grid)->length[2];
+    const bw_vtk_array arrays[] = {{"velocity", BW_VTK_FLOAT64, 3, V},
+                                   {"normal", BW_VTK_FLOAT64, 3, N},
+                                   {"area", BW_VTK_FLOAT64, 1, bw_rigid_point_area(s->rigid)},
+                                   {"body", BW_VTK_INT32, 1, body}};
+    st = bw_vtk_write_points(s->comm, path, n, X, 4, arrays);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  bw_release(&N);
+  bw_release(&body);
+  return st;
+}
+
 /* One file of the series `what` at the present time. */
 static bw_status add_to_series(bw_scene *s, const bw_case *run, const char *what,
                                const char *extension, int solid,
@@ -193,6 +236,8 @@ bw_status bw_scene_picture(bw_scene *s, const bw_case *run)
 {
   if (s->fluid != NULL)
     BW_TRY(add_to_series(s, run, "fluid", bw_vtk_grid_extension(s->grid), 0, write_fluid));
+  if (s->rigid != NULL && s->n_solids == 0)
+    BW_TRY(add_to_series(s, run, "rigid-surfaces", ".vtp", 0, write_surfaces));
   for (int q = 0; q < s->n_solids; q++) {
     /* A solid of several bodies has the name of the first. */
     char what[BW_SCENE_NAME + 8];

@@ -10,34 +10,67 @@
     "x", "y", "z"                                                                                  \
   }
 const bw_scene__quantity bw_scene__quantities[] = {
-    {"displacement", BW_SCENE__OF_PLACE, 3, true, XYZ, "L"},
-    {"position", BW_SCENE__OF_PLACE, 3, true, XYZ, "L"},
-    {"velocity", BW_SCENE__OF_PLACE, 3, true, XYZ, "L/T"},
-    {"velocity", BW_SCENE__OF_POINT, 3, true, XYZ, "L/T"},
-    {"damage", BW_SCENE__OF_PLACE, 2, false, {"mean", "largest"}, "-"},
+    {"displacement", BW_SCENE__OF_PLACE, 3, true, false, XYZ, "L"},
+    {"position", BW_SCENE__OF_PLACE, 3, true, false, XYZ, "L"},
+    {"velocity", BW_SCENE__OF_PLACE, 3, true, false, XYZ, "L/T"},
+    {"velocity", BW_SCENE__OF_POINT, 3, true, false, XYZ, "L/T"},
+    {"damage", BW_SCENE__OF_PLACE, 2, false, false, {"mean", "largest"}, "-"},
+    {"turn", BW_SCENE__OF_RIGID, 3, false, true, XYZ, "rad"},
+    {"spin", BW_SCENE__OF_RIGID, 3, false, true, XYZ, "1/T"},
+    {"torque", BW_SCENE__OF_RIGID, 3, false, true, XYZ, "M L2/T2"},
     {"force",
      BW_SCENE__OF_BODIES,
      9,
      false,
+     false,
      {"reaction.x", "reaction.y", "reaction.z", "probe.x", "probe.y", "probe.z", "box.x", "box.y",
       "box.z"},
      "M L/T2"},
-    {"force_on_support", BW_SCENE__OF_BODIES, 3, true, XYZ, "M L/T2"},
-    {"crack_tip", BW_SCENE__OF_BODIES, 4, false, {"x", "y", "z", "reach"}, "L"},
-    {"fragments", BW_SCENE__OF_SOLIDS, 1, false, {""}, "-"},
-    {"broken_bonds", BW_SCENE__OF_SOLIDS, 1, false, {""}, "-"},
+    {"force_on_support", BW_SCENE__OF_BODIES, 3, true, false, XYZ, "M L/T2"},
+    {"crack_tip", BW_SCENE__OF_BODIES, 4, false, false, {"x", "y", "z", "reach"}, "L"},
+    {"fragments", BW_SCENE__OF_SOLIDS, 1, false, false, {""}, "-"},
+    {"broken_bonds", BW_SCENE__OF_SOLIDS, 1, false, false, {""}, "-"},
     {"energy",
      BW_SCENE__OF_SOLIDS,
      6,
      false,
+     false,
      {"kinetic", "elastic", "contact", "fracture", "damping", "external"},
      "M L2/T2"},
-    {"pressure", BW_SCENE__OF_POINT, 1, false, {""}, "M/(L T2)"},
-    {"flow_rate", BW_SCENE__OF_FLUID, 2, false, {"in", "out"}, "L3/T"},
-    {"bulk_velocity", BW_SCENE__OF_FLUID, 1, false, {""}, "L/T"},
-    {"kinetic_energy", BW_SCENE__OF_FLUID, 1, false, {""}, "M L2/T2"},
-    {"divergence", BW_SCENE__OF_FLUID, 1, false, {""}, "-"},
-    {NULL, BW_SCENE__OF_FLUID, 0, false, {NULL}, NULL}};
+    {"pressure", BW_SCENE__OF_POINT, 1, false, false, {""}, "M/(L T2)"},
+    {"flow_rate", BW_SCENE__OF_FLUID, 2, false, false, {"in", "out"}, "L3/T"},
+    {"bulk_velocity", BW_SCENE__OF_FLUID, 1, false, false, {""}, "L/T"},
+    {"kinetic_energy", BW_SCENE__OF_FLUID, 1, false, false, {""}, "M L2/T2"},
+    {"divergence", BW_SCENE__OF_FLUID, 1, false, false, {""}, "-"},
+    {NULL, BW_SCENE__OF_FLUID, 0, false, false, {NULL}, NULL}};
+
+bool bw_scene__names_all(const bw_scene_config *c, const bw_scene_gauge_config *g)
+{
+  for (int b = 0; b < c->n_bodies && g->body[0] != '\0'; b++)
+    if (!bw_scene__listed(g->body, c->bodies[b].name)) return false;
+  return true;
+}
+
+bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                           bw_scene__route route)
+{
+  if (route == BW_SCENE__BY_REACTION) return true;
+  if (bw_scene__any_rigid(c)) return false;
+  return route == BW_SCENE__BY_PROBES || bw_scene__names_all(c, g);
+}
+
+bool bw_scene__of_rigid(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                        const bw_scene__quantity *what)
+{
+  char name[BW_SCENE_NAME];
+  const char *rest = g->body;
+  if (what->source == BW_SCENE__OF_RIGID) return true;
+  const bool known = what->vector && what->source <= BW_SCENE__OF_BODIES;
+  if ((!known && strcmp(what->word, "force") != 0) || !bw_scene__any_rigid(c)) return false;
+  if (!bw_scene__next_name(&rest, name)) return false;
+  const int b = bw_scene__body_named(c, name);
+  return b >= 0 && bw_scene__in_rigid(c, b);
+}
 
 bool bw_scene__given(const double x[3])
 {
@@ -56,6 +89,35 @@ const bw_scene__quantity *bw_scene__quantity_named(const bw_scene_gauge_config *
         !(q->source == BW_SCENE__OF_POINT && strcmp(word, "velocity") == 0 && !in_fluid(g)))
       return q;
   return NULL;
+}
+
+/* Bodies whose numbers come from different places, or from nowhere, do not go together. */
+static bw_status check_bodies(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                              const bw_scene__quantity *q)
+{
+  char name[BW_SCENE_NAME];
+  int rigid = 0, others = 0, any_rigid = bw_scene__any_rigid(c);
+  for (const char *rest = g->body; bw_scene__next_name(&rest, name);) {
+    const int b = bw_scene__body_named(c, name);
+    if (b < 0) continue; /* said by check_gauge */
+    bw_scene__in_rigid(c, b) ? rigid++ : others++;
+  }
+  const bool force = strcmp(q->word, "force") == 0, support = q->source == BW_SCENE__OF_BODIES;
+  BW_REQUIRE(q->source != BW_SCENE__OF_RIGID || (rigid == 1 && others == 0), BW_EINPUT,
+             "gauges.%s.of = %s: that of one body of a scene with rigid ones; name one", g->name,
+             q->word);
+  BW_REQUIRE(!bw_scene__of_rigid(c, g, q) || others == 0, BW_EINPUT,
+             "gauges.%s.body = %s: rigid bodies and others; give each a gauge of its own", g->name,
+             g->body);
+  BW_REQUIRE(!bw_scene__of_rigid(c, g, q) || rigid == 1 || support, BW_EINPUT,
+             "gauges.%s.body = %s: %s is that of one rigid body; give each a gauge of its own",
+             g->name, g->body, q->word);
+  BW_REQUIRE(!force || any_rigid || !(bw_scene__any_deforms(c)) || bw_scene__names_all(c, g),
+             BW_EINPUT,
+             "gauges.%s.body = %s: this build knows the force on all bodies of a flow together "
+             "where one deforms, not on some of them; name all",
+             g->name, g->body);
+  return BW_OK;
 }
 
 static bw_status check_quantity(const bw_scene_config *c, const bw_scene_gauge_config *g,
@@ -77,6 +139,7 @@ static bw_status check_quantity(const bw_scene_config *c, const bw_scene_gauge_c
   BW_REQUIRE(strcmp(word, "force") != 0 || bw_scene__has_fluid(c), BW_EINPUT,
              "gauges.%s.of = force: that of a fluid, of which there is none; use force_on_support",
              g->name);
+  BW_TRY(check_bodies(c, g, q));
   BW_REQUIRE(strcmp(word, "crack_tip") != 0 || bw_scene__given(g->origin), BW_EINPUT,
              "gauges.%s.origin is missing: where the crack begins, from which its reach counts",
              g->name);

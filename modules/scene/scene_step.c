@@ -65,11 +65,22 @@ bw_status bw_scene__phase_begin(bw_scene *s)
   return BW_OK;
 }
 
-/* Longest step of solids alone, before the share. */
+/* Longest step of rigid bodies without fluid: of springs and contact, and a spacing's way. */
+static double rigid_limit(const bw_scene *s)
+{
+  double spacing = HUGE_VAL;
+  if (s->rigid == NULL) return HUGE_VAL;
+  for (int b = 0; b < s->config.n_bodies; b++)
+    if (s->rigid_of[b] >= 0) spacing = fmin(spacing, s->config.bodies[b].spacing);
+  const double speed = bw_scene__rigid_speed(s);
+  return fmin(bw_rigid_dt_max(s->rigid), speed > 0.0 ? spacing / speed : HUGE_VAL);
+}
+
+/* Longest step without fluid, before the share. */
 static double solid_limit(const bw_scene *s)
 {
-  if (s->assembly != NULL) return bw_solid_assembly_dt(s->assembly);
-  double limit = INFINITY;
+  double limit = rigid_limit(s);
+  if (s->assembly != NULL) return fmin(limit, bw_solid_assembly_dt(s->assembly));
   for (int q = 0; q < s->n_solids; q++) {
     const double a = bw_solid_dt_max(s->solid[q].solid), b = bw_solid_dt_contact(s->solid[q].solid);
     limit = fmin(limit, 1.0 / sqrt(1.0 / (a * a) + 1.0 / (b * b)));
@@ -81,7 +92,8 @@ static double solid_limit(const bw_scene *s)
 static double fluid_limit(bw_scene *s)
 {
   const double h = bw_grid_look(s->grid)->spacing[0];
-  const double coming = s->speed > 0.0 ? h / s->speed : INFINITY;
+  const double speed = fmax(s->speed, bw_scene__rigid_speed(s));
+  const double coming = speed > 0.0 ? h / speed : INFINITY;
   return fmin(bw_ns_channel_dt_max(s->fluid), coming);
 }
 
@@ -126,16 +138,29 @@ static bw_status choose_step(bw_scene *s, double end, double *dt, bool *last)
   return BW_OK;
 }
 
-static bw_status advance(bw_scene *s, double dt)
+/* Solids without fluid. */
+static bw_status solids_step(bw_scene *s, double dt)
 {
-  if (s->n_solids > 0) bw_scene__loads_apply(s, dt);
-  if (s->coupler != NULL) return bw_coupler_step(s->coupler, dt);
-  if (s->markers != NULL) BW_TRY(bw_scene__surfaces_step(s, dt));
-  if (s->fluid != NULL && s->markers == NULL) BW_TRY(bw_ns_channel_step(s->fluid, dt));
+  bw_scene__loads_apply(s, dt);
   if (s->assembly != NULL) return bw_solid_assembly_step(s->assembly, dt);
   for (int q = 0; q < s->n_solids; q++)
     BW_TRY(bw_solid_step(s->solid[q].solid, dt));
   return BW_OK;
+}
+
+static bw_status advance(bw_scene *s, double dt)
+{
+  if (s->coupler != NULL) {
+    bw_scene__loads_apply(s, dt);
+    return bw_coupler_step(s->coupler, dt);
+  }
+  if (s->floats != NULL) {
+    bw_scene__rigid_tell(s, dt);
+    return bw_coupler_rigid_step(s->floats, dt);
+  }
+  if (s->markers != NULL) return bw_scene__surfaces_step(s, dt);
+  if (s->fluid != NULL) return bw_ns_channel_step(s->fluid, dt);
+  return s->rigid != NULL ? bw_scene__rigid_step(s, dt, solids_step) : solids_step(s, dt);
 }
 
 /* Has what moves come to rest? Collective. */
@@ -154,6 +179,10 @@ static bw_status settled(bw_scene *s, double level, bool *rest)
     bw_solid_ledger book;
     BW_TRY(bw_solid_account(s->solid[q].solid, &book));
     kinetic += book.kinetic, elastic += book.elastic;
+  }
+  if (s->rigid != NULL) {
+    const bw_rigid_energy e = bw_rigid_energy_of(s->rigid);
+    kinetic += e.kinetic, elastic += e.spring + e.contact;
   }
   *rest = elastic > 0.0 && kinetic <= level * elastic;
   return BW_OK;

@@ -27,6 +27,8 @@ same impact_on_plate 1 60e-6 40e-6 --set bodies.plate.spacing=2e-3 --set bodies.
 same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.length=[8, 4, 0.125]" \
   --set output.picture_every=0
 
+same falling_sphere 2 0.1 0.05 --set "domain.cells=[25, 40, 25]" --set output.picture_every=0
+
 # Another number of ranks: sums are in another order, and nothing else differs.
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/impact_on_plate/impact_on_plate.yaml" --quiet \
   --out "$out/three" --set phases.0.until.time=60e-6 --set bodies.plate.spacing=2e-3 \

@@ -37,7 +37,11 @@ refused() {
 }
 beam=beam_under_load flow=flow_past_cylinder
 refused $beam bodies.beam.material=wood "bodies.beam.material = wood: there is no such material"
-refused $beam bodies.beam.motion=rigid "motion = rigid: not in this build"
+refused $beam bodies.beam.motion=rigid "a rigid one has rigid.held"
+refused falling_sphere bodies.ball.rigid.held=up "rigid.held = up: must be of x, y, z"
+refused falling_sphere bodies.ball.material=wood "there is no such material, and no mass"
+refused flap_behind_cylinder bodies.cylinder.motion=rigid "beside others that deform, in a flow"
+refused flap_behind_cylinder gauges.drag.body=flap "this build knows the force on all bodies"
 refused $beam bodies.beam.motion=breakable "materials.polymer has no fracture_energy"
 refused $beam materials.polymer.law=magic "law = magic: not in this build; this build has: bond"
 refused $beam materials.polymer.plastic=j2 "it belongs to law: correspondence, this is bond"

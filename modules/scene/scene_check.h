@@ -18,10 +18,10 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
 
 /* Is some body rigid? */
 bool bw_scene__any_rigid(const bw_scene_config *c);
-/* Is body b one of bw_rigid's: a rigid one, or one that does not deform in a scene of rigid ones? */
+/* Is body b one of bw_rigid's: rigid, or one that does not deform in a scene of rigid ones? */
 bool bw_scene__in_rigid(const bw_scene_config *c, int b);
-/* Bits 0 .. 5 <- directions that a rigid body is held in: x, y, z, turn about x, y, z. False: a word
- * is none of them, *wrong (BW_SCENE_NAME). */
+/* Bits 0 .. 5 <- directions that a rigid body is held in: x, y, z, turn about x, y, z. False: a
+ * word is none of them, wrong (BW_SCENE_NAME) <- it. */
 bool bw_scene__held_bits(const char *held, unsigned *bits, char wrong[]);
 
 /* Does the scene have a fluid on a grid? */

@@ -3,6 +3,7 @@
 #include "bw_coupler.h"
 #include "bw_coupler_rigid.h"
 #include "bw_pd_state_law.h"
+#include "bw_rigid.h"
 #include "bw_scene.h"
 #include "bw_solid_assembly.h"
 #include "bw_solid_load.h"
@@ -78,6 +79,7 @@ struct bw_scene {
   bw_rigid_state *rigid_before;  /* (count) at the beginning of the step */
   double *rigid_load;            /* (6 count) of contact with solids: forces, then torques */
   double rigid_weight;           /* energy of the weights at the start */
+  bool too_fast;                 /* has been said */
 
   /* fluid */
   bw_grid *grid;
@@ -205,6 +207,8 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
 
 /* scene_describe.c: warnings of what will be poor. */
 void bw_scene__warn(bw_scene *s, bw_log *log);
+/* Once, when a rigid body is too fast for the grid. Local. */
+void bw_scene__warn_speed(bw_scene *s);
 /* scene_profiles.c: the files of the lines and slices that are due. */
 bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge) BW_MUST_CHECK;
 /* scene_watch.c: what the rows of history.csv say of the gauges that are watched, to the log and

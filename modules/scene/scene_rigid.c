@@ -40,7 +40,7 @@ static bw_status set_mass(const bw_scene *s, const bw_rigid_config *config,
   const bool inertia = !isnan(r->inertia[0]), centre = !isnan(r->centre[0]);
   const int m = bw_scene__material_named(&s->config, body->material);
   bw_rigid *trial = NULL;
-  /* What is told how to move has neither weight nor kinetic energy in the books: next to no mass. */
+  /* What is told how to move has no weight and no kinetic energy in the books: next to no mass. */
   static const double told = 1e-60;
   ask->density = m >= 0 ? s->config.materials[m].density : 1.0;
   if (body->motion != BW_SCENE_RIGID) ask->density = told;

@@ -106,6 +106,7 @@ static bw_status restart(driver *r, const char *path)
 static bw_status sample(driver *r)
 {
   bw_scene *s = r->scene;
+  bw_scene__warn_speed(s);
   BW_TRY(bw_scene_measure(s, r->row));
   bw_history_append(r->history, r->row);
   for (int k = 0; k < s->config.n_watch && !r->limited; k++) {

@@ -1,5 +1,5 @@
-/* Rigid bodies of a scene against mechanics that needs no computer: springs, mass, hinges, collisions
- * with each other and with solids of particles, and in a flow; a restart goes on to the last bit.
+/* Rigid bodies of a scene against mechanics that needs no computer: springs, mass, collisions with
+ * each other and with solids of particles, and in a flow; a restart goes on to the last bit.
  * TEST ranks=1,2,3 */
 #include "scene_text.h"
 

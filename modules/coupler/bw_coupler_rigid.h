@@ -76,10 +76,10 @@ typedef struct {
 bw_status bw_coupler_rigid_measure(bw_coupler_rigid *coupler,
                                    bw_coupler_rigid_report report[]) BW_MUST_CHECK;
 
-/* What a restart needs beside the fluid and bw_rigid_save: the memory of the markers, M (n,3) in the
- * order of the surface points of this rank (bw_rigid_point_id says which they are), and the load of
- * the bodies, (bodies,6), the same on all ranks. set puts the markers where the bodies are. Both are
- * collective. */
+/* What a restart needs beside the fluid and bw_rigid_save: the memory of the markers, M (n,3) in
+ * the order of the surface points of this rank (bw_rigid_point_id says which they are), and the
+ * load of the bodies, (bodies,6), the same on all ranks. set puts the markers where the bodies are.
+ * Both are collective. */
 void bw_coupler_rigid_get_state(bw_coupler_rigid *coupler, double M[], double load[]);
 bw_status bw_coupler_rigid_set_state(bw_coupler_rigid *coupler, const double M[],
                                      const double load[]) BW_MUST_CHECK;

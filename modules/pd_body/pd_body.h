@@ -161,12 +161,14 @@ struct bw_pd_body {
   bw_pd_fields fields;  /* of the law */
 };
 
-/* pd_create.c */
+/* pd_storage.c */
 
 /* A storage array of n places, with BW_PD_PAD more before and after, zero everywhere. The caller
  * owns it, and releases it by the second (which sets it to NULL; NULL is fine). BW_EMEM. Local. */
 bw_status bw_pd_body_storage_array(size_t n, bw_real **out) BW_MUST_CHECK;
 void bw_pd_body_release_storage_array(bw_real **array);
+
+/* pd_create.c */
 
 /* Particles, families and bonds of the sites that the ranks give, with the constants of the law.
  * `comm` and `law` are borrowed until destroy, `options` (the law's) and `given` during the call.

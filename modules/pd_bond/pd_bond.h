@@ -41,13 +41,12 @@ static inline double bw_pd_bond__micromodulus(const bw_pd_body *pd, int32_t h, i
   return bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
 }
 
-/* pd_bond_law.c: c0 and s0 of the integrals; of bonds between two groups their E, the harmonic
- * mean, and fracture energy. Local. */
+/* pd_bond_law.c: c0 and s0 of the integrals. Local. */
 void bw_pd_bond__material(bw_pd_body *pd);
+
+/* pd_bond_calibrate.c; E, the harmonic mean, and fracture energy of bonds between two groups */
 double bw_pd_bond__joint_E(const bw_pd_body_config *config, int g, int h);
 double bw_pd_bond__joint_G0(const bw_pd_body_config *config, int g, int h);
-
-/* pd_bond_calibrate.c */
 double bw_pd_bond__classical_dilation(const bw_pd_body_config *config, double E); /* energy/e^2 */
 bw_status bw_pd_bond__full_family(bw_pd_body *pd) BW_MUST_CHECK;                  /* its sums */
 void bw_pd_bond__calibrate(bw_pd_body *pd);

@@ -14,6 +14,19 @@
 
 static const double PI = 3.14159265358979323846;
 
+/* Fracture energy of bonds between two groups. */
+double bw_pd_bond__joint_G0(const bw_pd_body_config *c, int g, int h)
+{
+  const double own = c->joint_G0[g][h];
+  return g == h || isnan(own) ? fmin(c->material[g].G0, c->material[h].G0) : own;
+}
+
+double bw_pd_bond__joint_E(const bw_pd_body_config *c, int g, int h)
+{
+  const double a = c->material[g].E, b = c->material[h].E;
+  return g == h ? a : 2 * a * b / (a + b);
+}
+
 /* With the fixed Poisson ratios 3 E, E/(1 - nu) = 3E/2 and 2 (lambda + mu) = 8E/5. */
 double bw_pd_bond__classical_dilation(const bw_pd_body_config *c, double E)
 {

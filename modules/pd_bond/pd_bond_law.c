@@ -27,19 +27,6 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   return BW_OK;
 }
 
-/* Fracture energy of bonds between two groups. */
-double bw_pd_bond__joint_G0(const bw_pd_body_config *c, int g, int h)
-{
-  const double own = c->joint_G0[g][h];
-  return g == h || isnan(own) ? fmin(c->material[g].G0, c->material[h].G0) : own;
-}
-
-double bw_pd_bond__joint_E(const bw_pd_body_config *c, int g, int h)
-{
-  const double a = c->material[g].E, b = c->material[h].E;
-  return g == h ? a : 2 * a * b / (a + b);
-}
-
 /* POROUS 3.21 and 3.27 with ERRATA 1; both are proportional to E and G0/E, so that bonds between
  * two groups have those of the harmonic mean of the two E. */
 void bw_pd_bond__material(bw_pd_body *pd)

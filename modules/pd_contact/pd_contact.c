@@ -142,27 +142,6 @@ bw_status bw_pd_contact_update(bw_pd_contact *c)
   return bw_pd_contact__wall_update(c);
 }
 
-double bw_pd_contact__repel(bw_pd_pair *w, const double d[3], double r2, double sum[3])
-{
-  /* Beyond reach, or in one place, where no direction is defined: nothing. */
-  const double r = sqrt(r2);
-  if (!(r2 < w->reach * w->reach) || r == 0) return 0;
-  w->closest = fmin(w->closest, r / w->reach);
-  /* 3.40 with ERRATA 3: -k_c (r_c/r - 1) e; d is not yet a unit vector. */
-  const double f = w->k * (w->reach / r - 1) / r;
-  for (int k = 0; k < 3; k++)
-    sum[k] -= f * d[k];
-  /* The pair's energy, half at this end. */
-  return w->weight * (0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r));
-}
-
-bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h)
-{
-  bw_pd_pair pair = c->law[g][h];
-  pair.closest = c->closest;
-  return pair;
-}
-
 /* The lanes `near` of a slot with bonds x; reach: in a cloud of each bond. */
 static double short_bonds(bw_pd_contact *c, const bw_pd_block *block, const bw_pd_slot *slot,
                           unsigned near, const bond *x, vec reach2, bool force)

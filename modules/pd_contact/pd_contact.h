@@ -60,6 +60,7 @@ struct bw_pd_contact {
   double wall_force[3]; /* on the walls, of this rank, at the last evaluation [M L/T^2] */
 };
 
+/* pd_contact_pair.c: the push of a pair, see there. */
 double bw_pd_contact__repel(bw_pd_pair *pair, const double d[3], double r2, double sum[3]);
 /* The pair law of a particle of group g with one of group h. */
 bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h);

@@ -11,22 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-void bw_pd_contact__place(const bw_pd_body *pd, size_t i, double X[3])
-{
-  bw_pd_body_reference(pd, i, X);
-  for (int k = 0; k < 3; k++)
-    X[k] += (double)pd->u[k][pd->points.place[i]];
-}
-
-void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3])
-{
-  double X[3];
-  bw_pd_contact__place(pd, i, X);
-  for (int a = 0; a < 3; a++)
-    y[a] =
-        pd->config.axes[a][0] * X[0] + pd->config.axes[a][1] * X[1] + pd->config.axes[a][2] * X[2];
-}
-
 void bw_pd_contact__release(bw_pd_contact *c)
 {
   bw_release(&c->found.mine);

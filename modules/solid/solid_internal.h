@@ -69,5 +69,5 @@ void bw_solid__drag_off(bw_solid *s, double dt);
 void bw_solid__drag_release(bw_solid__drag *d);
 
 /* solid_retire.c */
-void bw_solid__retire_rows(bw_solid *s, const double rows[]); /* of a restart; Collective */
-void bw_solid__still_retired(bw_solid *s);                    /* no force on them */
+/* Who is retired by the rows of a restart, each of so many numbers. Collective. */
+void bw_solid__retire_rows(bw_solid *s, size_t width, const double rows[]);

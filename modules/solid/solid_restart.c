@@ -204,7 +204,7 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
     }
   set_fields(s, rows);
   bw_pd_body_adopt_prescribed(pd);
-  bw_solid__retire_rows(s, rows);
+  bw_solid__retire_rows(s, width, rows);
   set_sums(s, sums);
   /* Copies follow; with a given, the state counts as evaluated, unless nobody had evaluated it, or
    * it holds a damping that has ended. */

@@ -25,17 +25,6 @@ static void renew(bw_solid *s)
   if (s->contact != NULL) bw_pd_contact_forget(s->contact);
 }
 
-void bw_solid__still_retired(bw_solid *s)
-{
-  bw_pd_body *pd = s->body;
-  /* They are in the kernels' loops still; what came of that is put to zero. */
-  for (int k = 0; k < pd->dimension; k++)
-    for (size_t q = 0; q < s->n_retired; q++) {
-      const int32_t i = s->retired[q];
-      pd->a[k][i] = pd->load.extra[k][i] = pd->load.damp[k][i] = 0;
-    }
-}
-
 /* Energy of the bonds of the block's lanes that are retired now and were not before. */
 static double stored(const bw_pd_body *pd, const bw_pd_block *block, const bool gone[])
 {
@@ -69,13 +58,13 @@ bw_status bw_solid_retire(bw_solid *s, const bool gone[])
   return BW_OK;
 }
 
-void bw_solid__retire_rows(bw_solid *s, const double rows[])
+void bw_solid__retire_rows(bw_solid *s, size_t width, const double rows[])
 {
   bw_pd_body *pd = s->body;
   /* A restart may have more of them, or less. */
   int64_t changed = 0;
   for (size_t i = 0; i < pd->n; i++) {
-    const bool gone = (int)rows[bw_solid_restart_row(s) * i + BW_SOLID__ROW - 1] & BW_SOLID__GONE;
+    const bool gone = (int)rows[width * i + BW_SOLID__ROW - 1] & BW_SOLID__GONE;
     const uint8_t kind =
         (uint8_t)((pd->points.kind[i] & ~BW_PD_RETIRED) | (gone ? BW_PD_RETIRED : 0));
     changed |= kind != pd->points.kind[i];

@@ -48,6 +48,17 @@ static void internal_forces(bw_pd_body *pd, bool check)
     bw_pd_body_damp(pd, 0, NULL);
 }
 
+static void still_retired(bw_solid *s)
+{
+  bw_pd_body *pd = s->body;
+  /* They are in the kernels' loops still; what came of that is put to zero. */
+  for (int k = 0; k < pd->dimension; k++)
+    for (size_t q = 0; q < s->n_retired; q++) {
+      const int32_t i = s->retired[q];
+      pd->a[k][i] = pd->load.extra[k][i] = pd->load.damp[k][i] = 0;
+    }
+}
+
 bw_status bw_solid__evaluate(bw_solid *s, bool check)
 {
   bw_pd_body *pd = s->body;
@@ -67,7 +78,7 @@ bw_status bw_solid__evaluate(bw_solid *s, bool check)
   for (int k = 0; damped && k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++)
       pd->load.extra[k][i] += pd->load.damp[k][i];
-  bw_solid__still_retired(s);
+  still_retired(s);
   /* From here on the forces are those of u and v. */
   pd->current = true;
   return st;
@@ -79,7 +90,7 @@ static void break_bonds(bw_solid *s)
   bw_pd_body *pd = s->body;
   const bool broke = bw_pd_body_break_hits(pd);
   /* A law of several passes has evaluated all forces anew, also on who is retired. */
-  if (pd->law->n_sweep > 1) bw_solid__still_retired(s);
+  if (pd->law->n_sweep > 1) still_retired(s);
   if (!broke || !bw_pd_body_damped(pd)) return;
   /* The old damping of these blocks goes out of extra, the new one into it. */
   for (int side = 0; side < 2; side++) {
@@ -93,7 +104,7 @@ static void break_bonds(bw_solid *s)
           pd->load.extra[k][i] += sign * pd->load.damp[k][i];
     }
   }
-  bw_solid__still_retired(s);
+  still_retired(s);
 }
 
 /* The walls' share of the momentum, with the integrator's weight h. */
@@ -317,6 +328,11 @@ static bw_status step_rk3(bw_solid *s, double dt)
   }
   bw_solid__drag_off(s, dt);
   return st;
+}
+
+bw_status bw_solid_evaluate(bw_solid *s)
+{
+  return bw_comm_agree(s->body->comm, bw_solid__evaluate(s, false));
 }
 
 bw_status bw_solid__begin(bw_solid *s)

@@ -73,11 +73,6 @@ const bw_comm *bw_solid_comm(const bw_solid *s)
   return s->body->comm;
 }
 
-bw_status bw_solid_evaluate(bw_solid *s)
-{
-  return bw_comm_agree(s->body->comm, bw_solid__evaluate(s, false));
-}
-
 bw_pd_body *bw_solid_body(const bw_solid *s)
 {
   return s->body;

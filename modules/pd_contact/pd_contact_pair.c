@@ -1,0 +1,41 @@
+/* Two particles: where they are, and how they push each other. */
+#include "pd_contact.h"
+
+#include <math.h>
+
+void bw_pd_contact__place(const bw_pd_body *pd, size_t i, double X[3])
+{
+  bw_pd_body_reference(pd, i, X);
+  for (int k = 0; k < 3; k++)
+    X[k] += (double)pd->u[k][pd->points.place[i]];
+}
+
+void bw_pd_contact__position(const bw_pd_body *pd, size_t i, double y[3])
+{
+  double X[3];
+  bw_pd_contact__place(pd, i, X);
+  for (int a = 0; a < 3; a++)
+    y[a] =
+        pd->config.axes[a][0] * X[0] + pd->config.axes[a][1] * X[1] + pd->config.axes[a][2] * X[2];
+}
+
+double bw_pd_contact__repel(bw_pd_pair *w, const double d[3], double r2, double sum[3])
+{
+  /* Beyond reach, or in one place, where no direction is defined: nothing. */
+  const double r = sqrt(r2);
+  if (!(r2 < w->reach * w->reach) || r == 0) return 0;
+  w->closest = fmin(w->closest, r / w->reach);
+  /* 3.40 with ERRATA 3: -k_c (r_c/r - 1) e; d is not yet a unit vector. */
+  const double f = w->k * (w->reach / r - 1) / r;
+  for (int k = 0; k < 3; k++)
+    sum[k] -= f * d[k];
+  /* The pair's energy, half at this end. */
+  return w->weight * (0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r));
+}
+
+bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h)
+{
+  bw_pd_pair pair = c->law[g][h];
+  pair.closest = c->closest;
+  return pair;
+}

@@ -288,9 +288,11 @@ function(bw_unit_tests)
   endforeach()
   _bw_program(fails_on_one_rank "" ${PROJECT_SOURCE_DIR}/tests/support/fails_on_one_rank.c) # of robustness.assertion
   target_link_libraries(fails_on_one_rank PRIVATE bw_ext_check)
-  add_library(no_memory MODULE ${PROJECT_SOURCE_DIR}/tests/support/no_memory.c) # of robustness.no_memory
-  target_link_libraries(no_memory PRIVATE bw_flags)
-  set_target_properties(no_memory PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  foreach(name no_memory bad_disk) # of robustness.no_memory, robustness.bad_disk
+    add_library(${name} MODULE ${PROJECT_SOURCE_DIR}/tests/support/${name}.c)
+    target_link_libraries(${name} PRIVATE bw_flags ${CMAKE_DL_LIBS})
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  endforeach()
 endfunction()
 
 # validation/MODULE/CLAIM.c: the quick form is a test, `run validate --full` gives --full. After

@@ -198,25 +198,22 @@ bw_status channel_profiles_hdf5(channel_flow *f, bw_checkpoint *ck)
 bw_status channel_profiles(channel_flow *f, const bw_case *run)
 {
   static const char *const names[3] = {"centres.csv", "faces.csv", "scalars.csv"};
-  const bw_comm *comm = bw_grid_comm(f->grid);
   if (bw_ns_statistics_batches(f->statistics) < 2) return BW_OK;
   bw_ns_estimate *work = NULL;
   bw_status st = BW_ALLOCATE(&work, (size_t)CENTRES * (size_t)(f->config->cells[1] + 1));
+  st = bw_comm_agree(bw_grid_comm(f->grid), st);
   /* All ranks hold the sums; one writes. */
-  for (int q = 0; q < 3 && st == BW_OK && bw_comm_rank(comm) == 0; q++) {
-    char *path = NULL;
-    st = bw_path_join(bw_case_args_of(run)->out, names[q], &path);
-    FILE *out = st == BW_OK ? fopen(path, "w") : NULL;
-    if (st == BW_OK && out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
-    if (out != NULL) {
+  for (int q = 0; q < 3 && st == BW_OK; q++) {
+    bw_case_text t;
+    st = bw_case_text_begin(run, &t);
+    if (t.out != NULL) {
       const double u_tau = channel_u_tau(f, work).mean;
-      if (q == 0) write_table(out, f, false, CENTRES, centre_columns, u_tau, work);
-      if (q == 1) write_table(out, f, true, FACES, face_columns, u_tau, work);
-      if (q == 2) write_scalars(out, f, work);
-      if (fclose(out) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
+      if (q == 0) write_table(t.out, f, false, CENTRES, centre_columns, u_tau, work);
+      if (q == 1) write_table(t.out, f, true, FACES, face_columns, u_tau, work);
+      if (q == 2) write_scalars(t.out, f, work);
     }
-    bw_release(&path);
+    st = bw_case_text_end(run, &t, names[q], st);
   }
   bw_release(&work);
-  return bw_comm_agree(comm, st);
+  return st;
 }

@@ -74,22 +74,15 @@ static void write_table(FILE *out, const channel_flow *f, int table, double u_ta
   fputc('\n', out);
 }
 
-/* Rank 0. */
 static bw_status write_file(const channel_flow *f, const bw_case *run, int table, double u_tau,
                             double *column)
 {
-  char *path = NULL, name[32];
+  char name[32];
+  bw_case_text t;
+  const bw_status st = bw_case_text_begin(run, &t);
   snprintf(name, sizeof name, "%s.csv", tables[table].name);
-  BW_TRY(bw_path_join(bw_case_args_of(run)->out, name, &path));
-  bw_status st = BW_OK;
-  FILE *out = fopen(path, "w");
-  if (out == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
-  if (out != NULL) {
-    write_table(out, f, table, u_tau, column);
-    if (fclose(out) != 0) st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
-  }
-  bw_release(&path);
-  return st;
+  if (t.out != NULL) write_table(t.out, f, table, u_tau, column);
+  return bw_case_text_end(run, &t, name, st);
 }
 
 /* From k = 0 and r = 0 on. column: (2, n/2 + 1). */
@@ -112,7 +105,7 @@ static bw_status put_table(bw_checkpoint *ck, const channel_flow *f, int table, 
   return BW_OK;
 }
 
-/* Where the columns go to: csv files of rank 0, or a file of all. */
+/* Where the columns go to: csv files, or one of HDF5. */
 static bw_status each_table(channel_flow *f, const bw_case *run, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_grid_comm(f->grid);
@@ -124,13 +117,10 @@ static bw_status each_table(channel_flow *f, const bw_case *run, bw_checkpoint *
   bw_status st = BW_ALLOCATE(&column, (size_t)most * (COLUMNS + 1));
   BW_THEN(st, BW_ALLOCATE(&rows, (size_t)n[1] + 1));
   st = bw_comm_agree(comm, st);
-  /* All ranks make the same columns; csv is written by one, HDF5 by all. */
+  /* All ranks make the same columns. */
   const double u_tau = st == BW_OK ? channel_u_tau(f, rows).mean : 0.0;
   for (int q = 0; q < TABLES && st == BW_OK; q++)
-    if (ck != NULL)
-      st = put_table(ck, f, q, u_tau, column);
-    else if (bw_comm_rank(comm) == 0)
-      st = write_file(f, run, q, u_tau, column);
+    st = ck != NULL ? put_table(ck, f, q, u_tau, column) : write_file(f, run, q, u_tau, column);
   bw_release(&column);
   bw_release(&rows);
   return bw_comm_agree(comm, st);

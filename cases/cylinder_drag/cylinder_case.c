@@ -96,19 +96,18 @@ void cylinder_sample(bw_history *history, double t, const cylinder_drag *d)
 }
 
 /* Angle from the front stagnation point, pressure and shear, as in the reference's table. */
-static bw_status write_wall(cylinder_flow *f, const char *path)
+static bw_status write_wall(cylinder_flow *f, const bw_case *run)
 {
-  FILE *out = fopen(path, "w");
-  BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s", path);
-  fprintf(out, "theta[deg],p[rho U_b^2],tau[rho U_b^2]\n");
-  for (size_t q = 0; q < f->wall.n; q++) {
+  bw_case_text t;
+  const bw_status st = bw_case_text_begin(run, &t);
+  if (t.out != NULL) fprintf(t.out, "theta[deg],p[rho U_b^2],tau[rho U_b^2]\n");
+  for (size_t q = 0; t.out != NULL && q < f->wall.n; q++) {
     /* p = -t.n, and the part of t along the wall, clockwise from the front. */
-    const double *n = f->wall.N + 3 * q, *t = f->traction + 3 * q;
-    fprintf(out, "%.4f,%.8g,%.8g\n", atan2(n[1], -n[0]) * 180.0 / acos(-1.0),
-            -(t[0] * n[0] + t[1] * n[1]), t[0] * n[1] - t[1] * n[0]);
+    const double *n = f->wall.N + 3 * q, *T = f->traction + 3 * q;
+    fprintf(t.out, "%.4f,%.8g,%.8g\n", atan2(n[1], -n[0]) * 180.0 / acos(-1.0),
+            -(T[0] * n[0] + T[1] * n[1]), T[0] * n[1] - T[1] * n[0]);
   }
-  BW_REQUIRE(fclose(out) == 0, BW_EIO, "cannot write %s", path);
-  return BW_OK;
+  return bw_case_text_end(run, &t, "wall.csv", st);
 }
 
 bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
@@ -117,20 +116,15 @@ bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
   bw_real *const *u = bw_ns_channel_velocity(f->flow.fluid), *p = f->flow.pressure;
   const bw_vtk_field fields[] = {{.name = "velocity", .data = {u[0], u[1]}, .staggered = true},
                                  {.name = "pressure", .data = {p}}};
-  char *wall = NULL, *fluid = NULL, *body = NULL;
-  bw_status st = bw_case_path(run, "wall.csv", &wall);
-  BW_THEN(st, bw_case_path(run, "fluid.vti", &fluid));
+  char *fluid = NULL, *body = NULL;
+  bw_status st = bw_case_path(run, "fluid.vti", &fluid);
   BW_THEN(st, bw_case_path(run, "body.vtp", &body));
   /* Traction by the parabola, from the pressure that acted; rank 0 has all points. */
-  if (st == BW_OK) {
-    bw_probe_traction(f->probe[BW_PROBE_QUADRATIC], u, p, NULL, f->traction, NULL);
-    if (bw_comm_rank(comm) == 0) st = write_wall(f, wall);
-    st = bw_comm_agree(comm, st);
-  }
+  bw_probe_traction(f->probe[BW_PROBE_QUADRATIC], u, p, NULL, f->traction, NULL);
+  BW_THEN(st, write_wall(f, run));
   const bw_vtk_array traction = {"traction", BW_VTK_FLOAT64, 3, f->traction};
   BW_THEN(st, bw_vtk_write_grid(f->flow.grid, fluid, 2, fields));
   BW_THEN(st, bw_vtk_write_points(comm, body, f->wall.n, f->wall.X, 1, &traction));
-  bw_release(&wall);
   bw_release(&fluid);
   bw_release(&body);
   return st;

@@ -199,23 +199,17 @@ static void write_pieces(void *context, size_t n, const bw_pd_fragment piece[])
 bw_status porous_fragments_csv(porous_run *p)
 {
   bw_pd_fragments pieces;
-  char *path = NULL;
-  FILE *f = NULL;
+  bw_case_text t;
   bw_status st = bw_pd_interface_fragments(bw_coupler_edit_interface(p->coupler), NULL, &pieces);
-  BW_THEN(st, bw_case_path(p->run, "fragments.csv", &path));
-  /* No rank holds all pieces: rank 0 is handed some at a time and writes them. */
-  if (st == BW_OK && bw_comm_rank(p->comm) == 0) {
-    f = fopen(path, "w");
-    if (f == NULL) st = BW_FAIL(BW_EIO, "%s: cannot be written", path);
-    if (f != NULL) fputs("particles[-],mass[kg],x[m],y[m],z[m],u[m/s],v[m/s],w[m/s]\n", f);
+  if (st == BW_OK) {
+    st = bw_case_text_begin(p->run, &t);
+    if (t.out != NULL) fputs("particles[-],mass[kg],x[m],y[m],z[m],u[m/s],v[m/s],w[m/s]\n", t.out);
+    /* No rank holds all pieces: rank 0 is handed some at a time and writes them. */
+    BW_THEN(st, bw_pd_fragment_visit(p->comm, &pieces, write_pieces, t.out));
+    st = bw_case_text_end(p->run, &t, "fragments.csv", st);
   }
-  st = bw_comm_agree(p->comm, st);
-  BW_THEN(st, bw_pd_fragment_visit(p->comm, &pieces, write_pieces, f));
-  if (f != NULL && fclose(f) != 0 && st == BW_OK)
-    st = BW_FAIL(BW_EIO, "%s: could not be written to the end", path);
   bw_pd_fragment_release(&pieces);
-  bw_release(&path);
-  return bw_comm_agree(p->comm, st);
+  return st;
 }
 
 bw_status porous_cost(porous_run *p)

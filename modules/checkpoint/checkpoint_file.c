@@ -174,18 +174,26 @@ bw_status bw_checkpoint_open(const bw_comm *comm, const char *path, bw_checkpoin
   return st;
 }
 
+/* One step of the end on all ranks: none goes on to the next, which they do together, alone. */
+static bw_status step_of_end(const bw_checkpoint *ck, bool done, const char *what)
+{
+  return bw_comm_agree(ck->comm, done ? BW_OK
+                                      : BW_FAIL(BW_EIO,
+                                                "checkpoint %s: HDF5 cannot %s (is the disk "
+                                                "full?)",
+                                                ck->part, what));
+}
+
 /* Data before the mark, the mark before the name. */
 static bw_status finish(bw_checkpoint *ck)
 {
-  BW_REQUIRE(H5Fflush(ck->file, H5F_SCOPE_GLOBAL) >= 0 &&
-                 bw_checkpoint__put_attribute(ck->file, complete_name, 1),
-             BW_EIO, "checkpoint %s: HDF5 cannot finish it (is the disk full?)", ck->part);
-  /* The data are flushed and the mark is set; closing writes the mark. */
+  BW_TRY(step_of_end(ck, H5Fflush(ck->file, H5F_SCOPE_GLOBAL) >= 0, "write it"));
+  BW_TRY(step_of_end(ck, bw_checkpoint__put_attribute(ck->file, complete_name, 1), "mark it"));
+  /* All that could fail has been written before the close, whose failure HDF5 does not bear. */
+  BW_TRY(step_of_end(ck, H5Fflush(ck->file, H5F_SCOPE_GLOBAL) >= 0, "finish it"));
   const herr_t closed = H5Fclose(ck->file);
   ck->file = H5I_INVALID_HID;
-  BW_REQUIRE(closed >= 0, BW_EIO, "checkpoint %s: HDF5 cannot close it (is the disk full?)",
-             ck->part);
-  return BW_OK;
+  return step_of_end(ck, closed >= 0, "close it");
 }
 
 static bw_status rename_on_disk(const bw_checkpoint *ck)
@@ -211,7 +219,7 @@ bw_status bw_checkpoint_close(bw_checkpoint **ck)
   /* A put that failed makes the file worthless even where its caller went on. */
   bw_status st = c->failed;
   if (c->part != NULL) {
-    BW_THEN(st, bw_comm_agree(c->comm, finish(c)));
+    BW_THEN(st, finish(c));
     BW_THEN(st, bw_comm_agree(c->comm, rename_on_disk(c)));
   }
   /* Not renamed: whatever stood under that name before is still there. */
@@ -228,6 +236,8 @@ void bw_checkpoint_abandon(bw_checkpoint **ck)
 {
   bw_checkpoint *c = *ck;
   if (c == NULL) return;
+  /* What is still to be written of a file that is given up goes nowhere. */
+  if (c->file >= 0 && c->part != NULL) bw_checkpoint__lose(c->part);
   if (c->file >= 0) H5Fclose(c->file);
   if (c->part != NULL && first(c)) unlink(c->part);
   destroy(ck);

@@ -48,3 +48,6 @@ bw_status bw_checkpoint__length(bw_checkpoint *ck, const char *name, bw_checkpoi
  * attributes return false on any failure. */
 bool bw_checkpoint__put_attribute(hid_t object, const char *name, uint64_t value);
 bool bw_checkpoint__get_attribute(hid_t object, const char *name, uint64_t *value);
+
+/* What this process goes on writing to the file of that name goes into memory, to be forgotten. */
+void bw_checkpoint__lose(const char *path);

@@ -27,6 +27,7 @@
 #include "bw_config.h"
 #include "bw_history.h"
 #include "bw_log.h"
+#include <stdio.h>
 
 BW_BEGIN_DECLS
 
@@ -91,6 +92,22 @@ bw_log *bw_case_log(const bw_case *run);
 /* *path = a file that the run writes into its folder, allocated, owned by the caller (bw_release).
  * The name is noted: --overwrite of a later run may remove the file. Collective. */
 bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
+
+/* A table or another text that the run writes into its folder: made in memory, then on the disk as a
+ * whole or not at all. */
+typedef struct {
+  FILE *out; /* where rank 0 writes to; NULL on the others */
+  char *text;
+  size_t length;
+} bw_case_text;
+
+/* Begin one: t->out. BW_EMEM; end it also then. Collective. */
+bw_status bw_case_text_begin(const bw_case *run, bw_case_text *t) BW_MUST_CHECK;
+
+/* Where `st` is fine on all ranks it becomes the file `name`, as by bw_case_path; `t` is released.
+ * Returns what went wrong first: `st`, BW_EMEM, BW_EIO. Collective. */
+bw_status bw_case_text_end(const bw_case *run, bw_case_text *t, const char *name,
+                           bw_status st) BW_MUST_CHECK;
 
 /* history.csv in the folder of the run (bw_history.h). After --restart, restart_time and
  * restart_rows are the time of the checkpoint and the rows that had been written until then; rows

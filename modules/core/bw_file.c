@@ -134,7 +134,11 @@ bw_status bw_file_close(bw_file **file)
   /* How long the file has to be, over all ranks: only they know what they have written. */
   int64_t end = f->end;
   bw_comm_max_int(f->comm, 1, &end);
-  const int code = MPI_File_close(&f->mpi);
+  /* To the disk before the name: after a power failure the name stands for the old file or for all
+   * of the new one. */
+  const int synced = MPI_File_sync(f->mpi);
+  const int closed = MPI_File_close(&f->mpi);
+  const int code = synced != MPI_SUCCESS ? synced : closed;
   f->open = false;
   bw_status st = code == MPI_SUCCESS ? BW_OK : mpi_failed(f->path, end, code);
   st = bw_comm_agree(f->comm, st);
@@ -163,12 +167,16 @@ static bw_status write_whole(const char *path, const char *part, const char *tex
 {
   FILE *out = fopen(part, "w");
   BW_REQUIRE(out != NULL, BW_EIO, "cannot write %s: %s", path, strerror(errno));
-  /* Buffered: the disk may refuse only when the file is closed. */
-  const bool put = fputs(text, out) >= 0;
-  const int reason = put ? 0 : errno;
+  /* Buffered: the disk may refuse only later. A pipe or a device (EINVAL) has no disk behind it. */
+  errno = 0;
+  bool ok = fputs(text, out) >= 0 && fflush(out) == 0;
+  ok = ok && (fsync(fileno(out)) == 0 || errno == EINVAL);
+  int reason = errno;
   const bool closed = fclose(out) == 0;
-  if (put && closed && rename(part, path) == 0) return BW_OK;
-  const bw_status st = BW_FAIL(BW_EIO, "cannot write %s: %s", path, strerror(put ? errno : reason));
+  if (ok && !closed) reason = errno;
+  if (ok && closed && rename(part, path) == 0) return BW_OK;
+  if (ok && closed) reason = errno;
+  const bw_status st = BW_FAIL(BW_EIO, "cannot write %s: %s", path, strerror(reason));
   remove(part);
   return st;
 }

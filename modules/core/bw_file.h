@@ -1,8 +1,8 @@
 /* bw_file.h -- one file written by all ranks together at byte offsets.
  *
  * The bytes go to PATH.part, which is renamed to PATH by a close that found all of them written:
- * an interrupted or failed write never replaces a good file. (No fsync: a killed program is
- * covered, a power failure is not.)
+ * an interrupted or failed write never replaces a good file. They are brought to the disk before
+ * that, so that a power failure does not, either.
  * Life     create -> { write_at_all }* -> close, or abandon after an error.
  * Errors   BW_EIO with the path and the system's reason; agreed by all ranks. */
 #pragma once

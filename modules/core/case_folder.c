@@ -123,8 +123,10 @@ static bw_status find_result(const char *folder, bool but_checkpoints, char **na
   /* Records alone are no results: a run that stopped before its first output may begin again. */
   for (const struct dirent *e = readdir(d); e != NULL && *name == NULL && st == BW_OK;
        e = readdir(d)) {
-    const bool record = strcmp(e->d_name, "run.yaml") == 0 || strncmp(e->d_name, "run-", 4) == 0 ||
-                        strcmp(e->d_name, lock_name) == 0 || strcmp(e->d_name, list_name) == 0;
+    const bool record = strcmp(e->d_name, "run.yaml") == 0 ||
+                        strcmp(e->d_name, "run.yaml.part") == 0 ||
+                        strncmp(e->d_name, "run-", 4) == 0 || strcmp(e->d_name, lock_name) == 0 ||
+                        strcmp(e->d_name, list_name) == 0;
     if (e->d_name[0] != '.' && !record && !(but_checkpoints && ends_with(e->d_name, ".h5")))
       st = bw_path_join("", e->d_name, name);
   }
@@ -246,23 +248,26 @@ static bw_status take_list(bw_case *run, const bw_comm *self)
   return st;
 }
 
-/* run.yaml becomes run-N.yaml, the first N that is free. */
+/* run.yaml is kept as run-N.yaml, the first N that is free. A copy: a folder whose run is killed
+ * here still has the record that says whose it is. */
 static bw_status keep_old_record(const bw_case *run, const bw_comm *self)
 {
-  char *path = NULL;
+  char *path = NULL, *text = NULL;
   bw_status st = bw_path_join(run->out, "run.yaml", &path);
-  bool renamed = st == BW_OK && !bw_path_exists(self, path);
-  for (int n = 1; st == BW_OK && !renamed; n++) {
-    char name[32], *kept = NULL;
+  bool kept = st == BW_OK && !bw_path_exists(self, path);
+  if (st == BW_OK && !kept) st = bw_file_read_text(self, path, NULL, &text);
+  for (int n = 1; st == BW_OK && !kept; n++) {
+    char name[32], *copy = NULL;
     snprintf(name, sizeof name, "run-%d.yaml", n);
-    st = bw_path_join(run->out, name, &kept);
+    st = bw_path_join(run->out, name, &copy);
     /* A name that is taken is never overwritten: every start of the run stays on record. */
-    if (st == BW_OK && !bw_path_exists(self, kept)) {
-      renamed = rename(path, kept) == 0;
-      if (!renamed) st = BW_FAIL(BW_EIO, "cannot rename %s: %s", path, strerror(errno));
+    if (st == BW_OK && !bw_path_exists(self, copy)) {
+      st = bw_file_write_text(self, copy, text);
+      kept = true;
     }
-    bw_release(&kept);
+    bw_release(&copy);
   }
+  bw_release(&text);
   bw_release(&path);
   return st;
 }

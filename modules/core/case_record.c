@@ -85,8 +85,11 @@ static bw_status append_end(const bw_case *run, const char *path, bw_status stat
     bw_core__put_quoted(out, bw_log_warning(run->log, q));
     fputc('\n', out);
   }
-  const bool ok = !ferror(out);
-  BW_REQUIRE(fclose(out) == 0 && ok, BW_EIO, "cannot write %s: %s", path, strerror(errno));
+  errno = 0;
+  const bool ok = fflush(out) == 0 && !ferror(out);
+  const int reason = errno;
+  BW_REQUIRE(fclose(out) == 0 && ok, BW_EIO, "cannot write %s: %s", path,
+             strerror(reason != 0 ? reason : errno));
   return BW_OK;
 }
 

@@ -144,6 +144,15 @@ static bw_status after_step(driver *r)
   return BW_OK;
 }
 
+/* The picture that was due when the checkpoint was written, once more: a run that was killed behind
+ * the checkpoint does not have it. The last one of a run follows anyway. */
+static bw_status draw_again(driver *r)
+{
+  const bw_scene *s = r->scene;
+  if (!due(r->picture, s->time) || bw_scene_done(s)) return BW_OK;
+  return bw_scene_picture(r->scene, r->run);
+}
+
 static bw_status advance(driver *r)
 {
   bw_scene *s = r->scene;
@@ -191,6 +200,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
   if (args->restart != NULL) BW_TRY(restart(r, args->restart));
   BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&r->row, (size_t)s->n_columns)));
   BW_TRY(bw_case_history(r->run, s->n_columns, s->names, s->time, r->rows, &r->history));
+  if (args->restart != NULL) BW_TRY(draw_again(r));
   bw_stop_install();
   r->written = bw_wall_time();
   BW_TRY(advance(r));

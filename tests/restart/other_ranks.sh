@@ -13,24 +13,14 @@ compare() {
     "$out/$1/history.csv" 1e-10 100
 }
 
-# Killed in the second phase, after its last checkpoint, at its end at the latest: the
-# file it is to write next is a pipe that nobody reads, at which the run waits until it is killed.
-mpirun -n 2 "$build/bin/porous_breakup" "$case" --out "$out/killed" --quiet \
-  --set output.checkpoint_every=30 &
-mpi=$!
-until [ -e "$out/killed/run.yaml" ]; do # a folder is the run's own from here on
-  kill -0 $mpi 2>/dev/null || { echo "the run ended before it began"; exit 1; }
-  sleep 0.1
-done
-mkfifo "$out/killed/checkpoint-deformation.h5.part"
-until [ -e "$out/killed/checkpoint-last.h5" ]; do # whole, once it has its name
-  kill -0 $mpi 2>/dev/null || { echo "the run ended before it could be killed"; exit 1; }
-  sleep 0.1
-done
-kill -9 $mpi
-wait $mpi 2>/dev/null || true
-while pkill -9 -f "$out/killed"; do sleep 0.1; done
-rm "$out/killed/checkpoint-deformation.h5.part"
+# Killed in the second phase, after its last checkpoint, when the file of its end is to be written.
+code=0
+mpirun -n 2 -x LD_PRELOAD="$build/lib/libbad_disk.so" -x BAD_DISK="$out/killed" -x BAD_DISK_RANK=0 \
+  -x BAD_DISK_ONLY=checkpoint-deformation -x BAD_DISK_AT=1 -x BAD_DISK_HOW=kill \
+  "$build/bin/porous_breakup" "$case" --out "$out/killed" --quiet --set output.checkpoint_every=30 \
+  2> "$out/killed.txt" || code=$?
+[ $code -ne 0 ] && [ -e "$out/killed/checkpoint-last.h5" ] ||
+  { cat "$out/killed.txt"; echo "the run was to be killed behind its checkpoint, exit code $code"; exit 1; }
 mpirun -n 3 "$build/bin/porous_breakup" "$case" --out "$out/killed" --quiet \
   --restart "$out/killed/checkpoint-last.h5"
 compare killed

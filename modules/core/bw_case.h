@@ -93,8 +93,8 @@ bw_log *bw_case_log(const bw_case *run);
  * The name is noted: --overwrite of a later run may remove the file. Collective. */
 bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUST_CHECK;
 
-/* A table or another text that the run writes into its folder: made in memory, then on the disk as a
- * whole or not at all. */
+/* A table or another text that the run writes into its folder: made in memory, then on the disk as
+ * a whole or not at all. */
 typedef struct {
   FILE *out; /* where rank 0 writes to; NULL on the others */
   char *text;

@@ -1,4 +1,4 @@
-/* Fuzzer of scene files: read, resolved and checked, as far as a run goes before it builds anything.
+/* Fuzzer of scene files: read, resolved and checked, as far as a run goes before it builds.
  * BUILD modules=scene */
 #include "bw_memory.h"
 #include "bw_scene.h"

@@ -1,7 +1,7 @@
 /* A file that cannot be written (the disk is full) has to be closed nevertheless. HDF5 writes what
- * it still holds when a file is closed; where that fails it has freed the file and keeps its number,
- * and at the end of the program it follows that into memory that is gone (seen with 1.10.8). So
- * what is given up is written into memory, where there is room for it. */
+ * it still holds when a file is closed; where that fails it has freed the file and keeps its
+ * number, and at the end of the program it follows that into memory that is gone (seen with
+ * 1.10.8). So what is given up is written into memory, where there is room for it. */
 #define _GNU_SOURCE /* memfd_create */
 #include "checkpoint_internal.h"
 

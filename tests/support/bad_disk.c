@@ -6,8 +6,8 @@
  *   power  as torn; besides, every file is cut to what fsync has brought to the disk
  *   full   from here on there is no room: ENOSPC, a write gives half of its bytes first
  *   locked from here on nothing may be made, renamed or removed (EACCES)
- * BAD_DISK_ONLY: calls count whose path holds this text. BAD_DISK_COUNT: a file that gets the number
- * of calls at the end. Of several ranks BAD_DISK_RANK. */
+ * BAD_DISK_ONLY: calls count whose path holds this text. BAD_DISK_COUNT: a file that gets the
+ * number of calls at the end. Of several ranks BAD_DISK_RANK. */
 #define _GNU_SOURCE /* RTLD_NEXT, fopencookie */
 #include <dlfcn.h>
 #include <errno.h>

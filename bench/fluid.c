@@ -1,7 +1,7 @@
 /* Cost of the flow solver per cell and sub-step, against what it cannot avoid.
  *
- * Rival: CaNS (gfortran -O3 -march=native, explicit RK3, double), measured on a machine of this
- * kind with two ranks; the median of quiet and typical runs. Floor: the words a sub-step must move
+ * Rival: CaNS on the same channel (bench/cans_channel.nml), run just before by
+ * `./run bench fluid --rival cans=PATH`; without it none. Floor: the words a sub-step must move
  * (below) at the triad bandwidth, and its transforms by FFTW's measured plans on numbers in the
  * cache; both timed in this run, on all ranks at once.
  * bytes_per_cell: growth of the resident memory on creation, Poisson's buffers and plans included.
@@ -17,6 +17,7 @@
 #include <malloc.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Words per cell and sub-step that cannot be avoided when no array stays in cache: momentum reads
@@ -35,8 +36,33 @@ typedef struct {
   bool inout;
   bw_ns_viscous viscous;
   int steps;
-  double rival, rival_bytes;
 } fluid_case;
+
+/* ---- the rival ---- */
+
+enum { CANS_STEPS = 24, CANS_WARM = 4 }; /* of its run; those that are not counted */
+
+/* Median time of its steps, core-ns per cell and sub-step, from the log of its run on this many
+ * ranks; NaN where it was not run. */
+static double cans(const fluid_case *c, int ranks)
+{
+  const char *build = getenv("BW_BUILD_DIR");
+  char path[640], line[256];
+  double seconds[CANS_STEPS];
+  int steps = 0;
+  snprintf(path, sizeof path, "%s/bench/cans/%s.log", build != NULL ? build : "build", c->name);
+  FILE *log = ranks == 2 ? fopen(path, "r") : NULL;
+  if (log == NULL) return NAN;
+  /* A headline, and on the next line mean, least and largest time over the ranks. */
+  while (steps < CANS_STEPS && fgets(line, sizeof line, log) != NULL)
+    if (strstr(line, "elapsed time") != NULL && fgets(line, sizeof line, log) != NULL &&
+        sscanf(line, "%*f %*f %lf", &seconds[steps]) == 1)
+      steps++;
+  fclose(log);
+  if (steps < CANS_STEPS) return NAN;
+  const double cells = (double)c->n[0] * c->n[1] * c->n[2];
+  return 1e9 * bw_bench_middle(CANS_STEPS - CANS_WARM, seconds + CANS_WARM) * ranks / (3.0 * cells);
+}
 
 /* ---- transforms ---- */
 
@@ -195,11 +221,10 @@ static bw_status measure(bw_bench *b, const bw_comm *comm, const char *name, con
     /* Core-time: wall time of the slowest rank, times the number of ranks. */
     *ns_per_cell =
         1e9 * bw_bench_median(comm, advance, &w) * bw_comm_size(comm) / (3.0 * c->steps * cells);
-    bw_bench_put(b, &(bw_bench_row){name, "core_ns_per_cell_substep", "ns", *ns_per_cell,
-                                    isfinite(c->rival) ? "CaNS" : NULL, c->rival,
+    bw_bench_put(b, &(bw_bench_row){name, "core_ns_per_cell_substep", "ns", *ns_per_cell, "CaNS",
+                                    cans(c, bw_comm_size(comm)),
                                     1e9 * (words * sizeof(bw_real) / triad + transforms)});
-    bw_bench_put(b, &(bw_bench_row){name, "bytes_per_cell", "B", bytes / cells, "CaNS",
-                                    c->rival_bytes, NAN});
+    bw_bench_put(b, &(bw_bench_row){name, "bytes_per_cell", "B", bytes / cells, NULL, NAN, NAN});
     bw_bench_put(b,
                  &(bw_bench_row){name, "floor_transforms", "ns", 1e9 * transforms, NULL, NAN, NAN});
     if (bw_comm_size(comm) > 1) put_messages(b, c, grid, &w);
@@ -259,21 +284,15 @@ static bw_status run(bw_bench *b)
   enum { LARGE, CHANNEL, INOUT, IMPLICIT_Y, IMPLICIT, CASES };
   const double pi = 3.14159265358979323846;
   fluid_case cases[CASES];
-  /* The small grid's rival unless said otherwise. */
   for (int q = 0; q < CASES; q++)
-    cases[q] = (fluid_case){
-        .n = {128, 64, 64}, .length = {2, 1, 1}, .steps = 10, .rival = 102, .rival_bytes = 203};
-  cases[LARGE] = (fluid_case){.n = {192, 128, 160},
-                              .length = {2 * pi, 1, pi},
-                              .steps = 2,
-                              .rival = 115,
-                              .rival_bytes = 147};
+    cases[q] = (fluid_case){.n = {128, 64, 64}, .length = {2, 1, 1}, .steps = 10};
+  cases[LARGE] = (fluid_case){.n = {192, 128, 160}, .length = {2 * pi, 1, pi}, .steps = 2};
   cases[LARGE].name = "channel_192x128x160_np2";
   cases[CHANNEL].name = "channel_128x64x64_np2";
   cases[INOUT].name = "inout_128x64x64_np2", cases[INOUT].inout = true;
-  cases[IMPLICIT_Y].name = "implicit_y_128x64x64_np2", cases[IMPLICIT_Y].rival = 143;
+  cases[IMPLICIT_Y].name = "implicit_y_128x64x64_np2";
   cases[IMPLICIT_Y].viscous = BW_VISCOUS_IMPLICIT_Y;
-  cases[IMPLICIT].name = "implicit_128x64x64_np2", cases[IMPLICIT].rival = (double)NAN;
+  cases[IMPLICIT].name = "implicit_128x64x64_np2";
   cases[IMPLICIT].viscous = BW_VISCOUS_IMPLICIT;
   const bw_comm *comm = bw_bench_comm(b);
   /* Bandwidth in this very run: what the floor is made of. */
@@ -284,7 +303,7 @@ static bw_status run(bw_bench *b)
   for (int q = 0; q < CASES; q++)
     BW_TRY(measure(b, comm, cases[q].name, &cases[q], triad, &ns[q]));
   bw_bench_put(b, &(bw_bench_row){cases[IMPLICIT].name, "price_over_explicit", "",
-                                  ns[IMPLICIT] / ns[CHANNEL], "CaNS", 2.3, NAN});
+                                  ns[IMPLICIT] / ns[CHANNEL], NULL, NAN, NAN});
   /* The same cases on one rank. */
   BW_TRY(scaling(b, "channel_128x64x64_np1", &cases[CHANNEL], triad, ns[CHANNEL]));
   BW_TRY(scaling(b, "channel_192x128x160_np1", &cases[LARGE], triad, ns[LARGE]));

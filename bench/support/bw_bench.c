@@ -31,20 +31,21 @@ void bw_bench_put(bw_bench *b, const bw_bench_row *r)
 {
   /* Only rank 0 writes. */
   if (b->file == NULL) return;
+  const bool rival = r->rival != NULL && isfinite(r->rival_value);
+  const double ratio = rival ? r->value / r->rival_value : NAN;
   fprintf(b->file, "%s\n  {\"case\": \"%s\", \"quantity\": \"%s\", ", b->rows++ > 0 ? "," : "",
           r->name, r->quantity);
   put_number(b->file, "value", r->value, ", ");
-  fprintf(b->file, "\"unit\": \"%s\", \"rival\": \"%s\", ", r->unit,
-          r->rival != NULL ? r->rival : "");
-  put_number(b->file, "rival_value", r->rival != NULL ? r->rival_value : NAN, ", ");
+  fprintf(b->file, "\"unit\": \"%s\", \"rival\": \"%s\", ", r->unit, rival ? r->rival : "");
+  put_number(b->file, "rival_value", rival ? r->rival_value : NAN, ", ");
+  fprintf(b->file, "\"rival_measured\": \"%s\", ", rival ? "this run" : "");
   put_number(b->file, "floor_value", r->floor_value, ", ");
-  put_number(b->file, "ratio_to_rival", r->rival != NULL ? r->value / r->rival_value : NAN, ", ");
+  put_number(b->file, "ratio_to_rival", ratio, ", ");
   put_number(b->file, "ratio_to_floor", r->value / r->floor_value, "}");
   fflush(b->file);
   /* The same for the eye. */
   printf("%-28s %-28s %10.4g %-12s", r->name, r->quantity, r->value, r->unit);
-  if (r->rival != NULL)
-    printf("  %5.2f of %s (%.4g)", r->value / r->rival_value, r->rival, r->rival_value);
+  if (rival) printf("  %5.2f of %s (%.4g)", ratio, r->rival, r->rival_value);
   if (isfinite(r->floor_value))
     printf("  %5.2f of the floor (%.4g)", r->value / r->floor_value, r->floor_value);
   printf("\n");

@@ -2,7 +2,8 @@
  *
  *   int main(int argc, char **argv) { return bw_bench_main(argc, argv, "fluid", run); }
  * Writes $BW_BUILD_DIR/bench/NAME.json, rows {case, quantity, value, unit, rival, rival_value,
- * floor_value, ratio_to_rival, ratio_to_floor}. Nothing here fails on a clock. */
+ * rival_measured, floor_value, ratio_to_rival, ratio_to_floor}. A rival is what was timed in this
+ * run, never elsewhere: only then is a ratio one. Nothing here fails on a clock. */
 #pragma once
 #include "bw_comm.h"
 
@@ -16,7 +17,7 @@ typedef struct {
   const char *unit;     /* its unit; "" or "-": none */
   double value;         /* what was measured */
   const char *rival;    /* another code, or the same without what is priced; NULL: none */
-  double rival_value;   /* the same of the rival; NaN: none */
+  double rival_value;   /* the same of the rival, timed in this run; NaN: it was not */
   double floor_value;   /* what cannot be undercut on this machine; NaN: none */
 } bw_bench_row;
 

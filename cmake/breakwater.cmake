@@ -288,7 +288,7 @@ function(bw_unit_tests)
   endforeach()
   _bw_program(fails_on_one_rank "" ${PROJECT_SOURCE_DIR}/tests/support/fails_on_one_rank.c) # of robustness.assertion
   target_link_libraries(fails_on_one_rank PRIVATE bw_ext_check)
-  foreach(name no_memory bad_disk) # of robustness.no_memory, robustness.bad_disk
+  foreach(name no_memory bad_disk count_memory) # of the tests of these names in robustness
     add_library(${name} MODULE ${PROJECT_SOURCE_DIR}/tests/support/${name}.c)
     target_link_libraries(${name} PRIVATE bw_flags ${CMAKE_DL_LIBS})
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)

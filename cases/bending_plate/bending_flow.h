@@ -150,13 +150,9 @@ static inline bw_grid_config bending_grid(const bending_config *c)
   return grid;
 }
 
-static inline bw_status bending_make_fluid(bending_flow *f)
+static inline bw_ns_channel_config bending_fluid_of(const bending_config *c)
 {
-  const bending_config *c = &f->config;
-  const bw_grid_config grid = bending_grid(c);
   bw_ns_channel_config fluid = bw_ns_channel_config_default();
-  f->h = c->channel.height / c->channel.cells[1];
-  BW_TRY(bw_grid_create(f->comm, &grid, &f->grid));
   /* Laminar inflow, convective outflow; floor and ceiling are walls by default. */
   fluid.nu = c->fluid.viscosity;
   fluid.side[0][0] = (bw_ns_side){.kind = BW_SIDE_INFLOW,
@@ -164,6 +160,16 @@ static inline bw_status bending_make_fluid(bending_flow *f)
                                   .bulk_velocity = c->fluid.bulk_velocity};
   fluid.side[0][1].kind = BW_SIDE_OUTFLOW;
   fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
+  return fluid;
+}
+
+static inline bw_status bending_make_fluid(bending_flow *f)
+{
+  const bending_config *c = &f->config;
+  const bw_grid_config grid = bending_grid(c);
+  const bw_ns_channel_config fluid = bending_fluid_of(c);
+  f->h = c->channel.height / c->channel.cells[1];
+  BW_TRY(bw_grid_create(f->comm, &grid, &f->grid));
   BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
   /* The stream starts as it enters, everywhere; the plate is met in the first step. */
   BW_TRY(bw_ns_channel_set_velocity(f->fluid, bending_stream, &f->config, 0.0));

@@ -1,5 +1,6 @@
 /* What of a run can be known before it is built: what is refused, sizes, limits, memory. */
 #include "bending_case.h"
+#include "bw_checkpoint.h"
 
 #include <math.h>
 
@@ -20,7 +21,7 @@ static bw_status check_strain(const bending_config *c, double h)
  * in a channel and with a plate that are as small as they can be. */
 static bending_config small_of(const bending_config *c)
 {
-  enum { CELLS_X = 96, CELLS_Y = 48, FEW = 60000, ROWS = 24, ACROSS = 8 };
+  enum { CELLS_X = 96, CELLS_Y = 48, FEW = 60000, ROWS = 48, ACROSS = 48 };
   bending_config s = *c;
   const double h = c->channel.height / c->channel.cells[1];
   const double ds = c->plate.thickness / c->plate.particles_across;
@@ -54,13 +55,49 @@ static bw_status check_step(const bending_run *p, bending_flow *small, double *l
   return bw_coupler_check_substeps(small->coupler, dt);
 }
 
-static bw_status describe(const bending_run *p, bending_flow *small, double bytes)
+/* Memory of a rank. That of the fluid is known; `held` is what the small set-up holds after its first
+ * step: beside its own fluid, fields of the coupler and of the last good state (two and three), and
+ * what grows with the n particles. A checkpoint on its way is added. */
+static bw_status weigh(const bending_run *p, const bending_flow *small, double n,
+                       double fluid_bytes, double held)
+{
+  const bending_config *c = &p->config->physics;
+  const bw_ns_channel_config flow = bending_fluid_of(&small->config);
+  const int *of = small->config.channel.cells, ranks = bw_comm_size(p->comm);
+  const double cells = (double)c->channel.cells[0] * c->channel.cells[1];
+  const double fields = 5.0 * sizeof(bw_real) * (double)bw_grid_look(small->grid)->size;
+  const double row = 8.0 * (double)bw_solid_restart_row(small->solid);
+  bw_ns_plan own;
+  BW_TRY(bw_ns_channel_plan(small->grid, &flow, &own));
+  const double each = fmax(0.0, held - own.bytes - fields) / (double)bw_solid_total(small->solid);
+  const double writing =
+      bw_checkpoint_file_bytes() +
+      fmax(bw_checkpoint_table_bytes(n / ranks, row), cells / ranks * (double)sizeof(bw_real));
+  bw_log_info(bw_case_log(p->run), "memory     about %.3g MiB for each of %d ranks",
+              (fluid_bytes + cells / of[0] / of[1] / ranks * fields + n / ranks * each + writing) /
+                  1048576.0,
+              ranks);
+  return BW_OK;
+}
+
+/* Buffers grow in the first step, a short one, and when it is measured; the last good state is kept
+ * from the start on. */
+static bw_status first_step(bending_flow *small)
+{
+  static const double brief = 1e-3;
+  bending_measure m;
+  BW_TRY(bw_coupler_step(small->coupler, brief * bw_ns_channel_dt_max(small->fluid)));
+  BW_TRY(bending_look(small, &m));
+  return bw_coupler_keep(small->coupler);
+}
+
+static bw_status describe(const bending_run *p, bending_flow *small, double fluid_bytes,
+                          double before)
 {
   const bending_config *c = &p->config->physics;
   const double U = c->fluid.bulk_velocity, rho = c->fluid.density, H = c->plate.height;
   const double ds = c->plate.thickness / c->plate.particles_across, dt = p->config->time.step;
   const double rows = H / ds + c->plate.clamped_layers, n = rows * c->plate.particles_across;
-  const int ranks = bw_comm_size(p->comm);
   bw_log *log = bw_case_log(p->run);
   double limit = 0.0;
   BW_TRY(check_step(p, small, &limit));
@@ -75,34 +112,38 @@ static bw_status describe(const bending_run *p, bending_flow *small, double byte
               "%.3g s); %.0f steps, H/U_b = %g s",
               dt, dt / limit, bw_coupler_substeps(small->coupler, dt),
               bw_solid_dt_max(small->solid), p->config->time.end / dt, H / U);
-  /* By what grows with cells and with particles: the larger of the two shares. */
-  const double cells = (double)c->channel.cells[0] * c->channel.cells[1];
-  const double by_cells = cells / small->config.channel.cells[0] / small->config.channel.cells[1];
-  const double by_particles = n / (double)bw_solid_total(small->solid);
-  bw_log_info(log, "memory     about %.3g MiB for each of %d ranks",
-              fmax(by_cells, by_particles) * bytes / 1048576.0 / ranks, ranks);
-  return BW_OK;
+  BW_TRY(first_step(small));
+  return weigh(p, small, n, fluid_bytes, (double)bw_memory_in_use() - before);
+}
+
+static bw_status plan(const bending_run *p, bending_flow *small, double fluid_bytes)
+{
+  const bending_config config = small_of(&p->config->physics);
+  bw_comm *self = NULL;
+  bw_status st = bw_comm_self(&self);
+  const double before = (double)bw_memory_in_use();
+  BW_THEN(st, bending_create(self, &config, small));
+  BW_THEN(st, describe(p, small, fluid_bytes, before));
+  bending_destroy(small);
+  bw_comm_destroy(&self);
+  return st;
 }
 
 bw_status bending_plan(bending_run *p)
 {
-  const bending_config *c = &p->config->physics, small_config = small_of(c);
+  const bending_config *c = &p->config->physics;
   bending_flow small = {.h = 0.0};
   bw_grid *grid = NULL;
-  bw_comm *self = NULL;
+  bw_ns_plan fluid;
   BW_TRY(bending_count_steps(p));
   BW_TRY(bending_check(c));
   BW_TRY(check_strain(c, c->channel.height / c->channel.cells[1]));
   /* Ranks have to fit the grid. */
   const bw_grid_config sizes = bending_grid(c);
-  BW_TRY(bw_grid_plan(p->comm, &sizes, &grid));
+  const bw_ns_channel_config flow = bending_fluid_of(c);
+  bw_status st = bw_grid_plan(p->comm, &sizes, &grid);
+  BW_THEN(st, bw_ns_channel_plan(grid, &flow, &fluid));
   bw_grid_destroy(&grid);
-  bw_status st = bw_comm_self(&self);
-  const double before = (double)bw_memory_in_use();
-  BW_THEN(st, bending_create(self, &small_config, &small));
-  const double bytes = (double)bw_memory_in_use() - before;
-  BW_THEN(st, describe(p, &small, bytes));
-  bending_destroy(&small);
-  bw_comm_destroy(&self);
-  return bw_comm_agree(p->comm, st);
+  BW_THEN(st, bw_comm_agree(p->comm, plan(p, &small, fluid.bytes)));
+  return st;
 }

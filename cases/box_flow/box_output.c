@@ -1,5 +1,6 @@
 /* What a box flow writes: log, history.csv, VTK files. */
 #include "box_case.h"
+#include "bw_checkpoint.h"
 #include "bw_memory.h"
 #include "bw_vtk.h"
 
@@ -72,7 +73,11 @@ bw_status box_describe(const box_run *b, const bw_grid *plan, const bw_ns_channe
               "largest stable step at the start, walls and inflows counted, %.3g, this run's %.3g: "
               "about %.0f steps, more where the flow gets faster, %.2g s on one core",
               limit, dt, steps, steps * cells * 3.0 * 30e-9);
-  bw_log_info(log, "memory: about %.3g MiB for each of %d ranks", known.bytes / 1048576.0, ranks);
+  /* The fluid, and the larger of a checkpoint and a picture on their way. */
+  const double writing =
+      fmax(bw_checkpoint_file_bytes() + bw_checkpoint_field_bytes(plan), bw_vtk_grid_bytes(plan));
+  bw_log_info(log, "memory: about %.3g MiB for each of %d ranks",
+              (known.bytes + writing) / 1048576.0, ranks);
   return BW_OK;
 }
 

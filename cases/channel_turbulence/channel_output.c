@@ -16,10 +16,12 @@ void channel_describe(const bw_grid *plan, const bw_ns_plan *known, const channe
               c->fluid.reynolds, g->n[0], g->n[1], g->n[2], re_tau, g->spacing[0] * plus,
               g->spacing[1] * plus, g->spacing[2] * plus, c->time.spin_up, c->time.statistics,
               c->time.interval);
+  const double writing = bw_checkpoint_file_bytes() + bw_checkpoint_field_bytes(plan);
   bw_log_info(log,
               "largest stable step of the bulk flow %.3g h/U_b; memory: about %.3g MiB for each "
               "of %d ranks",
-              known->dt_max, known->bytes / 1048576.0, bw_comm_size(bw_grid_comm(plan)));
+              known->dt_max, (known->bytes + writing) / 1048576.0,
+              bw_comm_size(bw_grid_comm(plan)));
 }
 
 bw_status channel_open_history(const channel_flow *f, const bw_case *run, bw_history **out)

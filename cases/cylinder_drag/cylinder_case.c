@@ -52,24 +52,59 @@ cylinder_case cylinder_case_default(void)
                          {.steady = 1.0e-5, .latest = 60.0, .interval = 0.5}};
 }
 
-bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_log *log)
+/* The same cylinder in a channel as short, with cells as large, as can be. */
+static cylinder_config small_of(const cylinder_config *c)
 {
-  const double steps = c->until.latest / f->flow.dt;
+  static const double beside = 1.5; /* diameters: the least that a case may have */
+  static const int coarse = 16;     /* cells per diameter */
+  cylinder_config s = *c;
+  s.upstream = s.downstream = beside;
+  s.cells_per_diameter = c->cells_per_diameter < coarse ? c->cells_per_diameter : coarse;
+  return s;
+}
+
+/* What the markers, probes and points on the surface hold, from the small channel: its memory beside
+ * that of its fluid and the field of the pressure. It grows with the diameter in cells. */
+static bw_status weigh_body(const bw_comm *self, const cylinder_config *c, double *bytes)
+{
+  const cylinder_config s = small_of(c);
+  const bw_ns_channel_config fluid = cylinder_fluid(&s);
+  cylinder_flow f;
+  bw_ns_plan own = {.bytes = 0.0};
+  const double before = (double)bw_memory_in_use();
+  bw_status st = cylinder_create(self, &s, &f);
+  const double held = (double)bw_memory_in_use() - before;
+  BW_THEN(st, bw_ns_channel_plan(f.flow.grid, &fluid, &own));
+  if (st == BW_OK) {
+    const double field = (double)sizeof(bw_real) * (double)bw_grid_look(f.flow.grid)->size;
+    const double finer = (double)c->cells_per_diameter / s.cells_per_diameter;
+    *bytes = finer * fmax(0.0, held - own.bytes - field);
+  }
+  cylinder_destroy(&f);
+  return st;
+}
+
+static bw_status describe(const bw_grid *plan, const bw_ns_plan *known, double body,
+                          const cylinder_case *c, bw_log *log)
+{
+  const bw_grid_view *g = bw_grid_look(plan);
+  const double dt = cylinder_first_step(&c->cylinder, known->dt_max), steps = c->until.latest / dt;
+  const int ranks = bw_comm_size(bw_grid_comm(plan));
   BW_REQUIRE(
       steps <= (double)BW_MOST_STEPS, BW_EINPUT,
       "until.latest = %g takes %.3g steps of %.3g (cylinder.reynolds = %g), more than the %g "
       "that anybody can wait for",
-      c->until.latest, steps, f->flow.dt, c->cylinder.reynolds, (double)BW_MOST_STEPS);
-  const bw_grid_view *g = bw_grid_look(f->flow.grid);
+      c->until.latest, steps, dt, c->cylinder.reynolds, (double)BW_MOST_STEPS);
   const double cells = (double)g->n[0] * g->n[1];
+  const double field = (double)sizeof(bw_real) * (double)g->size;
   /* 20 ns per cell and sub-step: measured, one core, this case */
-  bw_log_info(log,
-              "Re_d = %g, blockage %g, %d x %d cells, markers %s %.2f h inside, first dt = %.3g "
-              "d/U_b\nfields %.1f MB; about %.0f steps to the latest end, %.0f s",
-              c->cylinder.reynolds, 1.0 / g->length[1], g->n[0], g->n[1],
-              f->flow.nu > 0.0 ? "on the true surface," : "pulled in,", f->config.retraction,
-              f->flow.dt, 8.0 * (double)g->size * sizeof(bw_real) / 1.0e6, steps,
-              steps * cells * 3.0 * 20.0e-9);
+  bw_log_info(
+      log,
+      "Re_d = %g, blockage %g, %d x %d cells, first dt about %.3g d/U_b\n"
+      "memory about %.3g MiB for each of %d ranks; about %.0f steps to the latest end, %.0f s",
+      c->cylinder.reynolds, 1.0 / g->length[1], g->n[0], g->n[1], dt,
+      (known->bytes + field + body + bw_vtk_grid_bytes(plan)) / 1048576.0, ranks, steps,
+      steps * cells * 3.0 * 20.0e-9);
   /* Measured at blockage 0.8, against 60 cells per diameter. */
   const double gap = 0.5 * ((double)g->n[1] - c->cylinder.cells_per_diameter);
   if (gap < 4.0)
@@ -79,6 +114,24 @@ bw_status cylinder_describe(const cylinder_flow *f, const cylinder_case *c, bw_l
                 "cylinder.cells_per_diameter",
                 gap);
   return BW_OK;
+}
+
+bw_status cylinder_plan(const bw_comm *comm, const cylinder_case *c, bw_log *log)
+{
+  const bw_grid_config sizes = cylinder_grid(&c->cylinder);
+  const bw_ns_channel_config fluid = cylinder_fluid(&c->cylinder);
+  bw_grid *plan = NULL;
+  bw_comm *self = NULL;
+  bw_ns_plan known;
+  double body = 0.0;
+  bw_status st = bw_grid_plan(comm, &sizes, &plan);
+  BW_THEN(st, bw_ns_channel_plan(plan, &fluid, &known));
+  BW_THEN(st, bw_comm_agree(comm, bw_comm_self(&self)));
+  BW_THEN(st, bw_comm_agree(comm, weigh_body(self, &c->cylinder, &body)));
+  BW_THEN(st, describe(plan, &known, body, c, log));
+  bw_comm_destroy(&self);
+  bw_grid_destroy(&plan);
+  return st;
 }
 
 bw_status cylinder_open_history(const bw_case *run, bw_history **out)

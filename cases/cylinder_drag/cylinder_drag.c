@@ -70,10 +70,13 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
   bw_history *history = NULL;
   cylinder_flow f;
   bool stopped = false;
+  BW_TRY(cylinder_plan(comm, c, bw_case_log(run)));
+  /* --check ends here: nothing of the case was built. */
+  if (args->check) return BW_OK;
   bw_status st = cylinder_create(comm, &c->cylinder, &f);
-  BW_THEN(st, cylinder_describe(&f, c, bw_case_log(run)));
-  /* --check has built and described everything, and ends. */
-  if (st == BW_OK && !args->check) {
+  if (st == BW_OK) {
+    bw_log_info(bw_case_log(run), "markers %s %.2f h inside",
+                f.flow.nu > 0.0 ? "on the true surface," : "pulled in,", f.config.retraction);
     bw_stop_install();
     st = cylinder_open_history(run, &history);
     BW_THEN(st, advance(&f, c, run, history, &stopped));

@@ -79,25 +79,24 @@ static inline void cylinder_poiseuille(const double x[3], double t, void *contex
   u[1] = u[2] = 0.0;
 }
 
-static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *f)
+/* Lengths in diameters; the channel is rounded to whole cells. */
+static inline bw_grid_config cylinder_grid(const cylinder_config *c)
 {
-  const cylinder_config *c = &f->config;
   bw_grid_config grid = bw_grid_config_default();
-  bw_ns_channel_config fluid = bw_ns_channel_config_default();
-  /* Lengths in diameters; the channel is rounded to whole cells. */
-  f->h = 1.0 / c->cells_per_diameter;
-  double height = 1.0 / c->blockage;
   grid.n[0] = (int)lround((c->upstream + c->downstream) * c->cells_per_diameter);
-  grid.n[1] = (int)lround(height * c->cells_per_diameter);
+  grid.n[1] = (int)lround(1.0 / c->blockage * c->cells_per_diameter);
   grid.n[2] = 1;
   for (int d = 0; d < 3; d++)
-    grid.length[d] = grid.n[d] * f->h;
+    grid.length[d] = grid.n[d] * (1.0 / c->cells_per_diameter);
   grid.periodic[2] = true;
   grid.halo = 2;
-  height = grid.length[1];
-  BW_TRY(bw_grid_create(comm, &grid, &f->flow.grid));
+  return grid;
+}
 
-  /* U_b = d = 1. Laminar inflow, convective outflow, walls. */
+/* U_b = d = 1. Laminar inflow, convective outflow, walls. */
+static inline bw_ns_channel_config cylinder_fluid(const cylinder_config *c)
+{
+  bw_ns_channel_config fluid = bw_ns_channel_config_default();
   fluid.nu = 1.0 / c->reynolds;
   fluid.side[0][0].kind = BW_SIDE_INFLOW;
   fluid.side[0][0].profile = BW_PROFILE_POISEUILLE;
@@ -105,6 +104,17 @@ static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *
   fluid.side[0][1].kind = BW_SIDE_OUTFLOW;
   fluid.side[1][0].kind = fluid.side[1][1].kind = BW_SIDE_WALL;
   fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
+  return fluid;
+}
+
+static inline bw_status cylinder_make_fluid(const bw_comm *comm, cylinder_flow *f)
+{
+  const cylinder_config *c = &f->config;
+  const bw_grid_config grid = cylinder_grid(c);
+  const bw_ns_channel_config fluid = cylinder_fluid(c);
+  double height = grid.length[1];
+  f->h = 1.0 / c->cells_per_diameter;
+  BW_TRY(bw_grid_create(comm, &grid, &f->flow.grid));
   BW_TRY(bw_ns_channel_create(f->flow.grid, &fluid, &f->flow.fluid));
   BW_TRY(bw_ns_channel_set_velocity(f->flow.fluid, cylinder_poiseuille, &height, 0.0));
 
@@ -165,16 +175,21 @@ static inline bw_status cylinder_make_probes(const bw_comm *comm, cylinder_flow 
   return BW_OK;
 }
 
-/* The longest step of the flow as it is [d/U_b]. At the start it does not feel the cylinder yet,
- * past which it will be twice as fast as in the middle of the channel (potential flow, 3 U_b), or
- * as fast as the gaps at the walls make it (plane flow in them, 1.5 U_b/(1 - blockage)).
- * Collective. */
+/* The first step [d/U_b] where the fluid alone bears `limit`: the flow does not feel the cylinder
+ * yet, past which it will be twice as fast as in the middle of the channel (potential flow, 3 U_b),
+ * or as fast as the gaps at the walls make it (plane flow in them, 1.5 U_b/(1 - blockage)). */
+static inline double cylinder_first_step(const cylinder_config *c, double limit)
+{
+  const double past = fmax(3.0, 1.5 / (1.0 - c->blockage)) * c->cells_per_diameter;
+  return c->dt_fraction * fmin(limit, sqrt(3.0) / past);
+}
+
+/* The longest step of the flow as it is [d/U_b]. Collective. */
 static inline double cylinder_longest_step(cylinder_flow *f)
 {
-  const double past = fmax(3.0, 1.5 / (1.0 - f->config.blockage)) / f->h;
   const double limit = bw_ns_channel_dt_max(f->flow.fluid);
   const bool start = bw_ns_channel_time(f->flow.fluid) == 0.0;
-  return f->config.dt_fraction * (start ? fmin(limit, sqrt(3.0) / past) : limit);
+  return start ? cylinder_first_step(&f->config, limit) : f->config.dt_fraction * limit;
 }
 
 /* Everything, at t = 0 with Poiseuille flow. Destroy also after a failure. Collective. */

@@ -61,10 +61,10 @@ static bw_status run_case(dam_run *d)
   const bw_case_args *args = bw_case_args_of(d->run);
   bw_ulph_config fluid;
   BW_TRY(dam_resolve(d->config, &fluid));
-  BW_TRY(dam_create(d, &fluid));
-  dam_describe(d, &fluid);
-  /* --check ends here: built, described, not run. */
+  BW_TRY(dam_plan(d, &fluid));
+  /* --check ends here: nothing of the case is kept. */
   if (args->check) return BW_OK;
+  BW_TRY(dam_create(d, &fluid));
   if (args->restart != NULL) {
     BW_TRY(dam_restart(d, args->restart));
     BW_TRY(bw_case_check_end(d->run, "time.end", d->config->time.end, bw_ulph_time(d->fluid)));

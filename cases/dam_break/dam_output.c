@@ -8,22 +8,21 @@
 #include <string.h>
 
 /* ---- the set-up ---- */
-void dam_describe(dam_run *d, const bw_ulph_config *fluid)
+void dam_describe(const dam_run *d, const bw_ulph_config *fluid, bw_ulph *sample, double water,
+                  double walls, double bytes)
 {
   bw_log *log = bw_case_log(d->run);
-  const double steps = d->config->time.end / bw_ulph_dt_max(d->fluid);
-  const double total = (double)bw_ulph_total(d->fluid), c0 = bw_ulph_c0(d->fluid);
-  int64_t walls = (int64_t)bw_ulph_wall_count(d->fluid);
-  bw_comm_sum_int(d->comm, 1, &walls);
-  bw_log_info(log, "%d dimensions, %.0f particles of water, %lld of walls, %g apart",
-              fluid->dimensions, total, (long long)walls, fluid->dx);
+  const double steps = d->config->time.end / bw_ulph_dt_max(sample), c0 = bw_ulph_c0(sample);
+  bw_log_info(log, "%d dimensions, %.0f particles of water, %.0f of walls, %g apart",
+              fluid->dimensions, water, walls, fluid->dx);
   bw_log_info(log, "sound %g, 1/%.3g of it is the largest speed expected, %g", c0,
               c0 / fluid->speed, fluid->speed);
   bw_log_info(log, "kinematic viscosity: physical %.3g, artificial %.3g", fluid->mu / fluid->rho0,
-              bw_ulph_artificial_nu(d->fluid));
+              bw_ulph_artificial_nu(sample));
   /* A microsecond per particle and step: one core of a server. */
-  bw_log_info(log, "about %.0f steps, %.2g s on one core; %.1f MB", steps, steps * total * 1e-6,
-              1e-6 * (total * 900 + (double)walls * 700));
+  bw_log_info(log,
+              "about %.0f steps, %.2g s on one core; memory about %.3g MiB for each of %d ranks",
+              steps, steps * water * 1e-6, bytes / 1048576.0, bw_comm_size(d->comm));
 }
 
 /* ---- history.csv ---- */

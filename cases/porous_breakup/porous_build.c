@@ -44,12 +44,8 @@ bw_grid_config porous_grid(const porous_config *q)
   return grid;
 }
 
-static bw_status build_fluid(porous_run *p)
+bw_ns_channel_config porous_fluid_of(const porous_config *q)
 {
-  const porous_config *q = p->config;
-  const bw_grid_config grid = porous_grid(q);
-  BW_TRY(bw_grid_create(p->comm, &grid, &p->grid));
-
   /* Laminar inflow, convective outflow, walls in y by default. */
   bw_ns_channel_config flow = bw_ns_channel_config_default();
   flow.nu = q->fluid.viscosity;
@@ -58,6 +54,14 @@ static bw_status build_fluid(porous_run *p)
                                  .bulk_velocity = q->fluid.bulk_velocity};
   flow.side[0][1].kind = BW_SIDE_OUTFLOW;
   flow.side[2][0].kind = flow.side[2][1].kind = BW_SIDE_PERIODIC;
+  return flow;
+}
+
+static bw_status build_fluid(porous_run *p)
+{
+  const bw_grid_config grid = porous_grid(p->config);
+  const bw_ns_channel_config flow = porous_fluid_of(p->config);
+  BW_TRY(bw_grid_create(p->comm, &grid, &p->grid));
   return bw_ns_channel_create(p->grid, &flow, &p->fluid);
 }
 
@@ -136,13 +140,9 @@ bw_status porous_build(porous_run *p)
 {
   /* Refused before anything is allocated. */
   BW_TRY(porous_check(p->config));
-  const double before = (double)bw_memory_in_use();
   BW_TRY(build_fluid(p));
-  p->bytes.fluid = (double)bw_memory_in_use() - before;
   BW_TRY(build_solid(p));
-  p->bytes.solid = (double)bw_memory_in_use() - before - p->bytes.fluid;
   BW_TRY(build_coupler(p));
-  p->bytes.coupler = (double)bw_memory_in_use() - before - p->bytes.fluid - p->bytes.solid;
   BW_TRY(watch_medium(p));
   /* The flow begins uniform; the first phase waits until it has settled. */
   return bw_ns_channel_set_velocity(p->fluid, uniform_stream, (void *)(uintptr_t)p->config, 0.0);

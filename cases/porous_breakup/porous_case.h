@@ -126,10 +126,7 @@ typedef struct {
   bool stopped;                     /* asked for an end in good order ... */
   bool phase_done;                  /* ... when the phase was over, or on the way */
   double length;                    /* of the medium as built [m] */
-  struct {
-    double fluid, solid, coupler; /* of this rank [bytes] */
-  } bytes;
-  int64_t rows; /* of history.csv, when the checkpoint was written */
+  int64_t rows;                     /* of history.csv, when the checkpoint was written */
 } porous_run;
 
 /* Fluid, solid and coupler from p->config, the stream uniform. Destroy also after a failure.
@@ -138,7 +135,8 @@ bw_status porous_build(porous_run *p) BW_MUST_CHECK;
 /* What p->phase allows the solid to do; the same again changes nothing. Local. */
 void porous_enter_phase(porous_run *p);
 void porous_destroy(porous_run *p);
-bw_grid_config porous_grid(const porous_config *q); /* that of the fluid. Local. */
+bw_grid_config porous_grid(const porous_config *q);           /* that of the fluid. Local. */
+bw_ns_channel_config porous_fluid_of(const porous_config *q); /* its settings. Local. */
 
 /* ---- before anything is built (porous_plan.c) ---- */
 /* Values that contradict each other are refused. Local. */

@@ -14,7 +14,7 @@
  * Errors: BW_EIO naming path, data set and what was found; BW_EINPUT for arguments that cannot
  * be stored; agreed by all ranks. HDF5's own messages are turned off from create or open on.
  * After a failed put, close does not rename but fails too.
- * All functions are collective. */
+ * All functions are collective unless said otherwise. */
 #pragma once
 #include "bw_case.h"
 #include "bw_grid.h"
@@ -96,5 +96,12 @@ bw_status bw_checkpoint_put_table(bw_checkpoint *ck, const char *name, int64_t t
 bw_status bw_checkpoint_get_table(bw_checkpoint *ck, const char *name, int64_t total, size_t n,
                                   const int64_t id[], int components, bw_checkpoint_type type,
                                   void *rows) BW_MUST_CHECK;
+
+/* Memory that writing takes on this rank beside what it is given, at most [bytes]: of a file while
+ * it is open, and of a field of `grid` (one of bw_grid_plan, too) or a table of n rows of `row`
+ * bytes while it is put. For estimates before anything is built. Local. */
+double bw_checkpoint_file_bytes(void);
+double bw_checkpoint_field_bytes(const bw_grid *grid);
+double bw_checkpoint_table_bytes(double n, double row);
 
 BW_END_DECLS

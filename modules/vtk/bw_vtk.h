@@ -52,6 +52,11 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
                               const double position[], int count,
                               const bw_vtk_array array[]) BW_MUST_CHECK;
 
+/* Memory that the writing of a grid (one of bw_grid_plan, too) or of n points takes on this rank
+ * beside what it is given, at most [bytes]. For estimates before anything is built. Local. */
+double bw_vtk_grid_bytes(const bw_grid *grid);
+double bw_vtk_points_bytes(double n);
+
 /* Add one file to a time series: rewrites `path` (.pvd) with the entries already in it whose time
  * is below `time`, and this one (so that a restarted run continues its series). `file` is
  * relative to the .pvd. A `path` that holds something else is an error, not overwritten.

@@ -155,19 +155,29 @@ static bw_status write_field(bw_vtk__writer *writer, const bw_grid_view *g,
   return BW_OK;
 }
 
-static bw_status write_blocks(bw_vtk__writer *writer, const bw_grid_view *g, int count,
-                              const bw_vtk_field field[])
+/* Values of the buffer for planes of this rank. */
+static size_t buffer_values(const bw_grid_view *g)
 {
   const size_t plane = (size_t)g->m[0] * (size_t)g->m[1];
   const size_t slab = plane * (size_t)g->m[2];
-  const size_t most = slab < BATCH_VALUES ? slab : (plane < BATCH_VALUES ? BATCH_VALUES : plane);
+  return 3 * (slab < BATCH_VALUES ? slab : (plane < BATCH_VALUES ? BATCH_VALUES : plane));
+}
+
+double bw_vtk_grid_bytes(const bw_grid *grid)
+{
+  return (double)sizeof(float) * (double)buffer_values(bw_grid_look(grid)) + BW_VTK__FILE_BYTES;
+}
+
+static bw_status write_blocks(bw_vtk__writer *writer, const bw_grid_view *g, int count,
+                              const bw_vtk_field field[])
+{
   int64_t planes = g->m[2];
   float *buffer = NULL;
   /* The ranks divide z unevenly: the thickest block tells how many rounds there are. */
   bw_comm_max_int(writer->comm, 1, &planes);
   bw_status st = BW_OK;
   if (!g->uniform_y) st = write_coordinates(writer, g);
-  BW_THEN(st, bw_comm_agree(writer->comm, BW_ALLOCATE(&buffer, 3 * most)));
+  BW_THEN(st, bw_comm_agree(writer->comm, BW_ALLOCATE(&buffer, buffer_values(g))));
   /* In the order of the declarations, for the offsets in the head say so. */
   for (int q = 0; q < count; q++)
     BW_THEN(st, write_field(writer, g, &field[q], (int)planes, buffer));

@@ -2,6 +2,9 @@
 #pragma once
 #include "bw_vtk.h"
 
+/* Buffers of MPI while a file is open: measured with Open MPI 4.1. */
+#define BW_VTK__FILE_BYTES (0.3 * 1048576.0)
+
 #include "bw_file.h"
 #include <stddef.h>
 #include <stdint.h>

@@ -99,3 +99,9 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
   BW_THEN(st, write_blocks(&writer, (uint64_t)total, (uint64_t)before, n, position, count, array));
   return bw_vtk__close(&writer, st);
 }
+
+double bw_vtk_points_bytes(double n)
+{
+  /* Positions and numbers of vertices; vectors of doubles once more in MPI's buffers. */
+  return n * (3.0 * sizeof(float) + sizeof(int64_t) + 3.0 * sizeof(double)) + BW_VTK__FILE_BYTES;
+}

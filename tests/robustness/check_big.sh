@@ -37,4 +37,9 @@ big branching 300000 crack_branching cases/crack_branching/crack_branching.yaml 
 big box 40000 box_flow cases/box_flow/duct.yaml --set "domain.cells=[1024, 1024, 1024]"
 big channel 40000 channel_turbulence cases/channel_turbulence/channel_turbulence.yaml \
   --set "domain.cells=[1024, 1024, 1024]"
+big cylinder 100000 cylinder_drag cases/cylinder_drag/cylinder_drag.yaml --set until.latest=1 \
+  --set cylinder.cells_per_diameter=200 --set cylinder.blockage=0.02 --set cylinder.upstream=200 \
+  --set cylinder.downstream=800
+big tank 100000 dam_break cases/dam_break/dam_break.yaml --set fluid.spacing=0.000015 \
+  --set "gauges=[{name: a, kind: depth, at: [1, 0, 0]}]"
 exit $failed

@@ -1,6 +1,6 @@
-/* Loaded before a program (LD_PRELOAD): counts what it has allocated. COUNT_MEMORY: a file that gets,
- * at the end, the most that was allocated at a time beyond what MPI had when the program's first
- * array was made [bytes]. Of several ranks the first. */
+/* Loaded before a program (LD_PRELOAD): counts what it has allocated. COUNT_MEMORY: a file that
+ * gets, at the end, the most that was allocated at a time beyond what MPI had when the program's
+ * first array was made [bytes]. Of several ranks the first. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>

@@ -55,9 +55,9 @@ static bw_status check_step(const bending_run *p, bending_flow *small, double *l
   return bw_coupler_check_substeps(small->coupler, dt);
 }
 
-/* Memory of a rank. That of the fluid is known; `held` is what the small set-up holds after its first
- * step: beside its own fluid, fields of the coupler and of the last good state (two and three), and
- * what grows with the n particles. A checkpoint on its way is added. */
+/* Memory of a rank. That of the fluid is known; `held` is what the small set-up holds after its
+ * first step: beside its own fluid, fields of the coupler and of the last good state (two and
+ * three), and what grows with the n particles. A checkpoint on its way is added. */
 static bw_status weigh(const bending_run *p, const bending_flow *small, double n,
                        double fluid_bytes, double held)
 {

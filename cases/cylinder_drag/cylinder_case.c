@@ -63,8 +63,8 @@ static cylinder_config small_of(const cylinder_config *c)
   return s;
 }
 
-/* What the markers, probes and points on the surface hold, from the small channel: its memory beside
- * that of its fluid and the field of the pressure. It grows with the diameter in cells. */
+/* What the markers, probes and points on the surface hold, from the small channel: its memory
+ * beside that of its fluid and the field of the pressure. It grows with the diameter in cells. */
 static bw_status weigh_body(const bw_comm *self, const cylinder_config *c, double *bytes)
 {
   const cylinder_config s = small_of(c);

@@ -20,8 +20,8 @@ typedef struct {
 extern const bw_config_field cylinder_case_fields[]; /* its keys */
 cylinder_case cylinder_case_default(void);           /* reynolds is NaN: required */
 
-/* Before anything is built: what cannot run is refused, as the run would, also where nobody can wait
- * for the steps; sizes, groups, memory and an estimate of the time as lines of the log. From a
+/* Before anything is built: what cannot run is refused, as the run would, also where nobody can
+ * wait for the steps; sizes, groups, memory and an estimate of the time as lines of the log. From a
  * shorter and coarser channel: time and memory do not grow with that of the case. Collective. */
 bw_status cylinder_plan(const bw_comm *comm, const cylinder_case *c, bw_log *log) BW_MUST_CHECK;
 

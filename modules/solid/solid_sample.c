@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* A block of `edge` sites along each side; *bytes is what it holds when it has been stepped, at rest,
- * and its energies were asked for. */
+/* A block of `edge` sites along each side; *bytes is what it holds when it has been stepped, at
+ * rest, and its energies were asked for. */
 static bw_status make_block(const bw_comm *self, const bw_solid_config *c, int edge, double *bytes,
                             bw_solid **out)
 {

@@ -85,8 +85,8 @@ bw_status dam_checkpoint(dam_run *d) BW_MUST_CHECK; /* checkpoint.h5 */
 void dam_where(const dam_run *d, double x[3]);      /* place of the tank now */
 
 /* dam_plan.c: before anything is built, what cannot run is refused, as the run would; sizes, step
- * and memory to the log. A small tank is built for that, the case's own where that is small: time and
- * memory do not grow with the particles. Collective. */
+ * and memory to the log. A small tank is built for that, the case's own where that is small: time
+ * and memory do not grow with the particles. Collective. */
 bw_status dam_plan(const dam_run *d, const bw_ulph_config *fluid) BW_MUST_CHECK;
 
 /* dam_output.c. All collective. */

@@ -11,6 +11,7 @@ typedef struct {
   bw_particles_halo *halo;
   size_t capacity;
   bw_particles_map seen; /* place -> its number in the list */
+  int32_t *own;          /* (n_offset,3) of one particle; NULL: all have the same */
   int me;
 } list;
 
@@ -76,12 +77,19 @@ static bw_status list_places(list *l, size_t n, const int32_t site[])
   }
   /* As wide as the map of own sites, whose margin is the reach of an offset. */
   BW_TRY(bw_particles_map_create(n, lower, upper, &l->seen));
-  for (size_t i = 0; i < n; i++)
-    for (int q = 0; q < l->lattice->n_offset; q++) {
-      const int32_t *s = site + 3 * i, *o = l->lattice->offset + 3 * q;
+  for (size_t i = 0; i < n; i++) {
+    const int32_t *offset = l->lattice->offset;
+    int n_offset = l->lattice->n_offset;
+    if (l->lattice->offsets_of != NULL) {
+      n_offset = l->lattice->offsets_of(l->lattice->context, i, l->own);
+      offset = l->own;
+    }
+    for (int q = 0; q < n_offset; q++) {
+      const int32_t *s = site + 3 * i, *o = offset + 3 * q;
       const int32_t place[3] = {s[0] + o[0], s[1] + o[1], s[2] + o[2]};
       if (bw_particles_map_get(near, place) < 0) BW_TRY(note(l, place));
     }
+  }
   return BW_OK;
 }
 
@@ -119,6 +127,7 @@ bw_status bw_particles_halo_create(const bw_comm *comm, const bw_particles_latti
   list l = {.lattice = lattice, .near = near, .halo = halo, .me = bw_comm_rank(comm)};
   memset(halo, 0, sizeof *halo);
   bw_status st = grow(&l);
+  if (lattice->offsets_of != NULL) BW_THEN(st, BW_ALLOCATE(&l.own, 3 * (size_t)lattice->n_offset));
   BW_THEN(st, list_places(&l, n, site));
   BW_THEN(st, BW_ALLOCATE(&index, halo->n));
   st = bw_comm_agree(comm, st);
@@ -128,6 +137,7 @@ bw_status bw_particles_halo_create(const bw_comm *comm, const bw_particles_latti
   BW_THEN(st, bw_particles_ask(comm, &question, index));
   if (st == BW_OK) st = bw_comm_agree(comm, keep_occupied(halo, index, n, near));
   bw_release(&index);
+  bw_release(&l.own);
   bw_particles_map_destroy(&l.seen);
   return st;
 }

@@ -18,8 +18,12 @@ typedef struct {
   const bw_particles_partition *partition; /* tells who owns a site */
   int32_t lower[3];                        /* periodic: sites are lower .. lower + period - 1 */
   int32_t period[3];                       /* in steps; 0: not periodic */
-  int n_offset;                            /* rows of offset */
+  int n_offset;                            /* rows of offset; with offsets_of the most of any */
   const int32_t *offset; /* (n_offset,3) steps from a particle to those that it interacts with */
+  /* NULL: these, of every particle. Else those of particle i are written to offset (n_offset,3)
+   * by this; returns how many. */
+  int (*offsets_of)(const void *context, size_t i, int32_t offset[]);
+  const void *context; /* passed to it */
 } bw_particles_lattice;
 
 /* All bytes 0: none, may be destroyed. */

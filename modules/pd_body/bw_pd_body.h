@@ -49,6 +49,24 @@ enum {
 };
 
 enum { BW_PD_GROUPS = 16 }; /* groups of particles in one body, at most */
+enum { BW_PD_BOXES = 16 };  /* boxes of finer particles, at most */
+enum { BW_PD_FINEST = 6 };  /* level of the finest particles, at most */
+
+/* How two particles of different spacing pull at each other, with c, Gamma of either's own horizon
+ * and of the other's cell. */
+typedef enum {
+  BW_PD_JUMP_BALANCED,  /* as dual, times a factor per bond: no force under a uniform strain */
+  BW_PD_JUMP_DUAL,      /* (c_h Gamma_hl + c_l Gamma_lh)/2: momentum is kept, ghost forces stay */
+  BW_PD_JUMP_ONE_SIDED, /* each end c_h Gamma_hl of its own: momentum is not kept */
+} bw_pd_jump;
+
+/* Where a body is finer. Cells of the level before that the box meets are split in two each way;
+ * around it lie belts of the levels between, each a horizon of the next coarser one wide. */
+typedef struct {
+  int level;                 /* 1: half the spacing, 2: a quarter, ... */
+  double lower[3], upper[3]; /* along the axes of the lattice: lower < axes.X < upper [L]; in 2D
+                                the third is not read */
+} bw_pd_box;
 
 /* What the particles of one group are made of. */
 typedef struct {
@@ -75,10 +93,14 @@ typedef struct {
   bw_pd_material material[BW_PD_GROUPS];       /* of each group */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* of bonds between two groups, symmetric [M/T^2];
                                                    NaN: the smaller of the two */
+  int n_box;                                   /* boxes of finer particles; 0: one level */
+  bw_pd_box box[BW_PD_BOXES];                  /* where they are, several may meet */
+  bw_pd_jump jump;                             /* bonds between levels */
 } bw_pd_body_config;
 
 /* What one rank gives to a body that is made: its part of the sites, any division will do. The
- * global id of a particle is its row in the lists of all ranks joined in rank order. */
+ * global id of a particle is its row in the lists of all ranks joined in rank order, after cells
+ * that lie in a box have been split (bw_pd_body_config.box). */
 typedef struct {
   int64_t n;            /* sites that this rank gives; 0 is fine */
   const int32_t *site;  /* (n,3) */

@@ -10,13 +10,19 @@
  * one direction of a block: where the neighbours start and which of the bonds exist (family) and
  * hold (mask). Where neighbours of one direction are not contiguous, the block has several slots
  * of that direction with disjoint families. A block's slots are in stencil order, so the sum over
- * a family runs in the same order on any number of ranks. */
+ * a family runs in the same order on any number of ranks.
+ *
+ * Levels. The levels of a body lie one after the other in the storage, each in lattice order, but
+ * that of a row of a finer level the particles with even sites come first, then those with odd
+ * ones. Neighbours of successive owners are then contiguous across levels, too: a bond between
+ * levels is a slot like another one, with directions of its own (pd_level.h). */
 #pragma once
 #include "bw_exchange.h"
 #include "bw_particles_copies.h"
 #include "bw_particles_map.h"
 #include "bw_pd_body.h"
 #include "pd_level.h"
+#include "pd_refine.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +64,8 @@ typedef struct {
   uint8_t gone;  /* lanes that are retired; all of mask: the block costs nothing */
   bool broken;   /* a bond of it broke */
   uint8_t group; /* of all its particles and their neighbours; BW_PD_MIXED: they differ */
+  uint8_t level; /* of all its particles */
+  int32_t exact; /* first slot's row of bonds.exact; -1: its bonds have none */
 } bw_pd_block;
 
 /* One direction of a block. */
@@ -77,7 +85,8 @@ typedef struct {
 typedef struct {
   int64_t total;     /* particles of all ranks */
   int axis[3];       /* of the lattice order, fastest first */
-  int32_t *site;     /* (.,3), images shifted */
+  int32_t *site;     /* (.,3), images shifted; with several levels places as pd_level.h says */
+  uint8_t *level;    /* row of the table of levels; NULL: all of them 0 */
   int64_t *id;       /* global ids */
   uint8_t *kind;     /* bits: BW_PD_PRESCRIBED, ... */
   uint8_t *group;    /* row of config.material */
@@ -101,6 +110,11 @@ typedef struct {
   uint32_t *hit;      /* (n_block) blocks where a bond is beyond its limit */
   size_t n_hit;       /* how many hit holds */
   uint16_t *factor;   /* (n_slot, BW_PD_LANES) of a law that keeps a factor per bond; NULL: none */
+  bw_real *exact;     /* (n_exact, BW_PD_LANES) factors of bonds near jumps between levels, slots of
+                         the blocks that have some, one block after the other; NULL: none */
+  size_t n_exact;     /* rows of it */
+  int64_t astray;     /* bonds beyond their limit above the finest level, which none may be */
+  int64_t astray_id;  /* the particle at one end of the last one */
   int64_t directed;   /* bonds at the start, from both ends, of this rank */
   int64_t events;     /* bonds broken (or mended by a restart) so far */
   double released;    /* energy that bonds held when they broke, of this rank [M L^2/T^2] */
@@ -139,7 +153,9 @@ struct bw_pd_body {
   const bw_comm *comm;      /* borrowed */
   bw_pd_body_config config; /* as asked for, defaults and Poisson's ratio resolved */
   int dimension;            /* 2 or 3 */
-  bw_pd_level *level;       /* one row */
+  int finest;               /* level of the finest particles; 0: one level */
+  bw_pd_level *level;       /* (finest + 1) */
+  int directions;           /* largest number of directions of a level */
   size_t n, n_extended;     /* own particles; own and copies */
   bw_pd_points points;      /* who is where */
   bw_pd_halo halo;          /* what others own */
@@ -148,7 +164,7 @@ struct bw_pd_body {
       *vs[3];           /* storage: displacement [L]; velocity of own and copies, on demand [L/T] */
   bw_real *shift[3];    /* storage: reference place from its site [L]; NULL: a lattice */
   bw_real *v[3], *a[3]; /* own: velocity [L/T], internal force / rho [L/T^2] */
-  bw_real *weight;      /* (n) density over that of the first group [-]; NULL: one group */
+  bw_real *weight;      /* (n) mass over that of the first group's on level 0 [-]; NULL: all 1 */
   bw_pd_forces load;    /* what acts besides the bonds */
   bw_pd_held held;      /* who moves as told */
   bw_pd_dampings damping;
@@ -189,8 +205,8 @@ double bw_pd_body_natural_poisson(bw_pd_geometry geometry);
 
 /* pd_fraction.c: the part of the square or cube at `offset` (3, in ds) within the distance m (in
  * ds) of the origin, 0 .. 1. BW_EMEM, BW_EDIVERGED of the quadrature. Local. */
-double bw_pd_body_fraction_area(double m, const int32_t offset[3]);
-bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3],
+double bw_pd_body_fraction_area(double m, const double offset[3]);
+bw_status bw_pd_body_fraction_volume(double m, const double offset[3],
                                      double *fraction) BW_MUST_CHECK;
 
 /* pd_cloud.c: reference places off their sites */
@@ -210,8 +226,24 @@ bw_status bw_pd_body_cloud_means(const bw_pd_body *pd, double mean[3]) BW_MUST_C
 
 /* How far a family reaches, in ds: m + 1/2 or m. Local. */
 double bw_pd_body_family_reach(const bw_pd_body_config *config);
-/* Fills level->stencil and makes room for the kernel rows. BW_EMEM, BW_EDIVERGED. Local. */
+/* Fills the stencil of one level, with room for kernel rows. BW_EMEM, BW_EDIVERGED. Local. */
 bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
+/* Room for n directions of level l. BW_EMEM. Local. */
+bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n) BW_MUST_CHECK;
+/* Gamma of a cell at an offset in its own spacings, of m of them. BW_EMEM, BW_EDIVERGED. Local. */
+bw_status bw_pd_body_fraction(const bw_pd_body *pd, double m, const double offset[3],
+                              double *gamma) BW_MUST_CHECK;
+/* pd_stencil_levels.c: the same of a body of several levels. BW_EMEM, BW_EDIVERGED. Local. */
+bw_status bw_pd_body_stencil_levels(bw_pd_body *pd) BW_MUST_CHECK;
+
+/* pd_order.c: rows of places in the order of the storage. BW_EMEM, BW_EINPUT: too wide. Local. */
+bw_status bw_pd_body_order(const bw_pd_body *pd, size_t n, const int32_t site[],
+                           const uint8_t level[], int32_t order[]) BW_MUST_CHECK;
+/* Level of the particle at a place of a body of several levels. Local. */
+uint8_t bw_pd_body_level_of_place(const bw_pd_body *pd, const int32_t site[3]);
+/* Whether a direction of the stencil of level l leads from a place to a cell of its other level.
+ * Local. */
+bool bw_pd_body_leads(const bw_pd_body *pd, int l, int direction, const int32_t site[3]);
 /* Row of the stencil of an offset in lattice steps; -1: none. Local. */
 int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
 /* The columns of the kernel rows that are geometry. Local. */
@@ -225,7 +257,7 @@ void bw_pd_body_axes(const int64_t size[3], int reach, int axis[3]);
 
 /* Fills points and halo. near: site (shifted for images) -> extended index, to be destroyed by the
  * caller. BW_EINPUT for two on one site and for extents; BW_EMEM. Collective. */
-bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given,
+bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_refined *given,
                                 bw_particles_map *near) BW_MUST_CHECK;
 void bw_pd_body_refresh(bw_pd_body *pd, bool velocity); /* copies' u (and v). Collective. */
 void bw_pd_body_fill_places(const bw_pd_body *pd,
@@ -306,13 +338,13 @@ static inline const bw_pd_material *bw_pd_body_material(const bw_pd_body *pd, si
 /* The row of the table of levels of an own particle or a copy. */
 static inline const bw_pd_level *bw_pd_body_level(const bw_pd_body *pd, size_t e)
 {
-  (void)e;
-  return pd->level;
+  return pd->points.level == NULL ? pd->level : pd->level + pd->points.level[e];
 }
 
 /* The same of who is at a storage place. */
 static inline const bw_pd_level *bw_pd_body_level_at(const bw_pd_body *pd, int32_t place)
 {
+  if (pd->points.level == NULL) return pd->level;
   const int32_t e = pd->points.occupant[place];
   return bw_pd_body_level(pd, e < 0 ? 0 : (size_t)e);
 }
@@ -327,8 +359,7 @@ static inline double bw_pd_body_unit_mass(const bw_pd_body *pd)
 /* The row that all particles of a block share. */
 static inline const bw_pd_level *bw_pd_body_level_of(const bw_pd_body *pd, const bw_pd_block *block)
 {
-  (void)block;
-  return pd->level;
+  return pd->level + block->level;
 }
 
 /* Reference place of an own particle or a copy. */
@@ -339,7 +370,8 @@ static inline void bw_pd_body_reference(const bw_pd_body *pd, size_t e, double X
   for (int k = 0; k < 3; k++) {
     X0[k] = c->origin[k];
     for (int d = 0; d < pd->dimension; d++)
-      X0[k] += c->axes[d][k] * (site[d] + 0.5) * c->ds;
+      X0[k] += pd->finest > 0 ? c->axes[d][k] * site[d] * pd->level->stencil.unit
+                              : c->axes[d][k] * (site[d] + 0.5) * c->ds;
     if (pd->shift[k] != NULL) X0[k] += (double)pd->shift[k][pd->points.place[e]];
   }
 }

@@ -120,6 +120,31 @@ static bw_status check_fraction(const bw_pd_body_config *c)
   return BW_OK;
 }
 
+/* A box has an extent, a level, and finer cells where the horizon does not reach across itself. */
+static bw_status check_boxes(const bw_pd_body_config *c)
+{
+  const int axes = c->geometry == BW_PD_3D ? 3 : 2;
+  BW_REQUIRE(c->n_box >= 0 && c->n_box <= BW_PD_BOXES, BW_EINPUT,
+             "solid: %d boxes of levels; 0 to %d can be given", c->n_box, (int)BW_PD_BOXES);
+  BW_REQUIRE((unsigned)c->jump <= BW_PD_JUMP_ONE_SIDED, BW_EINPUT, "solid: jump = %d is unknown",
+             (int)c->jump);
+  for (int b = 0; b < c->n_box; b++) {
+    const bw_pd_box *box = &c->box[b];
+    BW_REQUIRE(box->level >= 1 && box->level <= BW_PD_FINEST, BW_EINPUT,
+               "solid: levels[%d].level = %d must be from 1 (half the spacing) to %d", b,
+               box->level, (int)BW_PD_FINEST);
+    for (int k = 0; k < axes; k++)
+      BW_REQUIRE(box->lower[k] < box->upper[k], BW_EINPUT,
+                 "solid: levels[%d] reaches from %g to %g in direction %d: lower must be less than "
+                 "upper",
+                 b, box->lower[k], box->upper[k], k);
+  }
+  BW_REQUIRE(c->n_box == 0 || c->disorder == 0, BW_EINPUT,
+             "solid: disorder = %g with levels: a cloud has one level; leave one of them out",
+             c->disorder);
+  return BW_OK;
+}
+
 bw_status bw_pd_body_check(const bw_pd_body_config *c)
 {
   BW_TRY(check_positive(c));
@@ -128,6 +153,7 @@ bw_status bw_pd_body_check(const bw_pd_body_config *c)
   BW_TRY(check_fraction(c));
   BW_REQUIRE((unsigned)c->family_reach <= BW_PD_REACH_HORIZON, BW_EINPUT,
              "solid: family_reach = %d is unknown", (int)c->family_reach);
+  BW_TRY(check_boxes(c));
   return check_lattice(c);
 }
 
@@ -139,12 +165,18 @@ bw_status bw_pd_body_levels(bw_pd_body *pd)
   /* The default is resolved here: whoever reads the configuration later sees what is used. */
   if (c->volume_fraction == BW_PD_FRACTION_DEFAULT)
     c->volume_fraction = planar || c->disorder > 0 ? BW_PD_FRACTION_LINEAR : BW_PD_FRACTION_EXACT;
-  /* One row today. What others read of a spacing or a volume they read there. */
-  BW_TRY(BW_ALLOCATE(&pd->level, 1));
-  pd->level->ds = c->ds;
-  pd->level->horizon = c->horizon_ratio * c->ds;
-  pd->level->reach = c->ds * bw_pd_body_family_reach(c);
-  pd->level->dv = c->ds * c->ds * (planar ? c->thickness : c->ds);
-  pd->level->area = c->ds * (planar ? c->thickness : c->ds);
+  /* What others read of a spacing or a volume they read here. */
+  pd->finest = bw_pd_body_finest(c);
+  BW_TRY(BW_ALLOCATE(&pd->level, (size_t)pd->finest + 1));
+  for (int l = 0; l <= pd->finest; l++) {
+    const double ds = ldexp(c->ds, -l);
+    pd->level[l] = (bw_pd_level){.ds = ds,
+                                 .stiff = ldexp(1, (pd->dimension + 1) * l),
+                                 .stretch = sqrt(ldexp(1, l)),
+                                 .horizon = c->horizon_ratio * ds,
+                                 .reach = ds * bw_pd_body_family_reach(c),
+                                 .dv = ds * ds * (planar ? c->thickness : ds),
+                                 .area = ds * (planar ? c->thickness : ds)};
+  }
   return BW_OK;
 }

@@ -39,12 +39,13 @@ static bw_status state_arrays(bw_pd_body *pd)
 
 static bw_status weights(bw_pd_body *pd)
 {
-  /* Without weights a ledger multiplies once by the density of all. */
-  if (pd->config.n_group == 1) return BW_OK;
+  /* Without weights a ledger multiplies once by the mass of all. */
+  if (pd->config.n_group == 1 && pd->finest == 0) return BW_OK;
   BW_TRY(BW_ALLOCATE(&pd->weight, pd->n));
   /* Work is booked by the mass of the first group; a weight says how much heavier this one is. */
   for (size_t i = 0; i < pd->n; i++)
-    pd->weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho);
+    pd->weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho *
+                              (bw_pd_body_level(pd, i)->dv / pd->level->dv));
   return BW_OK;
 }
 
@@ -63,6 +64,15 @@ static bw_status prescribed_list(bw_pd_body *pd)
     held->mobile[i] = fixed ? 0 : 1;
     if (fixed) held->particle[q++] = (int32_t)i;
   }
+  return BW_OK;
+}
+
+static bw_status check_levels(const bw_pd_body_config *c, const bw_pd_law *law)
+{
+  BW_REQUIRE(c->n_box == 0 || law->levels, BW_EINPUT,
+             "solid: levels with law = %s: bonds between two spacings are known to law = bond "
+             "alone; take that law or leave levels out",
+             law->name);
   return BW_OK;
 }
 
@@ -87,12 +97,16 @@ static bw_status check_sites(const bw_pd_body_config *c, const bw_pd_sites *s, i
 static bw_status build(bw_pd_body *pd, const bw_pd_sites *given, const void *options)
 {
   bw_particles_map near = {0};
+  bw_pd_refined refined = {0};
   /* Spacing, volume and directions follow from the configuration alone. */
   bw_status st = bw_pd_body_levels(pd);
-  BW_THEN(st, bw_pd_body_stencil(pd));
+  BW_THEN(st, pd->finest > 0 ? bw_pd_body_stencil_levels(pd) : bw_pd_body_stencil(pd));
+  /* Cells in boxes are split where they are given. */
+  BW_THEN(st, bw_pd_body_refine(&pd->config, given, &refined));
   st = bw_comm_agree(pd->comm, st);
   /* Every particle goes to its owner, and every rank learns whose copies it needs. */
-  if (st == BW_OK) st = bw_pd_body_distribute(pd, given, &near);
+  if (st == BW_OK) st = bw_pd_body_distribute(pd, &refined, &near);
+  bw_pd_body_refined_release(&refined);
   if (st == BW_OK) {
     /* Own particles and copies are known: they can be numbered and their bonds listed. */
     BW_THEN(st, bw_pd_body_slots(pd, &near));
@@ -121,6 +135,7 @@ bw_status bw_pd_body_create(const bw_comm *comm, const bw_pd_body_config *config
   /* A rank that refuses its part still takes part in the counting, which is collective. */
   bw_status st = bw_pd_body_check(config);
   BW_THEN(st, law->check(config, options));
+  BW_THEN(st, check_levels(config, law));
   const int64_t first = bw_comm_prefix_sum(comm, given->n);
   BW_THEN(st, check_sites(config, given, first));
   BW_THEN(st, BW_ALLOCATE(&pd, 1));
@@ -151,6 +166,8 @@ static void release_level(bw_pd_level *level)
   bw_release(&s->xi);
   bw_release(&s->r0);
   bw_release(&s->fraction);
+  bw_release(&s->tough);
+  bw_release(&s->other);
   bw_release(&s->sure);
   bw_release(&s->number);
   bw_release(&level->row);
@@ -164,13 +181,14 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
   if (pd->law != NULL) pd->law->destroy(pd);
   for (int q = 0; q < pd->fields.n; q++)
     bw_pd_body_release_storage_array(&pd->fields.row[q].value);
-  if (pd->level != NULL) release_level(pd->level);
+  for (int l = 0; pd->level != NULL && l <= pd->finest; l++)
+    release_level(&pd->level[l]);
   bw_particles_copies_destroy(&pd->halo.copies);
   void *plain[] = {&pd->weight,          &pd->level,        &pd->points.site,  &pd->points.id,
                    &pd->points.kind,     &pd->points.group, &pd->points.place, &pd->points.occupant,
                    &pd->halo.extended_X, &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,
                    &pd->bonds.hit,       &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle,
-                   &pd->held.velocity,   &pd->fields.row};
+                   &pd->held.velocity,   &pd->fields.row,   &pd->points.level, &pd->bonds.exact};
   for (size_t q = 0; q < sizeof plain / sizeof *plain; q++)
     bw_release(plain[q]);
   for (int k = 0; k < 3; k++) {

@@ -62,9 +62,9 @@ static double disc_in_square(double R, double cx, double cy)
   return fmax(0, fmin(1, area));
 }
 
-double bw_pd_body_fraction_area(double m, const int32_t offset[3])
+double bw_pd_body_fraction_area(double m, const double offset[3])
 {
-  return disc_in_square(m, abs(offset[0]), abs(offset[1]));
+  return disc_in_square(m, fabs(offset[0]), fabs(offset[1]));
 }
 
 typedef struct {
@@ -79,10 +79,10 @@ static double slice(double z, void *data)
 }
 
 /* Slices of the ball are discs: one adaptive quadrature (doubly adaptive, good with kinks). */
-bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *fraction)
+bw_status bw_pd_body_fraction_volume(double m, const double offset[3], double *fraction)
 {
   /* Most cells are inside or outside altogether. */
-  const double x = abs(offset[0]), y = abs(offset[1]), z = abs(offset[2]);
+  const double x = fabs(offset[0]), y = fabs(offset[1]), z = fabs(offset[2]);
   const double near2 =
       pow(fmax(0, x - 0.5), 2) + pow(fmax(0, y - 0.5), 2) + pow(fmax(0, z - 0.5), 2);
   const double far2 = pow(x + 0.5, 2) + pow(y + 0.5, 2) + pow(z + 0.5, 2);
@@ -102,7 +102,7 @@ bw_status bw_pd_body_fraction_volume(double m, const int32_t offset[3], double *
   gsl_integration_cquad_workspace_free(work);
   /* GSL_EDIVERGE is said where the tolerance is at the limit of rounding: the value is good. */
   BW_REQUIRE(code == GSL_SUCCESS || code == GSL_EDIVERGE, BW_EDIVERGED,
-             "solid: volume fraction of offset (%d,%d,%d) at horizon/ds = %g: %s", offset[0],
+             "solid: volume fraction of offset (%g,%g,%g) at horizon/ds = %g: %s", offset[0],
              offset[1], offset[2], m, gsl_strerror(code));
   *fraction = fmax(0, fmin(1, *fraction));
   return BW_OK;

@@ -16,7 +16,7 @@
 typedef struct {
   int64_t id;
   int32_t site[3];
-  uint8_t kind, group;
+  uint8_t kind, group, level;
 } passenger;
 
 /* What is known while the body is divided. */
@@ -41,7 +41,7 @@ static bw_status extent_of_all(const bw_pd_body *pd, size_t n, const int32_t sit
   for (int k = 0; k < 3; k++) {
     /* Sites are numbered in 32 bits with room for images around them. */
     const double size = most[3 + k] + most[k] + 1;
-    const int32_t period = (int32_t)lround(pd->config.period[k] / pd->level->ds);
+    const int32_t period = (int32_t)lround(pd->config.period[k] / pd->level->stencil.unit);
     BW_REQUIRE(size < 1 << 20, BW_EINPUT,
                "solid: sites reach over %.0f steps in direction %d; the limit is 2^20", size, k);
     BW_REQUIRE(period == 0 || size <= period, BW_EINPUT,
@@ -57,8 +57,9 @@ static bw_status extent_of_all(const bw_pd_body *pd, size_t n, const int32_t sit
 }
 
 /* The rows that this rank was given go to their owners. Collective. */
-static bw_status send_home(const bw_pd_body *pd, const bw_pd_sites *given, crowd *g)
+static bw_status send_home(const bw_pd_body *pd, const bw_pd_refined *refined, crowd *g)
 {
+  const bw_pd_sites *given = &refined->sites;
   const size_t n = (size_t)given->n;
   const int64_t first = bw_comm_prefix_sum(pd->comm, given->n);
   passenger *row = NULL;
@@ -72,6 +73,7 @@ static bw_status send_home(const bw_pd_body *pd, const bw_pd_sites *given, crowd
     memcpy(row[q].site, given->site + 3 * q, sizeof row[q].site);
     row[q].kind = given->kind == NULL ? BW_PD_FREE : given->kind[q];
     row[q].group = given->group == NULL ? 0 : given->group[q];
+    row[q].level = refined->level == NULL ? 0 : refined->level[q];
     owner[q] = bw_particles_partition_owner(g->partition, row[q].site);
   }
   /* The plan is collective: nobody makes it unless all can. */
@@ -89,30 +91,36 @@ static bw_status send_home(const bw_pd_body *pd, const bw_pd_sites *given, crowd
 }
 
 /* Own particles in lattice order: the first n rows of points. `order` (n) is scratch. */
-static bw_status settle(bw_pd_body *pd, const crowd *g, int32_t *site, int32_t *order)
+static bw_status settle(bw_pd_body *pd, const crowd *g, int32_t *site, uint8_t *level,
+                        int32_t *order)
 {
   int32_t lower[3], upper[3];
   int64_t size[3];
-  for (size_t q = 0; q < g->n; q++)
+  for (size_t q = 0; q < g->n; q++) {
     memcpy(site + 3 * q, g->own[q].site, sizeof g->own[q].site);
+    level[q] = g->own[q].level;
+  }
   bw_particles_extent(g->n, site, lower, upper);
   for (int k = 0; k < 3; k++)
     size[k] = (int64_t)upper[k] - lower[k] + 1;
   /* Which axis is fastest follows from the shape of this rank's part. */
   bw_pd_body_axes(size, pd->level->stencil.reach, pd->points.axis);
-  return bw_particles_lattice_order(pd->points.axis, g->n, site, order);
+  return bw_pd_body_order(pd, g->n, site, level, order);
 }
 
 static bw_status settle_own(bw_pd_body *pd, const crowd *g, passenger **sorted)
 {
   int32_t *site = NULL, *order = NULL;
+  uint8_t *level = NULL;
   bw_status st = BW_ALLOCATE(&site, 3 * g->n);
+  BW_THEN(st, BW_ALLOCATE(&level, g->n));
   BW_THEN(st, BW_ALLOCATE(&order, g->n));
   BW_THEN(st, BW_ALLOCATE(sorted, g->n));
-  BW_THEN(st, settle(pd, g, site, order));
+  BW_THEN(st, settle(pd, g, site, level, order));
   for (size_t i = 0; i < g->n && st == BW_OK; i++)
     (*sorted)[i] = g->own[order[i]];
   bw_release(&site);
+  bw_release(&level);
   bw_release(&order);
   return st;
 }
@@ -128,6 +136,7 @@ static bw_status near_own(const bw_pd_body *pd, size_t n, const passenger own[],
       lower[k] = i == 0 || x < lower[k] ? x : lower[k];
       upper[k] = i == 0 || x > upper[k] ? x : upper[k];
     }
+  /* The coarsest level reaches farthest. */
   for (int k = 0; k < 3; k++) {
     lower[k] -= pd->level->stencil.reach;
     upper[k] += pd->level->stencil.reach;
@@ -148,13 +157,34 @@ static int32_t find_own(const void *near, const void *key)
   return bw_particles_map_get((const bw_particles_map *)near, (const int32_t *)key);
 }
 
-/* The occupied places around own particles that others, or images, occupy. Collective. */
-static bw_status find_copies(const bw_pd_body *pd, const crowd *g, const int32_t site[],
-                             bw_particles_map *near, bw_particles_halo *halo)
+/* With several levels: where the bonds of an own particle lead. */
+typedef struct {
+  const bw_pd_body *pd;
+  const passenger *own;
+} question;
+
+static int offsets_of(const void *context, size_t i, int32_t offset[])
 {
-  const bw_pd_stencil *stencil = &pd->level->stencil;
-  bw_particles_lattice lattice = {
-      .partition = g->partition, .n_offset = stencil->n, .offset = stencil->offset};
+  const question *q = (const question *)context;
+  const int l = q->own[i].level;
+  const bw_pd_stencil *s = &q->pd->level[l].stencil;
+  int n = 0;
+  for (int d = 0; d < s->n; d++)
+    if (bw_pd_body_leads(q->pd, l, d, q->own[i].site))
+      memcpy(offset + 3 * n++, s->offset + 3 * d, 3 * sizeof *offset);
+  return n;
+}
+
+/* The occupied places around own particles that others, or images, occupy. Collective. */
+static bw_status find_copies(const bw_pd_body *pd, const crowd *g, const passenger own[],
+                             const int32_t site[], bw_particles_map *near, bw_particles_halo *halo)
+{
+  const question q = {.pd = pd, .own = own};
+  bw_particles_lattice lattice = {.partition = g->partition,
+                                  .n_offset = pd->directions,
+                                  .offset = pd->level->stencil.offset,
+                                  .offsets_of = pd->finest > 0 ? offsets_of : NULL,
+                                  .context = &q};
   memcpy(lattice.lower, g->lower, sizeof lattice.lower);
   memcpy(lattice.period, g->period, sizeof lattice.period);
   return bw_particles_halo_create(pd->comm, &lattice, pd->n, site, near, halo);
@@ -171,6 +201,7 @@ static bw_status extended_arrays(bw_pd_body *pd, const passenger own[],
   BW_TRY(BW_ALLOCATE(&p->id, all));
   BW_TRY(BW_ALLOCATE(&p->kind, all));
   BW_TRY(BW_ALLOCATE(&p->group, all));
+  if (pd->finest > 0) BW_TRY(BW_ALLOCATE(&p->level, all));
   BW_TRY(BW_ALLOCATE(&p->place, all));
   BW_TRY(BW_ALLOCATE(&pd->halo.extended_X, 3 * all));
   for (size_t i = 0; i < n; i++) {
@@ -178,11 +209,13 @@ static bw_status extended_arrays(bw_pd_body *pd, const passenger own[],
     p->id[i] = own[i].id;
     p->kind[i] = own[i].kind;
     p->group[i] = own[i].group;
+    if (p->level != NULL) p->level[i] = own[i].level;
   }
   for (size_t c = 0; c < halo->n; c++) {
     int32_t *site = p->site + 3 * (n + c);
     memcpy(site, halo->place + 3 * (size_t)order[c], 3 * sizeof *site);
     bw_particles_map_replace(near, site, (int32_t)(n + c));
+    if (p->level != NULL) p->level[n + c] = bw_pd_body_level_of_place(pd, site);
   }
   return BW_OK;
 }
@@ -224,6 +257,19 @@ static bw_status plan_halo(bw_pd_body *pd, const bw_particles_halo *halo, const 
   return st;
 }
 
+/* As bw_pd_body_order, of places that tell their level. */
+static bw_status order_places(const bw_pd_body *pd, size_t n, const int32_t place[],
+                              int32_t order[])
+{
+  uint8_t *level = NULL;
+  bw_status st = BW_ALLOCATE(&level, n);
+  for (size_t q = 0; q < n && st == BW_OK && pd->finest > 0; q++)
+    level[q] = bw_pd_body_level_of_place(pd, place + 3 * q);
+  BW_THEN(st, bw_pd_body_order(pd, n, place, level, order));
+  bw_release(&level);
+  return st;
+}
+
 /* Copies of what is near, once every particle is with its owner. Collective. */
 static bw_status make_copies(bw_pd_body *pd, const crowd *g, const passenger own[],
                              bw_particles_map *near)
@@ -234,10 +280,10 @@ static bw_status make_copies(bw_pd_body *pd, const crowd *g, const passenger own
   for (size_t i = 0; i < pd->n && st == BW_OK; i++)
     memcpy(site + 3 * i, own[i].site, sizeof own[i].site);
   st = bw_comm_agree(pd->comm, st);
-  if (st == BW_OK) st = find_copies(pd, g, site, near, &halo);
+  if (st == BW_OK) st = find_copies(pd, g, own, site, near, &halo);
   if (st == BW_OK) {
     st = BW_ALLOCATE(&order, halo.n);
-    BW_THEN(st, bw_particles_lattice_order(pd->points.axis, halo.n, halo.place, order));
+    BW_THEN(st, order_places(pd, halo.n, halo.place, order));
     BW_THEN(st, extended_arrays(pd, own, &halo, order, near));
     st = bw_comm_agree(pd->comm, st);
   }
@@ -249,11 +295,12 @@ static bw_status make_copies(bw_pd_body *pd, const crowd *g, const passenger own
 }
 
 /* Rows at home, who is near, which copies. Collective. */
-static bw_status divide(bw_pd_body *pd, const bw_pd_sites *given, crowd *g, bw_particles_map *near)
+static bw_status divide(bw_pd_body *pd, const bw_pd_refined *given, crowd *g,
+                        bw_particles_map *near)
 {
   passenger *own = NULL;
-  bw_status st =
-      bw_particles_partition_create(pd->comm, (size_t)given->n, given->site, &g->partition);
+  bw_status st = bw_particles_partition_create(pd->comm, (size_t)given->sites.n, given->sites.site,
+                                               &g->partition);
   if (st == BW_OK) st = send_home(pd, given, g);
   if (st == BW_OK) {
     pd->n = g->n;
@@ -268,10 +315,10 @@ static bw_status divide(bw_pd_body *pd, const bw_pd_sites *given, crowd *g, bw_p
   return st;
 }
 
-bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_sites *given, bw_particles_map *near)
+bw_status bw_pd_body_distribute(bw_pd_body *pd, const bw_pd_refined *given, bw_particles_map *near)
 {
   crowd g = {0};
-  bw_status st = extent_of_all(pd, (size_t)given->n, given->site, &g);
+  bw_status st = extent_of_all(pd, (size_t)given->sites.n, given->sites.site, &g);
   if (st == BW_OK) st = divide(pd, given, &g, near);
   bw_particles_partition_destroy(&g.partition);
   bw_release(&g.own);

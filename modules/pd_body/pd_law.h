@@ -46,6 +46,7 @@ struct bw_pd_law {
   int n_sweep; /* 1 .. BW_PD_SWEEPS; after each the body sends the fields that named it */
   bw_pd_sweep sweep[BW_PD_SWEEPS]; /* (n_sweep) */
   bool damps;                      /* its last sweep can do the pair damping on the way */
+  bool levels;                     /* it knows bonds between particles of different spacing */
 
   /* Breaks what is beyond its limit in one block; a law of one pass takes its force out of pd->a,
    * after one of several all passes follow. The energy that the owners' halves of these bonds held

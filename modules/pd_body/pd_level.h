@@ -1,7 +1,9 @@
 /* pd_level.h -- what all particles of one spacing share: a row of the table of levels.
  *
- * Today a body has one row. Whatever reads a spacing, a volume, a horizon or a stencil takes it
- * from the row of its particle (or block). */
+ * Row l has the spacing ds/2^l. Whatever reads a spacing, a volume, a horizon or a stencil takes it
+ * from the row of its particle (or block). In a body of several levels places are counted in half
+ * spacings of the finest one, in which every cell has its centre at whole numbers: those of a
+ * particle of level l are odd multiples of 2^(finest - l). */
 #pragma once
 #include "bw_pd_body.h"
 
@@ -24,14 +26,20 @@ enum {
   BW_PD_MINUS_R0 = 7   /* -|xi| [L] */
 };
 
-/* The directions in which there can be a bond, x fastest. */
+/* The directions in which there can be a bond, x fastest: first to particles of the own level, then
+ * to those of the next coarser level, then of the next finer one. */
 typedef struct {
   int n;            /* directions */
+  int same;         /* of them to particles of the own level */
   int reach;        /* largest component of an offset */
-  int32_t *offset;  /* (n,3) lattice steps */
+  double unit;      /* of an offset [L]: ds, with several levels half of the finest ds */
+  int32_t *offset;  /* (n,3) steps of that unit */
   double *xi;       /* (n,3) from site to site [L] */
   double *r0;       /* (n) |xi| [L] */
-  double *fraction; /* (n) Gamma [-] */
+  double *fraction; /* (n) Gamma [-]; between levels what takes its place beside the micromodulus of
+                       the coarser end (pd_stencil_levels.c) */
+  double *tough;    /* (n) square of the critical stretch over that of the coarser end [-] */
+  uint8_t *other;   /* (n) level at the other end */
   bool *sure;       /* (n) in a cloud: a bond wherever both sites are occupied */
   int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
 } bw_pd_stencil;
@@ -39,6 +47,8 @@ typedef struct {
 /* A row of the table of levels. */
 typedef struct {
   double ds;             /* spacing [L] */
+  double stiff;          /* micromodulus over that of level 0: (horizon_0/horizon)^(D+1) [-] */
+  double stretch;        /* critical stretch over that of level 0: (horizon_0/horizon)^1/2 [-] */
   double horizon;        /* m ds [L] */
   double reach;          /* of the family [L]: |xi| < reach */
   double dv;             /* volume of one particle [L^3] */

@@ -4,6 +4,19 @@
 #include <math.h>
 #include <string.h>
 
+/* What a bond counts for in its owner's family. */
+static double share(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
+                    int lane)
+{
+  const double gamma =
+      bw_pd_body_rest(pd, slot->direction, block->first + lane, slot->base + lane).fraction;
+  const bw_pd_level *own = bw_pd_body_level_of(pd, block);
+  if (slot->direction < own->stencil.same) return gamma;
+  /* Between levels by its stiffness, beside that of a bond of the own level. */
+  const bw_pd_level *other = pd->level + own->stencil.other[slot->direction];
+  return gamma * fmin(own->stiff, other->stiff) / own->stiff * other->dv / own->dv;
+}
+
 void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++)
@@ -13,10 +26,7 @@ void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])
       double family = 0, intact = 0;
       for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
         if (!(pd->bonds.slot[q].family >> lane & 1)) continue;
-        const double gamma =
-            bw_pd_body_rest(pd, pd->bonds.slot[q].direction, pd->bonds.block[b].first + lane,
-                            pd->bonds.slot[q].base + lane)
-                .fraction;
+        const double gamma = share(pd, &pd->bonds.block[b], &pd->bonds.slot[q], lane);
         family += gamma;
         if (pd->bonds.slot[q].mask >> lane & 1) intact += gamma;
       }

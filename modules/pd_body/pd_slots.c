@@ -28,7 +28,7 @@ static bw_status number_packed(bw_pd_body *pd)
   /* Without holes: storage is as long as there are particles. */
   BW_TRY(BW_ALLOCATE(&order, pd->n_extended));
   const bw_status st =
-      bw_particles_lattice_order(pd->points.axis, pd->n_extended, pd->points.site, order);
+      bw_pd_body_order(pd, pd->n_extended, pd->points.site, pd->points.level, order);
   for (size_t q = 0; q < pd->n_extended && st == BW_OK; q++)
     pd->points.place[order[q]] = (int32_t)q;
   bw_release(&order);
@@ -53,7 +53,8 @@ static bw_status number(bw_pd_body *pd)
   }
   /* A box keeps neighbours of successive places successive; a thin body in a wide box would be
    * mostly holes. */
-  const bool box = places <= PLACES_PER_PARTICLE * (double)pd->n_extended + PLACES_FREE;
+  const bool box =
+      pd->finest == 0 && places <= PLACES_PER_PARTICLE * (double)pd->n_extended + PLACES_FREE;
   pd->points.n_storage = box ? (size_t)places : pd->n_extended;
   BW_TRY(box ? number_box(pd, lower, size) : number_packed(pd));
   BW_TRY(BW_ALLOCATE(&pd->points.occupant, pd->points.n_storage));
@@ -84,6 +85,11 @@ static bw_status runs(bw_pd_body *pd)
   return BW_OK;
 }
 
+static bool alike(const bw_pd_body *pd, size_t i, const bw_pd_block *block)
+{
+  return pd->points.level == NULL || pd->points.level[i] == block->level;
+}
+
 /* Greedy: a block starts at the first own particle not yet in one. */
 static bw_status blocks(bw_pd_body *pd)
 {
@@ -92,8 +98,10 @@ static bw_status blocks(bw_pd_body *pd)
     for (size_t i = 0; i < pd->n;) {
       /* Lanes that are a hole or a copy stay out of the mask. */
       const int32_t first = pd->points.place[i];
-      bw_pd_block block = {.first = first, .own = (int32_t)i};
-      for (; i < pd->n && pd->points.place[i] < first + BW_PD_LANES; i++)
+      bw_pd_block block = {.first = first, .own = (int32_t)i, .exact = -1};
+      if (pd->points.level != NULL) block.level = pd->points.level[i];
+      /* All of one level: its directions are those of all lanes. */
+      for (; i < pd->n && pd->points.place[i] < first + BW_PD_LANES && alike(pd, i, &block); i++)
         block.mask |= (uint8_t)(1u << (pd->points.place[i] - first));
       if (pass == 1) pd->bonds.block[b] = block;
       b++;
@@ -107,7 +115,7 @@ static bw_status blocks(bw_pd_body *pd)
 /* In a cloud a direction of the stencil is a bond only where the particles are near enough. */
 static bool beyond_family(const bw_pd_body *pd, int direction, int32_t h, int32_t l)
 {
-  return !pd->level->stencil.sure[direction] &&
+  return pd->config.disorder > 0 && !pd->level->stencil.sure[direction] &&
          !(bw_pd_body_rest(pd, direction, h, l).r0 < pd->level->reach);
 }
 
@@ -116,11 +124,12 @@ static int direction_slots(const bw_pd_body *pd, const bw_particles_map *near,
                            const bw_pd_block *block, int direction, bw_pd_slot out[BW_PD_LANES])
 {
   /* Lanes whose neighbour in this direction is at the same distance in storage share a slot. */
-  const int32_t *o = pd->level->stencil.offset + 3 * direction;
+  const int32_t *o = bw_pd_body_level_of(pd, block)->stencil.offset + 3 * direction;
   int n = 0;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(block->mask >> lane & 1)) continue;
     const int32_t *s = pd->points.site + 3 * (size_t)bw_pd_body_owner(block, lane);
+    if (pd->finest > 0 && !bw_pd_body_leads(pd, block->level, direction, s)) continue;
     const int32_t e =
         bw_particles_map_get(near, (const int32_t[3]){s[0] + o[0], s[1] + o[1], s[2] + o[2]});
     /* Nobody stands there: the family is cut by a surface. */
@@ -180,7 +189,8 @@ bw_status bw_pd_body_slots(bw_pd_body *pd, const bw_particles_map *near)
     for (size_t b = 0; b < pd->bonds.n_block; b++) {
       BW_REQUIRE(q < UINT32_MAX, BW_EINPUT, "solid: too many bonds on one rank; use more ranks");
       pd->bonds.block[b].slot = (uint32_t)q;
-      for (int d = 0; d < pd->level->stencil.n; d++) {
+      const int directions = pd->level[pd->bonds.block[b].level].stencil.n;
+      for (int d = 0; d < directions; d++) {
         const int n = direction_slots(pd, near, &pd->bonds.block[b], d, some);
         if (pass == 1) memcpy(pd->bonds.slot + q, some, (size_t)n * sizeof *some);
         q += (size_t)n;

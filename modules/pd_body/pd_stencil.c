@@ -39,16 +39,15 @@ static int list_offsets(const bw_pd_body *pd, bw_pd_stencil *s)
 }
 
 /* 3.33 with ERRATA 2: linear from 1 at m - 1/2 to 0 at m + 1/2. */
-static double fraction_linear(double m, const int32_t o[3])
+static double fraction_linear(double m, const double o[3])
 {
-  const double r = sqrt((double)o[0] * o[0] + (double)o[1] * o[1] + (double)o[2] * o[2]);
+  const double r = sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]);
   return fmax(0, fmin(1, m - r + 0.5));
 }
 
-static bw_status fraction(const bw_pd_body *pd, const int32_t o[3], double *gamma)
+bw_status bw_pd_body_fraction(const bw_pd_body *pd, double m, const double o[3], double *gamma)
 {
   /* POROUS 3.33 in the plane, 3.3.5 in space, with ERRATA 2. */
-  const double m = pd->config.horizon_ratio;
   switch (pd->config.volume_fraction) {
   case BW_PD_FRACTION_LINEAR:
     *gamma = fraction_linear(m, o);
@@ -84,7 +83,8 @@ static bw_status fractions(const bw_pd_body *pd, bw_pd_stencil *s)
     qsort(o, pd->dimension == 3 ? 3 : 2, sizeof *o, compare_int);
     double *memo = &known[o[0] + side * (o[1] + side * o[2])];
     if (*memo == 0) {
-      st = fraction(pd, o, memo);
+      const double at[3] = {o[0], o[1], o[2]};
+      st = bw_pd_body_fraction(pd, pd->config.horizon_ratio, at, memo);
       *memo += 1;
     }
     s->fraction[q] = *memo - 1;
@@ -100,27 +100,42 @@ int bw_pd_body_direction(const bw_pd_stencil *s, const int32_t o[3])
   return s->number[(o[0] + r) + side * ((o[1] + r) + side * (o[2] + r))];
 }
 
+bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n)
+{
+  bw_pd_stencil *s = &pd->level[l].stencil;
+  const int side = 2 * s->reach + 1, pairs = pd->config.n_group * pd->config.n_group;
+  const size_t rows = (size_t)n, cells = (size_t)side * (size_t)side * (size_t)side;
+  BW_TRY(BW_ALLOCATE(&pd->level[l].row, (size_t)pairs * rows * BW_PD_ROW));
+  BW_TRY(BW_ALLOCATE(&s->offset, 3 * rows));
+  BW_TRY(BW_ALLOCATE(&s->xi, 3 * rows));
+  BW_TRY(BW_ALLOCATE(&s->r0, rows));
+  BW_TRY(BW_ALLOCATE(&s->fraction, rows));
+  BW_TRY(BW_ALLOCATE(&s->tough, rows));
+  BW_TRY(BW_ALLOCATE(&s->other, rows));
+  BW_TRY(BW_ALLOCATE(&s->sure, rows));
+  /* With several levels offsets are many steps long and nobody looks for their numbers. */
+  if (pd->finest == 0) BW_TRY(BW_ALLOCATE(&s->number, cells));
+  /* Offsets that are no direction are told from those that are. */
+  for (size_t q = 0; s->number != NULL && q < cells; q++)
+    s->number[q] = -1;
+  for (int q = 0; q < n; q++)
+    s->tough[q] = 1, s->other[q] = (uint8_t)l;
+  s->n = s->same = n;
+  pd->directions = n > pd->directions ? n : pd->directions;
+  return BW_OK;
+}
+
 bw_status bw_pd_body_stencil(bw_pd_body *pd)
 {
   bw_pd_stencil *s = &pd->level->stencil;
   const bw_pd_body_config *c = &pd->config;
   /* Sites can be this far apart with their particles still within reach. */
   s->reach = (int)ceil(c->horizon_ratio + 0.5 + 2 * c->disorder);
-  const int side = 2 * s->reach + 1, pairs = c->n_group * c->n_group;
+  s->unit = c->ds;
+  const int side = 2 * s->reach + 1;
   /* Counted first; the offsets are written once there is room. */
-  s->n = list_offsets(pd, s);
-  const size_t n = (size_t)s->n, cells = (size_t)(side * side * side);
-  BW_TRY(BW_ALLOCATE(&pd->level->row, (size_t)pairs * n * BW_PD_ROW));
-  BW_TRY(BW_ALLOCATE(&s->offset, 3 * n));
-  BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
-  BW_TRY(BW_ALLOCATE(&s->r0, n));
-  BW_TRY(BW_ALLOCATE(&s->fraction, n));
-  BW_TRY(BW_ALLOCATE(&s->sure, n));
-  BW_TRY(BW_ALLOCATE(&s->number, cells));
+  BW_TRY(bw_pd_body_stencil_room(pd, 0, list_offsets(pd, s)));
   list_offsets(pd, s);
-  /* Offsets that are no direction are told from those that are. */
-  for (size_t q = 0; q < cells; q++)
-    s->number[q] = -1;
   /* From steps to vectors in space, along the lattice's axes; and back from an offset to its
    * number. */
   for (int q = 0; q < s->n; q++) {
@@ -140,9 +155,8 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
   return fractions(pd, s);
 }
 
-void bw_pd_body_rows(bw_pd_body *pd)
+static void level_rows(bw_pd_body *pd, bw_pd_level *level)
 {
-  bw_pd_level *level = pd->level;
   const bw_pd_stencil *s = &level->stencil;
   const bool cloud = pd->config.disorder > 0;
   const int pairs = pd->config.n_group * pd->config.n_group;
@@ -156,6 +170,12 @@ void bw_pd_body_rows(bw_pd_body *pd)
       row[BW_PD_XI + k] = (bw_real)s->xi[3 * direction + k];
     row[BW_PD_R0] = (bw_real)r0;
     row[BW_PD_MINUS_R0] = (bw_real)-r0;
-    row[BW_PD_WEIGHT] = (bw_real)(gamma * level->dv);
+    row[BW_PD_WEIGHT] = (bw_real)(gamma * pd->level[s->other[direction]].dv);
   }
+}
+
+void bw_pd_body_rows(bw_pd_body *pd)
+{
+  for (int l = 0; l <= pd->finest; l++)
+    level_rows(pd, &pd->level[l]);
 }

@@ -13,8 +13,7 @@ typedef struct {
   const bw_pd_body *pd;
   const bw_pd_block *block;
   const bw_pd_slot *slot;
-  const bw_real *row;                    /* (groups, groups, directions, BW_PD_ROW) */
-  size_t pair;                           /* numbers of one pair of groups in row */
+  const bw_pd_level *level; /* whose rows are (groups, groups, directions, BW_PD_ROW) */
   const bw_real *u[3], *shift[3], *v[3]; /* storage */
   bw_real *a[3], *damp[3];               /* own */
   bw_real reach, slope;                  /* a cloud's Gamma: 0 <= reach - slope |xi| <= 1 */
@@ -27,8 +26,7 @@ INLINE sweep sweep_of(const bw_pd_body *pd)
   return (sweep){.pd = pd,
                  .block = pd->bonds.block,
                  .slot = pd->bonds.slot,
-                 .row = pd->level->row,
-                 .pair = (size_t)pd->level->stencil.n * BW_PD_ROW,
+                 .level = pd->level,
                  .u = {pd->u[0], pd->u[1], pd->u[2]},
                  .shift = {pd->shift[0], pd->shift[1], pd->shift[2]},
                  .v = {pd->vs[0], pd->vs[1], pd->vs[2]},
@@ -43,7 +41,9 @@ INLINE sweep sweep_of(const bw_pd_body *pd)
 INLINE const bw_real *rows_of(const sweep *s, const bw_pd_block *block)
 {
   const size_t g = block->group == BW_PD_MIXED ? 0 : block->group;
-  return s->row + g * (size_t)(s->pd->config.n_group + 1) * s->pair;
+  const bw_pd_level *level = s->level + block->level;
+  return level->row +
+         g * (size_t)(s->pd->config.n_group + 1) * (size_t)level->stencil.n * BW_PD_ROW;
 }
 
 /* A constant of the law for a slot's bonds: that of the row, or, where groups meet, of each
@@ -54,12 +54,14 @@ INLINE vec constant_of(const sweep *s, const bw_pd_block *block, const bw_pd_slo
   if (!mixed) return vec_all(row[column]);
   /* Lanes differ in their groups: each takes its number from the table of its own pair. */
   vec x = vec_all(row[column]);
-  const bw_real *first = s->row + (size_t)slot->direction * BW_PD_ROW;
+  const bw_pd_level *level = s->level + block->level;
+  const size_t pair = (size_t)level->stencil.n * BW_PD_ROW;
+  const bw_real *first = level->row + (size_t)slot->direction * BW_PD_ROW;
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(slot->family >> lane & 1)) continue;
     const int g = bw_pd_body_group_at(s->pd, block->first + lane);
     const int h = bw_pd_body_group_at(s->pd, slot->base + lane);
-    x[lane] = first[(size_t)(g * s->pd->config.n_group + h) * s->pair + (size_t)column];
+    x[lane] = first[(size_t)(g * s->pd->config.n_group + h) * pair + (size_t)column];
   }
   return x;
 }

@@ -3,6 +3,12 @@
 #include "bw_pd_bond_law.h"
 #include "pd_law.h"
 
+#include <math.h>
+
+/* How the sweep gets the factors of a block's bonds: by the surface correction, or those that the
+ * bonds near a jump between levels have each. */
+enum { BW_PD_BOND_EXACT = BW_PD_SURFACE_TENSOR + 1 };
+
 /* Unit of the stored factors of bonds (surface correction `tensor`): 2^-14, 0 .. 4. */
 #define BW_PD_ALPHA_UNIT (1.0 / 16384)
 
@@ -18,8 +24,8 @@ typedef struct {
   double full_volume; /* V_0 of the volume method (POROUS 3.44) [L^3] */
   bw_pd_bond_full full;
   double c0[BW_PD_GROUPS]
-           [BW_PD_GROUPS]; /* micromodulus of bonds between two groups [M/(L^5 T^2)] */
-  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* their critical stretch [-] */
+           [BW_PD_GROUPS]; /* micromodulus of bonds between two groups, level 0 [M/(L^5 T^2)] */
+  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* their critical stretch, level 0 [-] */
   bool breakable;                        /* some s0 is finite */
   double *bulk;                          /* (directions) alpha of a full family: 1 but by tensor */
   bw_real *w;                            /* storage: surface factor of a particle */
@@ -35,10 +41,12 @@ static inline bw_pd_bond_state *bw_pd_bond__own(bw_pd_body *pd)
   return (bw_pd_bond_state *)pd->state;
 }
 
-/* Micromodulus of the bond of two storage places. */
+/* Micromodulus of the bond of two storage places: between levels that of the coarser end. */
 static inline double bw_pd_bond__micromodulus(const bw_pd_body *pd, int32_t h, int32_t l)
 {
-  return bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
+  const double c0 =
+      bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
+  return c0 * fmin(bw_pd_body_level_at(pd, h)->stiff, bw_pd_body_level_at(pd, l)->stiff);
 }
 
 /* pd_bond_law.c: c0 and s0 of the integrals. Local. */
@@ -58,6 +66,9 @@ double bw_pd_bond__alpha(const bw_pd_body *pd, const bw_pd_block *block, const b
 
 /* pd_bond_tensor.c: bonds.factor, state.bulk. Collective. */
 bw_status bw_pd_bond__tensor(bw_pd_body *pd) BW_MUST_CHECK;
+
+/* pd_bond_levels.c: bonds.exact, blocks' exact. Collective. */
+bw_status bw_pd_bond__levels(bw_pd_body *pd) BW_MUST_CHECK;
 
 /* Members of the law. */
 void bw_pd_bond__force(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping);

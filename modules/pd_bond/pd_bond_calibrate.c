@@ -39,9 +39,9 @@ static void lattice_sums(bw_pd_body *pd)
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
   const bw_pd_stencil *s = &pd->level->stencil;
   memset(&state->full, 0, sizeof state->full);
-  for (int q = 0; q < s->n; q++) {
+  for (int q = 0; q < s->same; q++) {
     /* Volume for V_0 (3.44), first moment for the stiffness. */
-    const double w = s->fraction[q] * pd->level->dv, along = pd->level->ds * s->offset[3 * q];
+    const double w = s->fraction[q] * pd->level->dv, along = s->unit * s->offset[3 * q];
     state->full.volume += w;
     state->full.moment += w * s->r0[q];
     /* Bonds that cross a plane along the lattice, from one side. */

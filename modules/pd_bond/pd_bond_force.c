@@ -20,11 +20,12 @@ typedef struct {
   sweep all;
   const bw_real *w;
   const uint16_t *alpha;
+  const bw_real *exact;
 } bonds;
 
 INLINE bonds bonds_of(const bw_pd_body *pd)
 {
-  return (bonds){sweep_of(pd), bw_pd_bond__state(pd)->w, pd->bonds.factor};
+  return (bonds){sweep_of(pd), bw_pd_bond__state(pd)->w, pd->bonds.factor, pd->bonds.exact};
 }
 
 /* The bonds' own factors in units of the row's stiffness. */
@@ -33,8 +34,15 @@ INLINE vec stored(const bonds *s, const bw_pd_slot *slot)
   return vec_whole(s->alpha + (slot - s->all.slot) * BW_PD_LANES);
 }
 
+/* Those near a jump between levels, in the same units. */
+INLINE vec exactly(const bonds *s, const bw_pd_block *block, const bw_pd_slot *slot)
+{
+  return vec_load(s->exact +
+                  (block->exact + (slot - s->all.slot - (ptrdiff_t)block->slot)) * BW_PD_LANES);
+}
+
 INLINE coefficients cloud_coefficient(const bonds *s, const bw_pd_slot *slot, vec stiffness,
-                                      const bond *x, vec wh, bw_pd_surface_correction surface)
+                                      const bond *x, vec wh, int surface)
 {
   /* 1/|xi|, for Gamma and for the stretch. */
   const vec q0 = vec_rsqrt(x->rest2);
@@ -51,8 +59,8 @@ INLINE coefficients cloud_coefficient(const bonds *s, const bw_pd_slot *slot, ve
 }
 
 INLINE coefficients coefficient(const bonds *s, const bw_pd_block *block, const bw_pd_slot *slot,
-                                const bw_real *row, const bond *x, vec wh,
-                                bw_pd_surface_correction surface, bool cloud, bool mixed)
+                                const bw_real *row, const bond *x, vec wh, int surface, bool cloud,
+                                bool mixed)
 {
   /* `surface` is known when this is compiled: one of the branches is left. */
   const vec k = constant_of(&s->all, block, slot, row, BW_PD_STIFFNESS, mixed);
@@ -66,6 +74,7 @@ INLINE coefficients coefficient(const bonds *s, const bw_pd_block *block, const 
   const vec q = vec_rsqrt(r2), c = k * vec_fma(minus_r0, q, vec_all(1));
   if (surface == BW_PD_SURFACE_NONE) return (coefficients){c, q * q};
   if (surface == BW_PD_SURFACE_TENSOR) return (coefficients){c * stored(s, slot), q * q};
+  if (surface == BW_PD_BOND_EXACT) return (coefficients){c * exactly(s, block, slot), q * q};
   return (coefficients){c * (wh + vec_load(s->w + slot->base)), q * q};
 }
 
@@ -86,7 +95,7 @@ INLINE void add_damping(const sweep *s, const bw_pd_slot *slot, const bw_real *r
 
 /* Acceleration of one block's owners; returns whether a bond that holds is beyond s0. */
 INLINE bool block_force(const bonds *s, const bw_pd_block *block, int dimension, bool cloud,
-                        bw_pd_surface_correction surface, bool check, bool damping, bool mixed)
+                        int surface, bool check, bool damping, bool mixed)
 {
   const sweep *all = &s->all;
   /* What the owners bring is loaded once for all slots of the block. */
@@ -123,14 +132,29 @@ INLINE bool block_force(const bonds *s, const bw_pd_block *block, int dimension,
   return check && lanes_bits(beyond) != 0;
 }
 
+static int factors_of(const bw_pd_body *pd, const bw_pd_block *block)
+{
+  return block->exact >= 0 ? (int)BW_PD_BOND_EXACT
+                           : (int)bw_pd_bond__state(pd)->options.surface_correction;
+}
+
 /* A block where groups meet: few, so that nothing is decided when this is compiled. */
 static __attribute__((noinline)) bool mixed_force(const bonds *s, const bw_pd_block *block,
                                                   bool check, bool damping)
 {
   /* Out of plane all is zero in 2D, so that three components are right there too. */
   const bw_pd_body *pd = s->all.pd;
-  return block_force(s, block, 3, pd->config.disorder > 0,
-                     bw_pd_bond__state(pd)->options.surface_correction, check, damping, true);
+  return block_force(s, block, 3, pd->config.disorder > 0, factors_of(pd, block), check, damping,
+                     true);
+}
+
+/* A block near a jump between levels. */
+static __attribute__((noinline)) bool exact_force(const bonds *s, const bw_pd_block *block,
+                                                  bool check, bool damping)
+{
+  return s->all.pd->dimension == 2
+             ? block_force(s, block, 2, false, BW_PD_BOND_EXACT, check, damping, false)
+             : block_force(s, block, 3, false, BW_PD_BOND_EXACT, check, damping, false);
 }
 
 /* Notes in hit the blocks with a bond beyond s0; returns how many. */
@@ -143,8 +167,9 @@ INLINE size_t sweep_blocks(const bonds *s, size_t first, size_t last, int dimens
     const bw_pd_block *block = &s->all.block[b];
     /* Blocks of one group keep the kernel that knows all choices. */
     const bool beyond = block->group == BW_PD_MIXED ? mixed_force(s, block, check, damping)
-                                                    : block_force(s, block, dimension, cloud,
-                                                                  surface, check, damping, false);
+                        : block->exact >= 0         ? exact_force(s, block, check, damping)
+                                            : block_force(s, block, dimension, cloud, surface,
+                                                          check, damping, false);
     if (check && beyond) hit[n_hit++] = (uint32_t)b;
   }
   return n_hit;
@@ -215,11 +240,25 @@ static uint8_t unbreakable(const bw_pd_body *pd, const bw_pd_block *block, const
   return out;
 }
 
+/* Cracks live on the finest level alone: then no broken bond ever lies between levels, where what a
+ * crack costs depends on how it runs. */
+static bool above_finest(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot)
+{
+  return block->level < pd->finest ||
+         slot->direction >= bw_pd_body_level_of(pd, block)->stencil.same;
+}
+
+static void note_astray(bw_pd_body *pd, const bw_pd_block *block, uint8_t over)
+{
+  pd->bonds.astray += __builtin_popcount(over);
+  pd->bonds.astray_id = pd->points.id[bw_pd_body_owner(block, __builtin_ctz(over))];
+}
+
 /* The sweep that follows a break would give the same but for the rounding of the sum. */
 bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
 {
   const bonds s = bonds_of(pd);
-  const bw_pd_surface_correction surface = bw_pd_bond__state(pd)->options.surface_correction;
+  const int surface = factors_of(pd, block);
   const bool cloud = pd->config.disorder > 0, mixed = block->group == BW_PD_MIXED;
   /* The motion has not changed since the sweep that noted the block. */
   const owners h = owners_of(&s.all, block, 3, cloud);
@@ -237,6 +276,10 @@ bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
     uint8_t over = slot->mask & (uint8_t)~block->gone & lanes_bits(vec_above(x.r2, limit));
     if (over == 0) continue;
     over &= (uint8_t)~unbreakable(pd, block, slot, over);
+    if (over != 0 && above_finest(pd, block, slot)) {
+      note_astray(pd, block, over);
+      continue;
+    }
     /* What these bonds pull with now is no longer part of the acceleration. */
     const coefficients all = coefficient(&s, block, slot, row, &x, wh, surface, cloud, mixed);
     const vec c = vec_keep(lanes_of(over), all.force);
@@ -271,7 +314,7 @@ double bw_pd_bond__bond_energy(const bw_pd_body *pd, const bw_pd_block *block,
 static vec block_energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t lanes_asked)
 {
   const bonds s = bonds_of(pd);
-  const bw_pd_surface_correction surface = bw_pd_bond__state(pd)->options.surface_correction;
+  const int surface = factors_of(pd, block);
   const bool cloud = pd->config.disorder > 0, mixed = block->group == BW_PD_MIXED;
   /* As the force, but with the square of the change of length. */
   const owners h = owners_of(&s.all, block, 3, cloud);
@@ -294,6 +337,7 @@ static vec block_energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t 
     const vec alpha = surface == BW_PD_SURFACE_VOLUME   ? 1 / both
                       : surface == BW_PD_SURFACE_ENERGY ? both
                       : surface == BW_PD_SURFACE_TENSOR ? stored(&s, slot)
+                      : surface == BW_PD_BOND_EXACT     ? exactly(&s, block, slot)
                                                         : vec_all(1);
     const vec stretch = x.r2 * vec_rsqrt(x.r2) - r0;
     sum += vec_keep(lanes_of(slot->mask & lanes_asked), k * alpha * stretch * stretch);

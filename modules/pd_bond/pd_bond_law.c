@@ -22,6 +22,12 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
              "solid: surface_correction = tensor is of lattices; with disorder = %g use energy",
              c->disorder);
+  BW_REQUIRE(c->n_box == 0 || o->surface_correction == BW_PD_SURFACE_NONE ||
+                 o->surface_correction == BW_PD_SURFACE_TENSOR,
+             BW_EINPUT,
+             "solid: surface_correction = %s with levels: a factor per particle knows one level; "
+             "use tensor or none",
+             o->surface_correction == BW_PD_SURFACE_VOLUME ? "volume" : "energy");
   BW_REQUIRE((unsigned)o->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
              "solid: calibration = %d is unknown", (int)o->calibration);
   return BW_OK;
@@ -50,20 +56,25 @@ void bw_pd_bond__material(bw_pd_body *pd)
 }
 
 /* What of a kernel row is the law's, once c0 and s0 are known. */
-static void row_constants(const bw_pd_body *pd, int g, int h, bw_real row[])
+static void row_constants(const bw_pd_body *pd, const bw_pd_level *level, int g, int h,
+                          bw_real row[])
 {
   static const double factor[] = {1, 2, 0.5, BW_PD_ALPHA_UNIT}; /* none; volume: 2/(w+w); energy:
                                                              (g+g)/2; tensor: whole numbers */
   const bw_pd_bond_state *state = bw_pd_bond__state(pd);
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &level->stencil;
   const bool cloud = pd->config.disorder > 0;
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     /* In a cloud length and Gamma are the bond's own: here they are 1. */
     const double r0 = cloud ? 1 : s->r0[q], gamma = cloud ? 1 : s->fraction[q];
-    const double limit = r0 * (1 + state->s0[g][h]);
+    /* Between levels constants are told by the coarser end. */
+    const bw_pd_level *other = pd->level + s->other[q], *coarser = other < level ? other : level;
+    const double c0 = state->c0[g][h] * coarser->stiff;
+    const double s0 = state->s0[g][h] * coarser->stretch * sqrt(s->tough[q]);
+    const double limit = r0 * (1 + s0);
     /* Acceleration of the owner per change of length, with what every bond shares of alpha. */
-    row[BW_PD_STIFFNESS] = (bw_real)(factor[state->options.surface_correction] * state->c0[g][h] *
-                                     gamma * pd->level->dv / (pd->config.material[g].rho * r0));
+    row[BW_PD_STIFFNESS] = (bw_real)(factor[state->options.surface_correction] * c0 * gamma *
+                                     other->dv / (pd->config.material[g].rho * r0));
     row[BW_PD_LIMIT2] = (bw_real)(limit * limit);
   }
 }
@@ -79,14 +90,17 @@ static void constants(bw_pd_body *pd)
     for (int h = 0; h < groups; h++) {
       /* Without a finite s0 the sweeps need not compare lengths. */
       if (isfinite(bw_pd_bond__state(pd)->s0[g][h])) bw_pd_bond__own(pd)->breakable = true;
-      row_constants(pd, g, h,
-                    pd->level->row + (size_t)((g * groups + h) * pd->level->stencil.n) * BW_PD_ROW);
+      for (int l = 0; l <= pd->finest; l++) {
+        const bw_pd_level *level = &pd->level[l];
+        row_constants(pd, level, g, h,
+                      level->row + (size_t)((g * groups + h) * level->stencil.n) * BW_PD_ROW);
+      }
     }
 }
 
 static bw_status prepare(bw_pd_body *pd, const void *options)
 {
-  const int directions = pd->level->stencil.n;
+  const int directions = pd->level->stencil.same;
   bw_pd_bond_state *state = NULL;
   bw_status st = BW_ALLOCATE(&state, 1);
   /* The body destroys what stands of a state, also after a failure. */
@@ -106,7 +120,9 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   bw_pd_bond__material(pd);
   bw_pd_bond__calibrate(pd);
   BW_TRY(bw_pd_bond__surface_factors(pd));
-  return state->options.surface_correction == BW_PD_SURFACE_TENSOR ? bw_pd_bond__tensor(pd) : BW_OK;
+  if (state->options.surface_correction == BW_PD_SURFACE_TENSOR) BW_TRY(bw_pd_bond__tensor(pd));
+  /* Last: the factors of bonds near jumps change those that a surface gave them. */
+  return pd->finest > 0 && pd->config.jump == BW_PD_JUMP_BALANCED ? bw_pd_bond__levels(pd) : BW_OK;
 }
 
 static void destroy(bw_pd_body *pd)
@@ -141,6 +157,7 @@ const bw_pd_law bw_pd_bond_law = {.name = "bond",
                                   .n_sweep = 1,
                                   .sweep = {bw_pd_bond__force},
                                   .damps = true,
+                                  .levels = true,
                                   .breaks = bw_pd_bond__breaks,
                                   .bond_energy = bw_pd_bond__bond_energy,
                                   .energy = bw_pd_bond__energy,

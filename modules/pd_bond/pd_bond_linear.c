@@ -37,6 +37,11 @@ void bw_pd_bond__tangent(const bw_pd_body *pd, bw_real *const x[3], double kx[])
     block_product(pd, &pd->bonds.block[b], x, kx);
 }
 
+static double block_dv(const bw_pd_body *pd, const bw_pd_block *block)
+{
+  return bw_pd_body_level_of(pd, block)->dv;
+}
+
 /* 1/2 sum of c0 alpha Gamma V/|xi|. */
 void bw_pd_bond__rows(const bw_pd_body *pd, double row[])
 {
@@ -44,7 +49,8 @@ void bw_pd_bond__rows(const bw_pd_body *pd, double row[])
   for (size_t q = 0; q < pd->bonds.n_block; q++) {
     const bw_pd_block *block = &pd->bonds.block[q];
     for (bw_pd_walk b = bw_pd_walk_of(pd, block, block->mask); bw_pd_walk_next(&b);)
-      row[bw_pd_walk_owner(&b)] += factor(pd, block, &b) * b.rest.fraction / b.rest.r0;
+      row[bw_pd_walk_owner(&b)] += factor(pd, block, &b) * b.rest.fraction / b.rest.r0 *
+                                   (bw_pd_body_level_at(pd, b.l)->dv / block_dv(pd, block));
   }
   for (size_t i = 0; i < pd->n; i++)
     row[i] *= 0.5 * bw_pd_body_level(pd, i)->dv;

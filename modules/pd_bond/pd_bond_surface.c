@@ -54,6 +54,12 @@ double bw_pd_bond__alpha(const bw_pd_body *pd, const bw_pd_block *block, const b
 {
   const bw_pd_bond_state *state = bw_pd_bond__state(pd);
   const double sum = (double)state->w[block->first + lane] + (double)state->w[slot->base + lane];
+  if (block->exact >= 0) {
+    const size_t row = (size_t)block->exact + (size_t)(slot - pd->bonds.slot) - block->slot;
+    const bool whole = state->options.surface_correction == BW_PD_SURFACE_TENSOR;
+    return (whole ? BW_PD_ALPHA_UNIT : 1) *
+           (double)pd->bonds.exact[row * BW_PD_LANES + (size_t)lane];
+  }
   switch (state->options.surface_correction) {
   case BW_PD_SURFACE_VOLUME:
     return 2 / sum;

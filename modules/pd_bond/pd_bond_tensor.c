@@ -29,6 +29,7 @@ typedef struct {
   bw_real *phi;        /* (directions, K) */
   double target[MOST]; /* T */
   double full[MOST];   /* lambda of a full family */
+  bool *held;          /* (n) particles that keep those */
   bw_real *at[MOST];   /* storage: lambda with momentum */
   bw_real *last[MOST]; /* own: lambda of the sweep before */
 } solver;
@@ -85,7 +86,7 @@ static int conditions(const bw_pd_body *pd, int q, double f[MOST])
   int power[EVEN][3];
   double e[3];
   for (int k = 0; k < 3; k++)
-    e[k] = s->offset[3 * q + k] / r;
+    e[k] = s->offset[3 * q + k] * (s->unit / pd->level->ds) / r;
   /* Even conditions carry the energy's |xi|; odd ones are of the direction alone. */
   const int n = monomials(pd->dimension, power);
   for (int k = 0; k < n; k++)
@@ -100,22 +101,22 @@ static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, con
 {
   /* Gram-Schmidt in the inner product that is weighted with Gamma. */
   double before = 0, norm = 0;
-  for (int q = 0; q < s->n; q++)
+  for (int q = 0; q < s->same; q++)
     before += s->fraction[q] * f[q] * f[q];
   for (int k = 0; k < n; k++) {
-    const double *b = basis + (size_t)k * (size_t)s->n;
+    const double *b = basis + (size_t)k * (size_t)s->same;
     double along = 0;
-    for (int q = 0; q < s->n; q++)
+    for (int q = 0; q < s->same; q++)
       along += s->fraction[q] * b[q] * f[q];
-    for (int q = 0; q < s->n; q++)
+    for (int q = 0; q < s->same; q++)
       f[q] -= along * b[q];
     *t -= along * target[k];
   }
-  for (int q = 0; q < s->n; q++)
+  for (int q = 0; q < s->same; q++)
     norm += s->fraction[q] * f[q] * f[q];
   /* In the plane or with few neighbours some conditions follow from others. */
   if (!(norm > 1e-9 * before)) return false;
-  for (int q = 0; q < s->n; q++)
+  for (int q = 0; q < s->same; q++)
     f[q] /= sqrt(norm);
   *t /= sqrt(norm);
   return true;
@@ -126,13 +127,13 @@ static bw_status basis(bw_pd_body *pd, solver *v)
 {
   const bw_pd_stencil *s = &pd->level->stencil;
   double *bulk = bw_pd_bond__own(pd)->bulk;
-  const size_t n = (size_t)s->n;
+  const size_t n = (size_t)s->same;
   double *rows = NULL, total = 0;
   int power[EVEN][3], all = MOST;
   const int even = monomials(pd->dimension, power);
   BW_TRY(BW_ALLOCATE(&rows, MOST * n));
   /* The conditions as functions of the direction, and the first moment that sets their scale. */
-  for (int q = 0; q < s->n; q++) {
+  for (int q = 0; q < s->same; q++) {
     double f[MOST];
     all = conditions(pd, q, f);
     for (int k = 0; k < all; k++)
@@ -147,7 +148,7 @@ static bw_status basis(bw_pd_body *pd, solver *v)
     if (!orthonormal(s, rows, v->n, v->target, f, &t)) continue;
     /* What a full family lacks is its multiplier: with orthonormal phi one step solves it. */
     v->target[v->n] = v->full[v->n] = t;
-    for (int q = 0; q < s->n; q++)
+    for (int q = 0; q < s->same; q++)
       v->full[v->n] -= s->fraction[q] * f[q];
     v->n++;
   }
@@ -175,7 +176,7 @@ INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
 {
   /* The opposite direction is the mirror place in the stencil: phi(-xi) of the other end. */
   const bw_real *phi = v->phi + slot->direction * n;
-  const bw_real *back = v->phi + (pd->level->stencil.n - 1 - slot->direction) * n;
+  const bw_real *back = v->phi + (pd->level->stencil.same - 1 - slot->direction) * n;
   vec mine = vec_all(0), other = vec_all(0);
   for (int k = 0; k < n; k++) {
     mine = vec_fma(vec_all(phi[k]), vec_load(v->at[k] + block->first), mine);
@@ -195,6 +196,7 @@ INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     /* Factors are made from the multipliers at both ends each time: none is stored yet. */
     const bw_pd_slot *slot = &pd->bonds.slot[q];
+    if (slot->direction >= pd->level->stencil.same) continue; /* between levels */
     const bw_real *phi = v->phi + slot->direction * n;
     const vec alpha = vec_keep(lanes_of(slot->family), factors(pd, v, block, slot, n)) *
                       (bw_real)pd->level->stencil.fraction[slot->direction];
@@ -228,8 +230,7 @@ static void solve(bw_pd_body *pd, solver *v, bw_real *const next[])
     ascend_all(pd, v, next);
     for (int k = 0; k < v->n; k++) {
       for (size_t i = 0; i < pd->n; i++) {
-        /* Held layers stand for the material behind them: they keep the full family's. */
-        if (pd->points.kind[i] & BW_PD_PRESCRIBED) continue;
+        if (v->held[i]) continue;
         v->at[k][pd->points.place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
         v->last[k][i] = next[k][i];
       }
@@ -245,15 +246,36 @@ static void store(bw_pd_body *pd, const solver *v)
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
       /* Rounded alike from both ends: a bond's two forces stay exact opposites. */
-      const vec alpha = factors(pd, v, &pd->bonds.block[b], &pd->bonds.slot[q], v->n);
+      const bool across = pd->bonds.slot[q].direction >= pd->level->stencil.same;
+      const vec alpha =
+          across ? vec_all(1) : factors(pd, v, &pd->bonds.block[b], &pd->bonds.slot[q], v->n);
       for (int lane = 0; lane < BW_PD_LANES; lane++)
         pd->bonds.factor[(size_t)q * BW_PD_LANES + (size_t)lane] =
             (uint16_t)lround((double)alpha[lane] / BW_PD_ALPHA_UNIT);
     }
 }
 
+/* Held layers stand for the material behind them, and who has bonds to another level has its
+ * family completed there: they keep the full family's multipliers. */
+static void hold(const bw_pd_body *pd, solver *v)
+{
+  for (size_t i = 0; i < pd->n; i++)
+    v->held[i] = (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
+  for (size_t b = 0; pd->finest > 0 && b < pd->bonds.n_block; b++) {
+    const bw_pd_block *block = &pd->bonds.block[b];
+    for (uint32_t q = block->slot; q < block[1].slot; q++) {
+      const bw_pd_slot *slot = &pd->bonds.slot[q];
+      if (slot->direction < bw_pd_body_level_of(pd, block)->stencil.same) continue;
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        if (slot->family >> lane & 1) v->held[bw_pd_body_owner(block, lane)] = true;
+    }
+  }
+}
+
 static bw_status solver_arrays(const bw_pd_body *pd, solver *v, bw_real *next[])
 {
+  BW_TRY(BW_ALLOCATE(&v->held, pd->n));
+  hold(pd, v);
   for (int k = 0; k < v->n; k++) {
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &v->at[k]));
     BW_TRY(BW_ALLOCATE(&v->last[k], pd->n));
@@ -289,5 +311,6 @@ bw_status bw_pd_bond__tensor(bw_pd_body *pd)
     bw_release(&next[k]);
   }
   bw_release(&v.phi);
+  bw_release(&v.held);
   return st;
 }

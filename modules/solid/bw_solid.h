@@ -84,6 +84,10 @@ typedef struct {
                                   (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
   double origin[3];               /* of the lattice [L]                   default 0 */
   double axes[3][3];              /* rows: lattice directions             default identity */
+  int n_box;                      /* boxes of finer particles                default 0: one level */
+  bw_pd_box box[BW_PD_BOXES];     /* where they are (bw_pd_body.h); cracks run on the finest level
+                                 alone: a bond beyond its limit elsewhere ends the run */
+  bw_pd_jump jump;                /* of bonds between two spacings            default balanced */
   double period[3]; /* periodic length per direction [L], 0: not periodic. Must be a whole
                        number of ds along that axis         default 0 */
 } bw_solid_config;
@@ -178,8 +182,8 @@ double bw_solid_get_drag(const bw_solid *solid, double impulse[]);
 void bw_solid_set_prescribed(bw_solid *solid, const double V[]);
 
 /* One step of dt [T]. BW_ECFL when dt is not positive or above dt_max; BW_EDIVERGED when a particle
- * is not finite or moves more than one horizon in the step (RK3: in a sub-step); names the
- * particle, its place. Collective. */
+ * is not finite or moves more than one horizon in the step (RK3: in a sub-step), or a bond above
+ * the finest level is stretched beyond its limit; names the particle, its place. Collective. */
 bw_status bw_solid_step(bw_solid *solid, double dt) BW_MUST_CHECK;
 
 /* Largest stable step of the intact network with its damping at small strain [T]: a bound below
@@ -208,9 +212,10 @@ double bw_solid_horizon(const bw_solid *solid);                  /* [L] */
 double bw_solid_micromodulus(const bw_solid *solid);     /* c0 of the first group [M/(L^5 T^2)] */
 double bw_solid_critical_stretch(const bw_solid *solid); /* s0 of the first group [-]; NaN: the
                                                                 law has none */
-double bw_solid_volume(const bw_solid *solid);           /* of one particle [L^3] */
+double bw_solid_volume(const bw_solid *solid);           /* of one particle of level 0 [L^3] */
 /* What one own particle i is, by its group and its lattice; settings() holds those of the first
  * group. Local. */
+int bw_solid_level(const bw_solid *solid, size_t i);      /* 0: of spacing ds, 1: of ds/2, ... */
 int bw_solid_group(const bw_solid *solid, size_t i);      /* row of the materials, 0: the first */
 double bw_solid_density(const bw_solid *solid, size_t i); /* [M/L^3] */
 double bw_solid_spacing(const bw_solid *solid, size_t i); /* [L] */

@@ -164,7 +164,7 @@ bw_status bw_solid_assembly_step(bw_solid_assembly *set, double dt)
     bw_solid__land(set->solid[q], dt);
   /* What is beyond its limit has held through the whole step, as in a solid alone. */
   for (int q = 0; q < set->n; q++) {
-    if (st == BW_OK) bw_solid__end(set->solid[q]);
+    if (st == BW_OK) st = bw_solid__end(set->solid[q]);
     set->solid[q]->restored = false;
   }
   return bw_comm_agree(comm_of(set), st);

@@ -49,7 +49,7 @@ struct bw_solid {
 bw_status bw_solid__begin(bw_solid *s) BW_MUST_CHECK;
 bw_status bw_solid__leap(bw_solid *s, double dt) BW_MUST_CHECK;
 void bw_solid__land(bw_solid *s, double dt);
-void bw_solid__end(bw_solid *s);
+bw_status bw_solid__end(bw_solid *s) BW_MUST_CHECK;
 /* Forces at the present u (and v for damping). Collective. */
 bw_status bw_solid__evaluate(bw_solid *s, bool check) BW_MUST_CHECK;
 

@@ -6,7 +6,7 @@
 
 size_t bw_solid_bits_bytes(const bw_solid *s)
 {
-  return ((size_t)s->body->level->stencil.n + 7) / 8;
+  return ((size_t)s->body->directions + 7) / 8;
 }
 
 void bw_solid_get_bits(const bw_solid *s, uint8_t bits[])

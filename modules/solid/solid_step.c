@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Density of an own particle over that of the first group. */
+/* Mass of an own particle over that of the first group's on level 0. */
 static double weight_of(const bw_pd_body *pd, size_t i)
 {
   return pd->weight == NULL ? 1 : (double)pd->weight[i];
@@ -187,7 +187,8 @@ static void kick(bw_solid *s, double h)
  * before = NULL: no second term. */
 static bool drift(bw_pd_body *pd, double alpha, double beta, bw_real *const before[3])
 {
-  const bw_real limit2 = (bw_real)(pd->level->horizon * pd->level->horizon);
+  const double horizon = pd->level[pd->finest].horizon;
+  const bw_real limit2 = (bw_real)(horizon * horizon);
   const int dimension = pd->dimension;
   int bad = 0;
   for (size_t r = 0; r < pd->bonds.n_run; r++) {
@@ -343,11 +344,17 @@ bw_status bw_solid__begin(bw_solid *s)
   return s->body->current ? BW_OK : bw_solid_evaluate(s);
 }
 
-void bw_solid__end(bw_solid *s)
+bw_status bw_solid__end(bw_solid *s)
 {
+  const bw_pd_bonds *bonds = &s->body->bonds;
   /* What was tried in the evaluations of the step counts from now on. */
   if (s->body->law->accept != NULL) s->body->law->accept(s->body);
   break_bonds(s);
+  BW_REQUIRE(bonds->astray == 0, BW_EDIVERGED,
+             "solid: a bond of particle %lld is beyond its limit outside the finest level; cracks "
+             "run on the finest level alone: make the boxes of `levels` larger",
+             (long long)bonds->astray_id);
+  return BW_OK;
 }
 
 bw_status bw_solid_step(bw_solid *s, double dt)
@@ -360,7 +367,7 @@ bw_status bw_solid_step(bw_solid *s, double dt)
   bw_status st = bw_solid__begin(s);
   if (st == BW_OK) st = s->config.integrator == BW_SOLID_RK3 ? step_rk3(s, dt) : step_verlet(s, dt);
   /* Bonds held during the whole step; now those beyond their limit go (3.34). */
-  if (st == BW_OK) bw_solid__end(s);
+  if (st == BW_OK) st = bw_solid__end(s);
   /* Forces are this run's own from now on. */
   s->restored = false;
   return bw_comm_agree(s->body->comm, st);

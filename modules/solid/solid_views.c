@@ -98,6 +98,11 @@ double bw_solid_volume(const bw_solid *s)
   return s->body->level->dv;
 }
 
+int bw_solid_level(const bw_solid *s, size_t i)
+{
+  return (int)(bw_pd_body_level(s->body, i) - s->body->level);
+}
+
 int bw_solid_group(const bw_solid *s, size_t i)
 {
   return s->body->points.group[i];
@@ -160,7 +165,7 @@ int64_t bw_solid_revision(const bw_solid *s)
 
 int bw_solid_max_family(const bw_solid *s)
 {
-  return s->body->level->stencil.n;
+  return s->body->directions;
 }
 
 int bw_solid_links(const bw_solid *s, size_t h, bw_pd_link link[])

@@ -1,0 +1,226 @@
+/* The factors of bonds near a jump between levels.
+ *
+ * With the dual form momentum is kept, but a uniform strain pulls at the particles beside a jump:
+ *   A_h = sum_l k_hl alpha_hl e e e dV_l
+ * does not vanish there ("ghost force", 0.74 E eps/horizon at a flat jump), which displaces what is
+ * held and reflects waves in proportion to their wave number. So each bond gets the smallest change
+ *   sum_bonds (alpha - alpha_0)^2 -> min   with   A_h = 0 (pd_bond_zone.c),
+ * alpha_0 of the surface correction. With multipliers mu of the cubics of a direction, k over that
+ * of level 0 and both ends alike,
+ *   alpha_hl = alpha_0 + k [dV_l mu_h.f(e) - dV_h mu_l.f(e)],   f(-e) = -f(e),
+ * and A alpha = 0 is a symmetric system S lambda = b, mu = white^T lambda. It is solved to the end
+ * by conjugate residuals (Stiefel 1955), which take what cannot be met as a least square. Sums over
+ * particles are made of whole numbers: the factors are the same on any number of ranks. */
+#include "pd_bond_levels.h"
+#include "bw_memory.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = 2000 }; /* steps; some 100 to 300 are usual */
+enum { ROUNDS = 8 };  /* in each the bonds that would become too soft are fixed; 1 to 3 are usual */
+static const double LOW = 0.1; /* of alpha: the softest that a bond may become */
+
+/* Vectors of the solution: (rows, cubics) each. */
+typedef struct {
+  double *lambda, *r, *p, *v, *sp;
+} vectors;
+
+/* Sum of x.y over all rows of all ranks, to the same bits however they are divided: terms as whole
+ * numbers of 2^-k of the largest one, and what that leaves once more. Collective. */
+static double dot(const bw_pd_bond_zone *z, const double x[], const double y[])
+{
+  const size_t n = (size_t)z->cubics;
+  double most = 0;
+  int64_t sum[2] = {0, 0};
+  for (size_t i = 0; i < z->rows; i++) {
+    double t = 0;
+    for (size_t k = 0; k < n; k++)
+      t += x[i * n + k] * y[i * n + k];
+    most = fmax(most, fabs(t));
+  }
+  bw_comm_max(z->pd->comm, 1, &most);
+  if (!(most > 0) || !isfinite(most)) return most;
+  const int bits = 60 - (int)ceil(log2((double)z->all + 1));
+  const double scale = ldexp(1, bits) / most;
+  for (size_t i = 0; i < z->rows; i++) {
+    double t = 0;
+    for (size_t k = 0; k < n; k++)
+      t += x[i * n + k] * y[i * n + k];
+    const double whole = rint(t * scale);
+    sum[0] += (int64_t)whole;
+    sum[1] += (int64_t)rint(ldexp(t * scale - whole, bits));
+  }
+  bw_comm_sum_int(z->pd->comm, 2, sum);
+  return ((double)sum[0] + ldexp((double)sum[1], -bits)) / scale;
+}
+
+/* mu = white^T x, also of copies. Collective. */
+static void spread(const bw_pd_bond_zone *z, const double x[])
+{
+  const size_t n = (size_t)z->cubics;
+  for (size_t i = 0; i < z->rows; i++) {
+    const double *white = z->white + i * n * n;
+    const int32_t place = z->pd->points.place[z->particle[i]];
+    for (size_t q = 0; q < n; q++) {
+      double sum = 0;
+      for (size_t k = 0; k < n; k++)
+        sum += white[k * n + q] * x[i * n + k];
+      z->mu[q][place] = (bw_real)sum;
+    }
+  }
+  for (size_t q = 0; q < n; q++)
+    bw_pd_body_fill_places(z->pd, z->mu[q]);
+}
+
+/* alpha - alpha_0 of a slot: exactly the same seen from either end. */
+INLINE vec change(const bw_pd_bond_zone *z, const bw_pd_block *block, const bw_pd_slot *slot)
+{
+  const bw_pd_level *own = bw_pd_body_level_of(z->pd, block);
+  const bw_pd_level *other = z->pd->level + own->stencil.other[slot->direction];
+  const bw_real *f = z->cubic[block->level] + slot->direction * z->cubics;
+  vec mine = vec_all(0), theirs = vec_all(0);
+  for (int k = 0; k < z->cubics; k++) {
+    mine = vec_fma(vec_all(f[k]), vec_load(z->mu[k] + block->first), mine);
+    theirs = vec_fma(vec_all(f[k]), vec_load(z->mu[k] + slot->base), theirs);
+  }
+  const double k_hl = own->stencil.fraction[slot->direction] * fmin(own->stiff, other->stiff);
+  const double unit = z->pd->level->dv;
+  return mine * (bw_real)(k_hl * (other->dv / unit)) - theirs * (bw_real)(k_hl * (own->dv / unit));
+}
+
+/* out = white A x for x the present factors (`all`), or their change by mu. Local. */
+static void gather(const bw_pd_bond_zone *z, bool all, double out[])
+{
+  const bw_pd_body *pd = z->pd;
+  const int n = z->cubics;
+  const bw_real unit = (bw_real)(pd->bonds.factor != NULL ? BW_PD_ALPHA_UNIT : 1);
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    const bw_pd_block *block = &pd->bonds.block[b];
+    if (block->exact < 0) continue;
+    vec sum[BW_PD_BOND_CUBICS];
+    for (int k = 0; k < n; k++)
+      sum[k] = vec_all(0);
+    for (uint32_t q = block->slot; q < block[1].slot; q++) {
+      const bw_pd_slot *slot = &pd->bonds.slot[q];
+      const size_t row = (size_t)block->exact + (q - block->slot);
+      const bw_real *f = z->cubic[block->level] + slot->direction * n;
+      if (!all && z->free[row] == 0) continue;
+      const vec x = all ? vec_keep(lanes_of(slot->family),
+                                   vec_load(pd->bonds.exact + row * BW_PD_LANES) * unit)
+                        : vec_keep(lanes_of(z->free[row]), change(z, block, slot));
+      const vec w = x * z->pull[block->level][slot->direction];
+      for (int k = 0; k < n; k++)
+        sum[k] = vec_fma(vec_all(f[k]), w, sum[k]);
+    }
+    for (int lane = 0; lane < BW_PD_LANES; lane++) {
+      const int32_t i = block->mask >> lane & 1 ? z->row[bw_pd_body_owner(block, lane)] : -1;
+      if (i < 0) continue;
+      const double *white = z->white + (size_t)i * (size_t)(n * n);
+      for (int k = 0; k < n; k++) {
+        double y = 0;
+        for (int q = 0; q < n; q++)
+          y += white[k * n + q] * (double)sum[q][lane];
+        out[i * n + k] = y;
+      }
+    }
+  }
+}
+
+static void apply(const bw_pd_bond_zone *z, const double x[], double out[])
+{
+  spread(z, x);
+  gather(z, false, out);
+}
+
+/* S lambda = -white A alpha_0 by conjugate residuals. Collective. */
+static void solve(const bw_pd_bond_zone *z, vectors *x)
+{
+  const size_t n = z->rows * (size_t)z->cubics;
+  /* Until a residual of rounding: of the numbers that factors are stored in. */
+  const double least = sizeof(bw_real) == sizeof(double) ? 1e-13 : 1e-6;
+  gather(z, true, x->r);
+  for (size_t k = 0; k < n; k++) {
+    x->lambda[k] = 0;
+    x->p[k] = x->r[k] = -x->r[k];
+  }
+  apply(z, x->r, x->v);
+  memcpy(x->sp, x->v, n * sizeof *x->sp);
+  const double first = dot(z, x->r, x->r);
+  double rv = dot(z, x->r, x->v), rr = first;
+  for (int q = 0; q < MOST && rr > least * least * first && rv > least * least * first; q++) {
+    const double a = rv / dot(z, x->sp, x->sp);
+    for (size_t k = 0; k < n; k++) {
+      x->lambda[k] += a * x->p[k];
+      x->r[k] -= a * x->sp[k];
+    }
+    apply(z, x->r, x->v);
+    const double now = dot(z, x->r, x->v), b = now / rv;
+    rv = now;
+    rr = dot(z, x->r, x->r);
+    for (size_t k = 0; k < n; k++) {
+      x->p[k] = x->r[k] + b * x->p[k];
+      x->sp[k] = x->v[k] + b * x->sp[k];
+    }
+  }
+}
+
+/* Factors with the change by mu. A round that finds bonds below LOW only fixes those, but for the
+ * last one. Returns how many it fixed, of all ranks. Collective. */
+static int64_t store(bw_pd_bond_zone *z, bool last)
+{
+  bw_pd_body *pd = z->pd;
+  const bw_real unit = (bw_real)(pd->bonds.factor != NULL ? BW_PD_ALPHA_UNIT : 1);
+  int64_t fixed = 0;
+  for (int pass = 0; pass < 2 && fixed == 0; pass++) {
+    for (size_t b = 0; b < pd->bonds.n_block; b++) {
+      const bw_pd_block *block = &pd->bonds.block[b];
+      for (uint32_t q = block->slot; q < block[1].slot && block->exact >= 0; q++) {
+        const size_t row = (size_t)block->exact + (q - block->slot);
+        bw_real *alpha = &pd->bonds.exact[row * BW_PD_LANES];
+        const vec x = vec_load(alpha) + change(z, block, &pd->bonds.slot[q]) * (1 / unit);
+        for (int lane = 0; lane < BW_PD_LANES; lane++) {
+          if (!(z->free[row] >> lane & 1)) continue;
+          const bool soft = x[lane] * unit < (bw_real)LOW;
+          if (pass == 1) alpha[lane] = soft ? (bw_real)LOW / unit : x[lane];
+          if (pass == 1 || !soft || last) continue;
+          alpha[lane] = (bw_real)LOW / unit;
+          z->free[row] = (uint8_t)(z->free[row] & ~(1u << lane));
+          fixed++;
+        }
+      }
+    }
+    bw_comm_sum_int(pd->comm, 1, &fixed);
+  }
+  return fixed;
+}
+
+static bw_status arrays(const bw_pd_bond_zone *z, vectors *x)
+{
+  const size_t n = z->rows * (size_t)z->cubics;
+  double **all[] = {&x->lambda, &x->r, &x->p, &x->v, &x->sp};
+  for (size_t q = 0; q < sizeof all / sizeof *all; q++)
+    BW_TRY(BW_ALLOCATE(all[q], n));
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__levels(bw_pd_body *pd)
+{
+  bw_pd_bond_zone z = {0};
+  vectors x = {0};
+  bw_status st = bw_pd_bond__zone(pd, &z);
+  if (st == BW_OK) st = bw_comm_agree(pd->comm, arrays(&z, &x));
+  for (int round = 0; round < ROUNDS && st == BW_OK; round++) {
+    st = bw_comm_agree(pd->comm, bw_pd_bond__conditions(&z));
+    if (st != BW_OK) break;
+    solve(&z, &x);
+    spread(&z, x.lambda);
+    /* Beside edges some bonds would have to push: they are left soft, the others do without. */
+    if (store(&z, round == ROUNDS - 1) == 0) break;
+  }
+  double **all[] = {&x.lambda, &x.r, &x.p, &x.v, &x.sp};
+  for (size_t q = 0; q < sizeof all / sizeof *all; q++)
+    bw_release(all[q]);
+  bw_pd_bond__zone_release(&z);
+  return st;
+}

@@ -1,0 +1,155 @@
+/* Uniform strain across jumps between levels.
+ *
+ * Claim      A body of several levels under a uniform strain is at rest, whatever the shape of the
+ *            finer region, in the plane and in space; with the dual form alone it is not, by what
+ *            an independent sum over the same cells says, nor with one-sided families.
+ * Reference  zero; dual form: the ghost force times horizon over E strain by sums over quadtree and
+ *            octree cells written in another language (numpy, lists of pairs by a search tree):
+ *            0.74 at a flat jump, 0.83 at a square patch, 0.79 at one refined cell, 1.66 in a nest.
+ * Measured   largest force density, linearised, of the particles that are a coarse horizon and 1.5
+ *            spacings or more away from the body's faces, over all unit strains; times the coarse
+ *            horizon over E. As in the reference strains are taken one cubic moment at a time: the
+ *            largest of sum k xi xi xi/r^2 V.
+ * Tolerance  1e-11: the factors are solved to 1e-13 of the ghost force of the dual form (1e-6 in
+ *            single precision: 1e-4). Dual form 1 %: the reference has two digits.
+ * BUILD modules=solid
+ * TEST  ranks=1,2 */
+#include "bw_memory.h"
+#include "bw_solid.h"
+#include "bw_validation.h"
+#include "pd_law.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct {
+  const char *name;
+  int size[3]; /* cells; third 1: in the plane */
+  int n_box;
+  bw_pd_box box[3];
+  double dual; /* ghost force of the dual form, 0: not known from elsewhere */
+} shape;
+
+static const shape shapes[] = {
+    {"plane", {34, 34, 1}, 1, {{1, {17, -9}, {99, 99}}}, 0.74},
+    {"square", {34, 34, 1}, 1, {{1, {12, 12}, {22, 22}}}, 0.83},
+    {"L", {34, 34, 1}, 2, {{1, {12, 12}, {22, 17}}, {1, {12, 12}, {17, 22}}}, 0},
+    {"cell", {34, 34, 1}, 1, {{1, {17, 17}, {18, 18}}}, 0.79},
+    {"nest", {44, 44, 1}, 1, {{2, {20, 20}, {24, 24}}}, 1.66},
+    {"cube", {20, 20, 20}, 1, {{1, {8, 8, 8}, {12, 12, 12}}}, 0}};
+
+static const double E = 5;
+
+static bw_status make(const bw_comm *comm, const shape *s, bw_pd_jump jump, bw_solid **pd)
+{
+  bw_solid_config c = bw_solid_config_default();
+  c.geometry = s->size[2] == 1 ? BW_PD_PLANE_STRESS : BW_PD_3D;
+  c.ds = 1;
+  c.rho = 1;
+  c.E = E;
+  c.surface_correction = BW_PD_SURFACE_NONE;
+  c.calibration = BW_PD_CALIBRATION_LATTICE;
+  c.jump = jump;
+  c.n_box = s->n_box;
+  for (int b = 0; b < s->n_box; b++)
+    c.box[b] = s->box[b];
+  const int64_t n = (int64_t)s->size[0] * s->size[1] * s->size[2];
+  int32_t *site = NULL;
+  BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)n));
+  for (int64_t q = 0; q < n; q++) {
+    site[3 * q] = (int32_t)(q % s->size[0]);
+    site[3 * q + 1] = (int32_t)(q / s->size[0] % s->size[1]);
+    site[3 * q + 2] = (int32_t)(q / s->size[0] / s->size[1]);
+  }
+  const bw_status st = bw_solid_create_same(comm, &c, n, site, NULL, pd);
+  bw_release(&site);
+  return st;
+}
+
+/* A particle that is far enough from the faces. */
+static bool inside(const shape *s, const double X0[3])
+{
+  for (int k = 0; k < (s->size[2] == 1 ? 2 : 3); k++)
+    if (X0[k] < 4.5 || X0[k] > s->size[k] - 4.5) return false;
+  return true;
+}
+
+/* Largest force of the inner particles under the strain e_a e_b, symmetric, times 3/E. */
+static bw_status strained(bw_solid *pd, const shape *s, int a, int b, double *most)
+{
+  const size_t n = bw_solid_count(pd);
+  double *X = NULL, *X0 = NULL, *V = NULL, *force = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&X0, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&V, 3 * n));
+  BW_THEN(st, BW_ALLOCATE(&force, 3 * n));
+  if (st == BW_OK) {
+    const bw_pd_body *body = bw_solid_body(pd);
+    bw_solid_get_reference(pd, X0);
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < 3; k++)
+        X[3 * i + k] = X0[3 * i + k] + ((int)k == a ? 0.5 * X0[3 * i + (size_t)b] : 0) +
+                       ((int)k == b ? 0.5 * X0[3 * i + (size_t)a] : 0);
+    bw_solid_set_state(pd, X, V);
+    body->law->tangent(body, body->u, force);
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < 3; k++)
+        if (inside(s, X0 + 3 * i)) *most = fmax(*most, 3 / E * fabs(force[3 * i + k]));
+  }
+  bw_release(&X);
+  bw_release(&X0);
+  bw_release(&V);
+  bw_release(&force);
+  return st;
+}
+
+static bw_status ghost(const bw_comm *comm, const shape *s, bw_pd_jump jump, double *most)
+{
+  bw_solid *pd = NULL;
+  bw_status st = make(comm, s, jump, &pd);
+  *most = 0;
+  for (int a = 0; a < (s->size[2] == 1 ? 2 : 3) && st == BW_OK; a++)
+    for (int b = 0; b <= a && st == BW_OK; b++)
+      st = strained(pd, s, a, b, most);
+  bw_comm_max(comm, 1, most);
+  bw_solid_destroy(&pd);
+  return bw_comm_agree(comm, st);
+}
+
+static void claim(bw_validation *v, const shape *s, const char *form, double measured,
+                  double reference, double tolerance)
+{
+  char quantity[80];
+  snprintf(quantity, sizeof quantity, "ghost_%s_%s", s->name, form);
+  bw_validation_row(
+      v, &(bw_claim){.claim = reference > 0 || isinf(tolerance)
+                                  ? "what the form leaves is what pair sums say"
+                                  : "a uniform strain is at rest",
+                     .quantity = quantity,
+                     .measured = measured,
+                     .reference = reference,
+                     .tolerance = tolerance,
+                     .kind = reference > 0 ? BW_INDEPENDENT_CODE : BW_ANALYTIC,
+                     .source = reference > 0 ? "pair sums over quadtree cells, numpy" : "zero"});
+}
+
+static bw_status run(bw_validation *v)
+{
+  const bw_comm *comm = bw_validation_comm(v);
+  for (size_t q = 0; q < sizeof shapes / sizeof *shapes; q++) {
+    const shape *s = &shapes[q];
+    double force;
+    BW_TRY(ghost(comm, s, BW_PD_JUMP_BALANCED, &force));
+    claim(v, s, "balanced", force, 0, sizeof(bw_real) == sizeof(double) ? 1e-11 : 1e-4);
+    BW_TRY(ghost(comm, s, BW_PD_JUMP_DUAL, &force));
+    claim(v, s, "dual", force, s->dual, s->dual > 0 ? 0.01 : INFINITY);
+    BW_TRY(ghost(comm, s, BW_PD_JUMP_ONE_SIDED, &force));
+    claim(v, s, "one_sided", force, 0, INFINITY);
+  }
+  return BW_OK;
+}
+
+int main(int argc, char **argv)
+{
+  return bw_validation_main(argc, argv, "pd_bond.levels_patch", run);
+}

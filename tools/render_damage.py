@@ -22,7 +22,7 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
                                          vtkTextActor, vtkWindowToImageFilter)
 
-SIZE = (1400, 800)
+WIDE, HIGH = (1400, 800), (800, 1400)  # of a picture; the second of what is higher than wide
 
 
 def read(reader, path):
@@ -137,8 +137,15 @@ def look(renderer, box):
     camera.SetPosition(*[c + v for c, v in zip(centre, direction)])
     camera.SetViewUp(0, 1, 0)
     renderer.ResetCamera(box)
-    sides = sorted(box[2 * d + 1] - box[2 * d] for d in range(3))
-    camera.Zoom(1.25 if sides[2] > 1.5 * sides[1] else 1.0)  # the ball around a long box is mostly empty
+    renderer.ResetCameraClippingRange()
+    # The ball around a box is mostly empty: as near as leaves all corners in the picture.
+    to_view, most = camera.GetCompositeProjectionTransformMatrix(
+        renderer.GetTiledAspectRatio(), 0, 1), 0.0
+    for q in range(8):
+        corner = [box[2 * d + (q >> d & 1)] for d in range(3)]
+        x, y, _, w = to_view.MultiplyPoint(corner + [1.0])
+        most = max(most, abs(x / w), abs(y / w))
+    camera.Zoom(0.9 / most if most > 0 else 1.0)
     renderer.ResetCameraClippingRange()
 
 
@@ -149,9 +156,11 @@ def picture(points, box, title, path, cut=None):
     decorate(renderer, box, table, title)
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(4)
-    window.SetSize(*SIZE)
+    window.SetSize(*(HIGH if box[3] - box[2] > box[1] - box[0] else WIDE))
     window.AddRenderer(renderer)
-    look(renderer, box)
+    # What is held behind a wall of the fluid is seen, too.
+    both = list(zip(box, points.GetBounds()))
+    look(renderer, [min(both[q]) if q % 2 == 0 else max(both[q]) for q in range(6)])
     window.Render()
     image, writer = vtkWindowToImageFilter(), vtkPNGWriter()
     image.SetInput(window)

@@ -103,13 +103,22 @@ static bw_status write_plate(bending_run *p, const char *path)
 
 static bw_status write_fluid(bending_run *p, const char *path)
 {
-  bw_real *const *u = bw_ns_channel_velocity(p->flow.fluid);
+  bw_real *const *u = bw_ns_channel_velocity(p->flow.fluid), *solid = NULL;
+  bw_status st = bw_comm_agree(p->flow.comm, bw_field_create(p->flow.grid, &solid));
+  /* 1 where a particle is: what moves inside the plate is no flow. */
+  if (st == BW_OK) {
+    bw_solid_get_position(p->flow.solid, p->flow.X);
+    st = bw_grid_mark(p->flow.grid, p->flow.n, p->flow.X, NULL, solid);
+  }
   const bw_vtk_field fields[] = {
       {.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
       {.name = "pressure",
        .data = {bw_ns_channel_pressure(p->flow.fluid)},
-       .scale = p->flow.config.fluid.density}};
-  return bw_vtk_write_grid(p->flow.grid, path, 2, fields);
+       .scale = p->flow.config.fluid.density},
+      {.name = "solid", .data = {solid}}};
+  BW_THEN(st, bw_vtk_write_grid(p->flow.grid, path, 3, fields));
+  bw_release(&solid);
+  return st;
 }
 
 /* One file of the series `what` at the present time. */

@@ -60,8 +60,11 @@ typedef struct {
   double lower[2]; /* window the crack is looked for in [m]    default the plate */
   double upper[2];
   double fit_from, fit_to; /* distances from the notch's tip that the angle is fitted to [m] */
-  double speed_window;     /* [s]                                      default 2e-6, ADAPT 6.1 */
-  int every;               /* steps between looks                      default 1 */
+  double
+      speed_window; /* [s]           default 2e-6 (ADAPT 6.1) for 0.1 m of plate, in proportion */
+  double
+      angle_over; /* of a crack that its angle at a fork is taken over [m]    default length/20 */
+  int every;      /* steps between looks                      default 1 */
 } specimen_follow;
 /* How long. */
 typedef struct {

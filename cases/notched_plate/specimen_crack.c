@@ -2,8 +2,7 @@
 #include "specimen.h"
 #include <math.h>
 
-enum { FORKED = 3 };               /* sections of two branches in a row that make a fork */
-static const double ANGLED = 5e-3; /* [m] of the crack that an angle of branches is taken over */
+enum { FORKED = 3 }; /* sections of two branches in a row that make a fork */
 
 /* Diagonal neighbours are joined; in a cloud not every particle of a path loses enough bonds. */
 static double gap(const specimen *p)
@@ -53,8 +52,9 @@ bw_status specimen_branches(specimen *p, specimen_fork *out)
   const double station = from + p->ds * floor(0.5 * (tip - from) / p->ds);
   out->branches = bw_pd_crack_branches(&crack, station, 0.5 * p->ds, gap(p), 2, out->middle);
   /* Just behind the fork and just before the tip. */
-  out->angle_first = bw_pd_crack_angle(&crack, from, from + ANGLED, p->ds, gap(p));
-  out->angle_last = bw_pd_crack_angle(&crack, tip - ANGLED, tip, p->ds, gap(p));
+  const double over = p->config.follow.angle_over;
+  out->angle_first = bw_pd_crack_angle(&crack, from, from + over, p->ds, gap(p));
+  out->angle_last = bw_pd_crack_angle(&crack, tip - over, tip, p->ds, gap(p));
   bw_pd_crack_release(&crack);
   return BW_OK;
 }

@@ -90,7 +90,9 @@ static const bw_config_field follow_fields[] = {
     V(specimen_follow, fit_to, BW_OPTIONAL, BW_ABOVE(0), "m",
       "distance up to which it is fitted; left out: all of the crack"),
     V(specimen_follow, speed_window, BW_OPTIONAL, BW_ABOVE(0), "s",
-      "time over which the tip's speed is taken"),
+      "time over which the tip's speed is taken; left out: 2e-6 s for 0.1 m of plate"),
+    V(specimen_follow, angle_over, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "length of a branch that its angle is taken over; left out: a twentieth of the plate's"),
     V(specimen_follow, every, BW_OPTIONAL, BW_AT_LEAST(1), "steps",
       "steps between looks at the crack"),
     BW_CONFIG_END};
@@ -144,7 +146,8 @@ specimen_config specimen_default(void)
                  .upper = {NAN, NAN},
                  .fit_from = 0.0,
                  .fit_to = NAN,
-                 .speed_window = 2e-6,
+                 .speed_window = NAN,
+                 .angle_over = NAN,
                  .every = 1},
       .time = {.step = NAN, .end = NAN, .after = NAN},
       .output = {.sample_every = 10, .picture_every = 200}};

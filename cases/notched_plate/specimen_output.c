@@ -108,7 +108,7 @@ static const char *or_never(double x, char text[16])
   if (isnan(x))
     snprintf(text, 16, "(never)");
   else
-    snprintf(text, 16, "%.2f", x);
+    snprintf(text, 16, "%.4g", x);
   return text;
 }
 
@@ -126,7 +126,7 @@ bw_status specimen_summary(specimen *p, bw_log *log)
   bw_log_info(log, "first bond broken %s us, crack leaves the notch %s us, reaches an end %s us",
               or_never(1e6 * c->t_first, text[0]), or_never(1e6 * c->t_start, text[1]),
               or_never(1e6 * c->t_end, text[2]));
-  bw_log_info(log, "tip at (%.2f, %.2f) mm, %.2f mm from the notch; at most %.0f m/s",
+  bw_log_info(log, "tip at (%.4g, %.4g) mm, %.4g mm from the notch; at most %.4g m/s",
               1e3 * c->tip[0], 1e3 * c->tip[1], 1e3 * c->reach,
               specimen_speed(p, p->config.follow.speed_window));
   bw_log_info(log, "path at %s deg to x, %s mm wide (rms), %zu particles",

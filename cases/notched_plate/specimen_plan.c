@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Limits that were not given are infinite. */
+/* Limits that were not given are infinite, windows follow from the plate. */
 static void open_limits(specimen_config *c)
 {
   for (int q = 0; q < c->n_loads; q++) {
@@ -16,6 +16,9 @@ static void open_limits(specimen_config *c)
     if (isnan(c->follow.upper[d])) c->follow.upper[d] = HUGE_VAL;
   }
   if (isnan(c->follow.fit_to)) c->follow.fit_to = HUGE_VAL;
+  /* The windows of the branching plate, whose length is 0.1 m, in proportion. */
+  if (isnan(c->follow.speed_window)) c->follow.speed_window = 2e-6 * (c->shape.length / 0.1);
+  if (isnan(c->follow.angle_over)) c->follow.angle_over = 5e-3 * (c->shape.length / 0.1);
 }
 
 /* Particles have 32-bit numbers, and sites are looked through one by one. */

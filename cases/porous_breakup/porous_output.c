@@ -25,14 +25,28 @@ bw_status porous_sample(porous_run *p)
 
 static bw_status write_fluid(porous_run *p, const char *path)
 {
-  bw_real *const *u = bw_ns_channel_velocity(p->fluid);
+  bw_real *const *u = bw_ns_channel_velocity(p->fluid), *solid = NULL;
+  const size_t n = bw_solid_count(p->solid);
+  double *X = NULL;
+  bw_status st = BW_ALLOCATE(&X, 3 * n);
+  BW_THEN(st, bw_field_create(p->grid, &solid));
+  st = bw_comm_agree(p->comm, st);
+  /* 1 where a particle is: what moves inside the solid is no flow. */
+  if (st == BW_OK) {
+    bw_solid_get_position(p->solid, X);
+    st = bw_grid_mark(p->grid, n, X, NULL, solid);
+  }
   const bw_vtk_field fields[] = {
       {.name = "velocity", .data = {u[0], u[1], u[2]}, .staggered = true},
       {.name = "pressure",
        .data = {bw_ns_channel_pressure(p->fluid)},
        .scale = p->config->fluid.density},
+      {.name = "solid", .data = {solid}},
   };
-  return bw_vtk_write_grid(p->grid, path, 2, fields);
+  BW_THEN(st, bw_vtk_write_grid(p->grid, path, 3, fields));
+  bw_release(&X);
+  bw_release(&solid);
+  return st;
 }
 
 static bw_status write_solid(porous_run *p, const char *path)

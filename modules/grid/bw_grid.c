@@ -195,22 +195,30 @@ int bw_grid_block_start(const bw_grid_view *v, int d, int c)
   return bw_grid__block_start(v->n[d], v->ranks[d], c);
 }
 
-int bw_grid_owner(const bw_grid *grid, const double x[3])
+bool bw_grid__cell(const bw_grid_view *v, const double x[3], int cell[3])
 {
-  const bw_grid_view *v = &grid->view;
-  int block[3];
   for (int d = 0; d < 3; d++) {
     double at = x[d];
     /* Beyond a periodic side lies the image of a point inside. */
     if (v->periodic[d] && !(at >= 0.0 && at < v->length[d]))
       at -= v->length[d] * floor(at / v->length[d]);
-    if (!(at >= 0.0 && at <= v->length[d])) return -1; /* NaN too */
+    if (!(at >= 0.0 && at <= v->length[d])) return false; /* NaN too */
     /* A point on a face belongs to the cell above that face. */
-    int cell = d == 1 ? cell_in_y(v, at) : 1 + (int)(at / v->spacing[d]);
-    if (cell > v->n[d]) cell = v->n[d]; /* the upper boundary belongs to the last cell */
+    cell[d] = d == 1 ? cell_in_y(v, at) : 1 + (int)(at / v->spacing[d]);
+    if (cell[d] > v->n[d]) cell[d] = v->n[d]; /* the upper boundary belongs to the last cell */
+  }
+  return true;
+}
+
+int bw_grid_owner(const bw_grid *grid, const double x[3])
+{
+  const bw_grid_view *v = &grid->view;
+  int cell[3], block[3];
+  if (!bw_grid__cell(v, x, cell)) return -1;
+  for (int d = 0; d < 3; d++) {
     /* Most points that are asked for lie on this rank: they need no search for their block. */
-    const bool here = cell > v->lo[d] && cell <= v->lo[d] + v->m[d];
-    block[d] = here ? v->coord[d] : block_of(v->n[d], v->ranks[d], cell);
+    const bool here = cell[d] > v->lo[d] && cell[d] <= v->lo[d] + v->m[d];
+    block[d] = here ? v->coord[d] : block_of(v->n[d], v->ranks[d], cell[d]);
   }
   return block[1] + v->ranks[1] * block[2];
 }

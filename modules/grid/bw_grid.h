@@ -108,6 +108,13 @@ static inline ptrdiff_t bw_at(const bw_grid_view *g, int i, int j, int k)
  * outside the box in a direction that is not periodic. Local. */
 int bw_grid_owner(const bw_grid *grid, const double x[3]);
 
+/* field <- value[i] in the cell that holds the point x[i] (n,3) of this rank, whichever rank the
+ * cell is on; `value` NULL: 1. Other cells stay as they are, points outside the box are left out,
+ * and of several points in a cell one counts. One cell deep, every z is in it. BW_EMEM.
+ * Collective. */
+bw_status bw_grid_mark(const bw_grid *grid, size_t n, const double x[], const double value[],
+                       bw_real *field) BW_MUST_CHECK;
+
 /* Cells before block c, 0 <= c <= ranks[d], of direction d. Local. */
 int bw_grid_block_start(const bw_grid_view *view, int d, int c);
 

@@ -32,6 +32,9 @@ static inline int bw_grid__block_start(int n, int r, int c)
   return c * base + (c < extra ? c : extra);
 }
 
+/* The cell (1..n) that contains the point x[3], periodic directions wrapped; false: none does. */
+bool bw_grid__cell(const bw_grid_view *view, const double x[3], int cell[3]);
+
 /* y: is its stretching possible; faces and centres. Local. */
 bw_status bw_grid__y_check(const bw_grid_config *config);
 bw_status bw_grid__y_create(bw_grid *grid, const bw_grid_config *config);

@@ -1,7 +1,6 @@
 /* VTK files: the fluid with what is solid in it, and the particles or surfaces of the bodies. */
 #include "scene_impl.h"
 
-#include "bw_exchange.h"
 #include "bw_memory.h"
 #include "bw_shape_surface.h"
 #include "bw_vtk.h"
@@ -64,58 +63,18 @@ static bw_status mask_surfaces(bw_scene *s, bw_real *mask)
   return BW_OK;
 }
 
-/* A particle on its way to the rank of its cell. */
-typedef struct {
-  double X[3];
-  double body;
-} seen;
-
-static ptrdiff_t cell_of(const bw_grid_view *g, const double x[3])
-{
-  int i[3];
-  for (int d = 0; d < 3; d++) {
-    i[d] = g->n[d] == 1 ? 1 : (int)floor(x[d] / g->spacing[d]) + 1 - g->lo[d];
-    i[d] = i[d] < 1 ? 1 : i[d] > g->m[d] ? g->m[d] : i[d];
-  }
-  return bw_at(g, i[0], i[1], i[2]);
-}
-
 /* Cells that hold a particle. Collective. */
 static bw_status mask_particles(bw_scene *s, bw_real *mask)
 {
   bw_scene__solid *q = &s->solid[0];
-  const bw_grid_view *g = bw_grid_look(s->grid);
-  seen *send = NULL, *receive = NULL;
-  int *owner = NULL;
-  bw_exchange *plan = NULL;
-  size_t n = 0;
+  double *body = NULL;
+  bw_status st = bw_comm_agree(s->comm, BW_ALLOCATE(&body, q->n));
+  BW_TRY(st);
   bw_solid_get_position(q->solid, q->V);
-  bw_status st = BW_ALLOCATE(&send, q->n);
-  BW_THEN(st, BW_ALLOCATE(&owner, q->n));
-  for (size_t i = 0; st == BW_OK && i < q->n; i++) {
-    double x[3];
-    for (size_t d = 0; d < 3; d++) {
-      x[d] = q->V[3 * i + d];
-      if (g->n[d] == 1) x[d] = 0.5 * g->length[d];
-    }
-    const int rank = bw_grid_owner(s->grid, x);
-    if (rank < 0) continue;
-    memcpy(send[n].X, x, sizeof x);
-    send[n].body = bw_scene__body_of(q, i) + 1.0;
-    owner[n++] = rank;
-  }
-  st = bw_comm_agree(s->comm, st);
-  BW_THEN(st, bw_exchange_create(s->comm, n, owner, &plan));
-  BW_THEN(st, bw_comm_agree(s->comm, BW_ALLOCATE(&receive, bw_exchange_received(plan))));
-  if (st == BW_OK) {
-    bw_exchange_forward(plan, sizeof *send, send, receive);
-    for (size_t i = 0; i < bw_exchange_received(plan); i++)
-      mask[cell_of(g, receive[i].X)] = (bw_real)receive[i].body;
-  }
-  bw_exchange_destroy(&plan);
-  bw_release(&send);
-  bw_release(&receive);
-  bw_release(&owner);
+  for (size_t i = 0; i < q->n; i++)
+    body[i] = bw_scene__body_of(q, i) + 1.0;
+  st = bw_grid_mark(s->grid, q->n, q->V, body, mask);
+  bw_release(&body);
   return st;
 }
 

@@ -70,6 +70,52 @@ START_TEST(owner_at_and_beyond_the_boundary)
 END_TEST
 
 /* bw_at addresses distinct entries of the storage, i fastest, and i = 1 is aligned. */
+/* Points of all ranks, far from where they are known: each colours its cell, wherever that is, once
+ * around a periodic side, too; what is outside colours nothing. */
+START_TEST(points_mark_their_cells)
+{
+  for (int flat = 0; flat < 2; flat++) {
+    bw_grid_config c = box(4, 8, flat ? 1 : 8);
+    c.periodic[2] = true;
+    if (!flat) c.y_stretch = BW_STRETCH_TANH;
+    bw_grid *grid = make(&c);
+    const bw_grid_view *v = bw_grid_look(grid);
+    const int rank = bw_comm_rank(bw_check_world()), size = bw_comm_size(bw_check_world());
+    bw_real *field = NULL;
+    bw_check_ok(bw_field_create(grid, &field));
+    /* Rank r colours every cell whose row is r modulo the ranks, from an image above or below. */
+    double *x = NULL, *value = NULL;
+    const size_t cells = (size_t)(c.n[0] * c.n[1] * c.n[2]);
+    size_t n = 0;
+    bw_check_ok(BW_ALLOCATE(&x, 3 * (cells + 1)));
+    bw_check_ok(BW_ALLOCATE(&value, cells + 1));
+    for (int k = 1; k <= c.n[2]; k++)
+      for (int j = 1 + rank; j <= c.n[1]; j += size)
+        for (int i = 1; i <= c.n[0]; i++, n++) {
+          x[3 * n] = (i - 0.5) * v->spacing[0], x[3 * n + 1] = v->y_centre[j];
+          x[3 * n + 2] = (k - 0.5) * v->spacing[2] + (i % 3 - 1) * v->length[2];
+          value[n] = i + 10 * j + 100 * k;
+        }
+    x[3 * n] = 1.0, x[3 * n + 1] = -0.1, x[3 * n + 2] = 0.1, value[n++] = 7.0;
+    bw_check_ok(bw_grid_mark(grid, n, x, value, field));
+    for (int k = 1; k <= v->m[2]; k++)
+      for (int j = 1; j <= v->m[1]; j++)
+        for (int i = 1; i <= v->m[0]; i++)
+          ck_assert_double_eq((double)field[bw_at(v, i, j, k)],
+                              i + 10 * (j + v->lo[1]) + 100 * (k + v->lo[2]));
+    /* Without values: 1, and cells without a point keep theirs. */
+    bw_check_ok(bw_grid_mark(grid, rank == 0 ? 1 : 0, x, NULL, field));
+    const bool mine = v->lo[1] == 0 && v->lo[2] == 0;
+    if (mine) ck_assert_double_eq((double)field[bw_at(v, 1, 1, 1)], 1.0);
+    if (mine) ck_assert_double_eq((double)field[bw_at(v, 2, 1, 1)], 112.0);
+    bw_release(&x);
+    bw_release(&value);
+    bw_release(&field);
+    bw_grid_destroy(&grid);
+  }
+}
+END_TEST
+
 START_TEST(storage_holds_every_cell_once)
 {
   for (int q = 0; q < 4; q++) {
@@ -268,6 +314,7 @@ END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(blocks_tile_the_box_and_owner_knows),
                                       BW_TEST(owner_at_and_beyond_the_boundary),
+                                      BW_TEST(points_mark_their_cells),
                                       BW_TEST(storage_holds_every_cell_once),
                                       BW_TEST(stretched_faces),
                                       BW_TEST(faces_of_a_table),

@@ -34,6 +34,35 @@ static bool due(double every, double now)
   return every > 0.0 && fabs(now / every - round(now / every)) < 1e-9 && now > 0.0;
 }
 
+/* Steps end where something is written: an interval far below the step that the scene bears would
+ * never come to an end. 0 and NaN: never, or chosen. */
+static bw_status check_interval(const driver *r, const char *key, double every)
+{
+  static const double least = 1e-6; /* of the longest stable step */
+  const double end = bw_scene__end(r->scene), limit = bw_scene__limit(r->scene);
+  BW_REQUIRE(!(every > 0.0) || isnan(end) || end / every < 1e9, BW_EINPUT,
+             "%s = %g: %.3g times to the end at %g; take a longer one", key, every, end / every,
+             end);
+  BW_REQUIRE(!(every > 0.0) || every > least * limit, BW_EINPUT,
+             "%s = %g is %.3g of the longest stable step, %g; take a longer one", key, every,
+             every / limit, limit);
+  return BW_OK;
+}
+
+static bw_status check_intervals(const driver *r)
+{
+  const bw_scene_config *c = &r->scene->config;
+  BW_TRY(check_interval(r, "output.sample_every", c->output.sample_every));
+  BW_TRY(check_interval(r, "output.picture_every", c->output.picture_every));
+  BW_TRY(check_interval(r, "output.checkpoint_every", r->checkpoint));
+  for (int g = 0; g < c->n_gauges; g++) {
+    char key[128];
+    snprintf(key, sizeof key, "gauges.%s.every", c->gauges[g].name);
+    BW_TRY(check_interval(r, key, c->gauges[g].every));
+  }
+  return BW_OK;
+}
+
 static bw_status set_intervals(driver *r)
 {
   const bw_scene_output *o = &r->scene->config.output;
@@ -43,9 +72,10 @@ static bw_status set_intervals(driver *r)
   r->sample = o->sample_every;
   /* Two hundred rows, or one every fifty steps where the end is not known. */
   if (isnan(r->sample)) r->sample = isnan(end) ? 50.0 * bw_scene__limit(r->scene) : end / 200.0;
+  const bool number = unit != o->checkpoint_every && isfinite(every);
   unit += strspn(unit, " ");
   BW_REQUIRE(
-      every >= 0.0 && (*unit == '\0' || strcmp(unit, "s") == 0), BW_EINPUT,
+      number && every >= 0.0 && (*unit == '\0' || strcmp(unit, "s") == 0), BW_EINPUT,
       "output.checkpoint_every = %s: must be a time of the wall clock, as 600 s, or a number "
       "in units of the scene's time",
       o->checkpoint_every);
@@ -53,10 +83,7 @@ static bw_status set_intervals(driver *r)
     r->checkpoint_wall = every;
   else
     r->checkpoint = every;
-  BW_REQUIRE(isnan(end) || end / r->sample < 1e9, BW_EINPUT,
-             "output.sample_every = %g: %.3g rows to the end at %g; take a longer one", r->sample,
-             end / r->sample, end);
-  return BW_OK;
+  return check_intervals(r);
 }
 
 static double next_event(const driver *r)

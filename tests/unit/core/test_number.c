@@ -38,6 +38,9 @@ START_TEST(nearest_whole_number)
   ck_assert(bw_to_int64(9007199254740992.0, &n) && n == INT64_C(9007199254740992));
   ck_assert(bw_divides(0.3, 0.1, &n) && n == 3); /* 2.9999999999999996 */
   ck_assert(bw_divides(1e12, 1.0, &n) && n == BW_MOST_STEPS);
+  /* 1e-9 of the ratio, however large that is. */
+  ck_assert(bw_divides(1e6 * (1.0 + 1e-10), 1.0, &n) && n == 1000000);
+  ck_assert(!bw_divides(1e6 * (1.0 + 1e-8), 1.0, &n));
 }
 END_TEST
 

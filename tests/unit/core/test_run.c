@@ -223,6 +223,10 @@ START_TEST(timer_sums)
   bw_timer_stop(t, 1);
   burn(0.01);
   bw_timer_summary(t, comm, rows, &total);
+  double nothing = -1.0;
+  bw_timer_summary(NULL, comm, rows + 2, &nothing);
+  ck_assert_double_eq(nothing, 0.0);
+  bw_timer_summary(t, comm, rows, &total);
 
   mine[0] = bw_timer_seconds(t, 0);
   ck_assert_double_ge(mine[0], 0.02 * (me + 1));

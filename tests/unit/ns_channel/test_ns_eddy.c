@@ -256,6 +256,32 @@ START_TEST(steps_are_stable_and_the_same_on_all_ranks)
 }
 END_TEST
 
+/* The same in every plane of z. */
+static void plane_flow(const double x[3], double t, void *context, double u[3])
+{
+  const double two_pi = 2.0 * acos(-1.0), a = two_pi * x[0], b = two_pi * x[1] / 1.5;
+  (void)t, (void)context;
+  u[0] = sin(b) + 0.3 * cos(2 * b), u[1] = 0.7 * sin(a), u[2] = cos(a) * sin(b);
+}
+
+/* Planes of a flow that does not depend on z stay alike: every cell takes its part of the force. */
+START_TEST(planes_stay_alike)
+{
+  bw_ns_channel *ns = box(all, 1e-9, 0, BW_VISCOUS_EXPLICIT);
+  const bw_grid_view *g = ns->g;
+  bw_check_ok(bw_ns_channel_set_velocity(ns, plane_flow, NULL, 0.0));
+  for (int step = 0; step < 3; step++)
+    bw_check_ok(bw_ns_channel_step(ns, 0.5 * bw_ns_channel_dt_max(ns)));
+  for (int c = 0; c < 3; c++)
+    for (int k = 2; k <= g->m[2]; k++)
+      for (int j = 1; j <= g->m[1]; j++)
+        for (int i = 1; i <= g->m[0]; i++)
+          bw_check_near((double)ns->u[c][bw_at(g, i, j, k)], (double)ns->u[c][bw_at(g, i, j, 1)],
+                        NS_TOLERANCE(1e-12));
+  ns_free(&ns);
+}
+END_TEST
+
 static double energy_after(int steps)
 {
   const int n[3] = {N, N, N};
@@ -306,6 +332,7 @@ static const bw_check_test tests[] = {BW_TEST(linear_fields_have_the_published_v
                                       BW_TEST(it_vanishes_as_the_third_power_at_a_wall),
                                       BW_TEST(it_takes_energy_and_keeps_momentum),
                                       BW_TEST(steps_are_stable_and_the_same_on_all_ranks),
+                                      BW_TEST(planes_stay_alike),
                                       BW_TEST(it_is_of_third_order_in_time),
                                       BW_TEST(what_cannot_be_is_refused)};
 BW_CHECK_MAIN("ns_channel.eddy", tests)

@@ -278,6 +278,12 @@ static void refused(const bool periodic[3], const bw_ns_channel_config *c, const
   bw_grid_destroy(&grid);
 }
 
+static void brings_nothing(const double x[3], double t, void *context, double u[3])
+{
+  (void)x, (void)t, (void)context;
+  u[0] = u[1] = u[2] = 0.0;
+}
+
 START_TEST(contradictions_are_refused)
 {
   bw_ns_channel_config good = ns_config(closed, 0.1), c = good;
@@ -304,6 +310,9 @@ START_TEST(contradictions_are_refused)
   refused(closed, &c, "velocities count along");
   c.side[0][0].kind = BW_SIDE_INFLOW, c.side[0][0].profile = BW_PROFILE_CALLBACK;
   refused(closed, &c, "function");
+  c.side[0][0].function = brings_nothing, c.side[0][1].kind = BW_SIDE_WALL;
+  refused(closed, &c, "outflow"); /* nobody knows what a callback brings */
+  c.side[0][1].kind = BW_SIDE_OUTFLOW;
   c.side[0][0].profile = BW_PROFILE_POISEUILLE;
   refused(closed, &c, "bulk_velocity");
   c.side[0][0].bulk_velocity = 1, c.side[1][0].velocity[0] = 1;

@@ -99,6 +99,25 @@ START_TEST(units_and_axes)
              NRRD "type: uint8\nspace directions: (2,1e-3,0) (0,3,0) (0,0,4)\nencoding: raw\n\n",
              CONTENT, CELLS);
   must_refuse("u.nrrd", "axes have to be along");
+  /* All words for a unit that are read. */
+  static const struct {
+    const char *word;
+    double metres;
+  } words[] = {{"m", 1},         {"meter", 1},   {"metre", 1},     {"dm", 0.1},
+               {"cm", 0.01},     {"mm", 1e-3},   {"MM", 1e-3},     {"millimeter", 1e-3},
+               {"micron", 1e-6}, {"um", 1e-6},   {"nm", 1e-9},     {"micrometer", 1e-6},
+               {"km", 1e3},      {"in", 0.0254}, {"inch", 0.0254}, {"inches", 0.0254},
+               {"pm", 1e-12}};
+  for (size_t q = 0; q < sizeof words / sizeof words[0]; q++) {
+    char head[300];
+    snprintf(head, sizeof head,
+             NRRD "type: uint8\nspacings: 1 1 1\nunits: \"%s\" \"%s\" \"%s\"\nencoding: raw\n\n",
+             words[q].word, words[q].word, words[q].word);
+    write_file("u.nrrd", head, CONTENT, CELLS);
+    m = must_read("u.nrrd");
+    ck_assert_msg(fabs(m->about.unit / words[q].metres - 1) < 1e-15, "%s", words[q].word);
+    bw_shape_mask_destroy(&m);
+  }
   write_file("u.nrrd", NRRD "type: uint8\nunits: \"mm\" \"mm\" \"cm\"\n\n", CONTENT, CELLS);
   must_refuse("u.nrrd", "all axes need the same unit");
   write_file("u.nrrd", NRRD "type: uint8\nunits: \"mm\" \"mm\" \"s\"\n\n", CONTENT, CELLS);

@@ -188,6 +188,10 @@ START_TEST(steps_beyond_the_limit_are_refused)
   bw_solid_set_damping(pd, 0, 0, w * rho);
   const double damped = bw_solid_dt_max(pd) * w;
   bw_check_near(damped * damped + 2 * damped, 4, 1e-12);
+  /* Rates add up; relative to the mean velocity, neighbours that move against each other take twice
+   * as much. */
+  bw_solid_set_damping(pd, 0, 0.25 * w * rho, 0.5 * w * rho);
+  bw_check_near(bw_solid_dt_max(pd) * w, damped, 1e-12);
   bw_solid_destroy(&pd);
   c.integrator = BW_SOLID_RK3;
   pd = pd_make(bw_check_world(), &c, &body);

@@ -180,6 +180,18 @@ START_TEST(a_foundation_exempts_until_its_bonds_break)
 }
 END_TEST
 
+static void upwards(const double X0[3], double u[3])
+{
+  (void)X0;
+  u[1] = 1;
+}
+
+static void downwards(const double X0[3], double u[3])
+{
+  (void)X0;
+  u[1] = -1;
+}
+
 START_TEST(walls_that_make_no_sense_are_refused)
 {
   bw_solid_config c = pd_soft(BW_PD_3D);
@@ -194,6 +206,14 @@ START_TEST(walls_that_make_no_sense_are_refused)
   const bw_pd_wall in_body = {{0, 1, 0}, 0.3}, skew = {{0, 1, 1}, 0}, all[7] = {{{0}, 0}};
   bw_check_status(bw_solid_set_walls(pd, 1, &in_body), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "beyond the wall"));
+  /* Beyond it at first or now: either is enough. */
+  pd_set(pd, upwards, NULL);
+  bw_check_status(bw_solid_set_walls(pd, 1, &in_body), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "beyond the wall"));
+  pd_set(pd, downwards, NULL);
+  bw_check_status(bw_solid_set_walls(pd, 1, &floor_at_0), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "beyond the wall"));
+  pd_set(pd, NULL, NULL);
   bw_check_status(bw_solid_set_walls(pd, 1, &skew), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "unit"));
   bw_check_status(bw_solid_set_walls(pd, 7, all), BW_EINPUT);

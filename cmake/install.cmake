@@ -67,8 +67,29 @@ install(EXPORT Breakwater NAMESPACE bw:: FILE BreakwaterTargets.cmake
 # Headers of users, and those that the author of a law includes.
 file(GLOB headers CONFIGURE_DEPENDS modules/*/bw_*.h)
 list(APPEND headers modules/pd_body/pd_body.h modules/pd_body/pd_law.h modules/pd_body/pd_level.h
-     modules/pd_body/pd_springs.h modules/pd_body/pd_walk.h)
+     modules/pd_body/pd_springs.h modules/pd_body/pd_tensor_bound.h modules/pd_body/pd_walk.h)
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/breakwater)
+
+# A law is compiled for the blocks of the library it is linked with, whatever its own flags say. Which
+# of the shared libraries of BW_HWCAPS runs is known at its start only: there the linker refuses one
+# that does not fit (pd_law.h).
+separate_arguments(flags NATIVE_COMMAND "${CMAKE_C_FLAGS}")
+if(BW_NATIVE)
+  list(APPEND flags -march=native)
+endif()
+if(BW_PRECISION STREQUAL "single")
+  list(APPEND flags -DBW_SINGLE)
+endif()
+file(WRITE ${CMAKE_BINARY_DIR}/generated/lanes.c "#include \"pd_body.h\"\nlanes BW_PD_LANES\n")
+execute_process(COMMAND ${CMAKE_C_COMPILER} ${flags} -E -P -I modules/core -I modules/particles
+                        -I modules/pd_body ${CMAKE_BINARY_DIR}/generated/lanes.c
+                WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE lanes COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCH "lanes ([248])" lanes "${lanes}")
+set(lanes BW_PD_LANES=${CMAKE_MATCH_1})
+target_compile_definitions(bw_pd_body PUBLIC $<INSTALL_INTERFACE:${lanes}>)
+if(NOT BW_HWCAPS)
+  target_compile_definitions(breakwater_library PUBLIC $<INSTALL_INTERFACE:${lanes}>)
+endif()
 
 # A manual page of each program is what it says to --help.
 find_program(HELP2MAN help2man)
@@ -117,6 +138,9 @@ string(REGEX REPLACE "[^/]+" ".." pc_up "${pc_lib}/pkgconfig")
 set(pc_define "")
 if(BW_PRECISION STREQUAL "single")
   set(pc_define " -DBW_SINGLE")
+endif()
+if(NOT BW_HWCAPS)
+  string(APPEND pc_define " -D${lanes}")
 endif()
 configure_file(cmake/breakwater.pc.in ${CMAKE_BINARY_DIR}/generated/breakwater.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/generated/breakwater.pc

@@ -28,7 +28,8 @@
 extern "C" {
 #endif
 
-/* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). */
+/* Owners per block: the width of the processor's vectors (at most 8: masks are bytes). What is
+ * built on an installed library gets the number of that library (cmake/install.cmake). */
 #ifdef BW_SINGLE
 #define BW_PD_WIDE   8
 #define BW_PD_NARROW 4
@@ -36,6 +37,7 @@ extern "C" {
 #define BW_PD_WIDE   4
 #define BW_PD_NARROW 2
 #endif
+#ifndef BW_PD_LANES
 #if defined(__AVX512VL__)
 #define BW_PD_LANES 8
 #elif defined(__AVX__)
@@ -43,6 +45,12 @@ extern "C" {
 #else
 #define BW_PD_LANES BW_PD_NARROW
 #endif
+#endif
+
+/* A name with this number in it, defined by the library: see pd_law.h. */
+#define BW_PD_LANES_NAME_OF(lanes) bw_pd_body_of_##lanes##_lanes
+#define BW_PD_LANES_NAME(lanes)    BW_PD_LANES_NAME_OF(lanes)
+extern const char BW_PD_LANES_NAME(BW_PD_LANES);
 
 enum { BW_PD_PAD = 16 }; /* unused places before and after a storage array: loads may overrun */
 

@@ -13,6 +13,10 @@
 extern "C" {
 #endif
 
+/* Blocks are as wide as the library was compiled for. A law compiled for another width would read
+ * them wrongly, so the linker does not find this name: compile it with the library's flags. */
+static const char *const bw_pd_law_fits __attribute__((used)) = &BW_PD_LANES_NAME(BW_PD_LANES);
+
 enum { BW_PD_SWEEPS = 4 }; /* passes of one evaluation, at most */
 
 /* A key of the law's options, for lists of what a law can be told (bw_solid_laws_describe). */

@@ -2,6 +2,8 @@
 #include "bw_memory.h"
 #include "pd_body.h"
 
+const char BW_PD_LANES_NAME(BW_PD_LANES) = BW_PD_LANES;
+
 /* A storage array with room for overrunning loads on both sides; zero there. */
 bw_status bw_pd_body_storage_array(size_t n, bw_real **out)
 {

@@ -104,7 +104,7 @@ bw_status bw_shape__charts_sphere(const bw_shape *s, int dims, const bw_shape__e
 bw_status bw_shape__charts_pores(const bw_shape *s, int dims, const bw_shape__extent *e,
                                  double spacing, bw_shape__take take, void *to)
 {
-  const bw_shape__basis *basis = bw_shape__rows[s->kind].basis;
+  const bw_shape__basis *basis = bw_shape__basis_of(s->kind);
   for (int q = 0; q < basis->count; q++) {
     double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dims; d++) {

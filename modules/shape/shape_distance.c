@@ -1,8 +1,18 @@
-/* Signed distances: of each kind of shape with its gradient, and of bodies. */
-#include "bw_shape_surface.h"
+/* Signed distance of each kind of shape, with its gradient; shape_composed.c has that of bodies. */
 #include "shape_internal.h"
 
 #include <math.h>
+
+const bw_shape__basis *bw_shape__basis_of(bw_shape_kind kind)
+{
+  static const bw_shape__basis sc = {1, {{0.0, 0.0, 0.0}}};
+  static const bw_shape__basis bcc = {2, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}}};
+  static const bw_shape__basis fcc = {
+      4, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}}};
+  if (kind == BW_SHAPE_PORES_SC) return &sc;
+  if (kind == BW_SHAPE_PORES_BCC) return &bcc;
+  return kind == BW_SHAPE_PORES_FCC ? &fcc : NULL;
+}
 
 /* Distance from a point or an axis, less the radius; the gradient leads away from it. */
 static double round_distance(const double z[3], int dims, int skip, double radius, double g[3])
@@ -53,7 +63,7 @@ double bw_shape__distance_box(const bw_shape *s, int dims, const double y[3], do
 /* The nearest pore of the lattice: that of the nearest image of each basis point. */
 double bw_shape__distance_pores(const bw_shape *s, int dims, const double y[3], double g[3])
 {
-  const bw_shape__basis *basis = bw_shape__rows[s->kind].basis;
+  const bw_shape__basis *basis = bw_shape__basis_of(s->kind);
   double least = INFINITY;
   for (int q = 0; q < basis->count; q++) {
     double z[3] = {0.0, 0.0, 0.0}, h[3];
@@ -75,71 +85,4 @@ double bw_shape__distance_mask(const bw_shape *s, int dims, const double y[3], d
   (void)s, (void)dims, (void)y;
   g[0] = g[1] = g[2] = NAN;
   return NAN;
-}
-
-double bw_shape__distance(const bw_shape *s, int dims, const double x[3], double g[3])
-{
-  double y[3], h[3];
-  const double sign = s->outside ? -1.0 : 1.0;
-  const double own = bw_shape__rows[s->kind].distance(s, dims, bw_shape__own(s, x, y), h);
-  for (int d = 0; d < 3; d++) {
-    g[d] = sign * h[d];
-    if (s->frame == NULL) continue;
-    g[d] = 0.0;
-    for (int a = 0; a < 3; a++)
-      g[d] += sign * h[a] * s->frame->axes[a][d];
-  }
-  return sign * own;
-}
-
-double bw_shape__composed(int count, const bw_shape shape[], int dims, const double x[3],
-                          double g[3])
-{
-  double distance = INFINITY, h[3];
-  g[0] = g[1] = g[2] = 0.0;
-  for (int q = 0; q < count; q++) {
-    const double sign = shape[q].remove ? -1.0 : 1.0;
-    const double d = sign * bw_shape__distance(&shape[q], dims, x, h);
-    const bool decides = shape[q].remove ? d > distance : d < distance;
-    if (!decides && !isnan(d)) continue;
-    distance = d;
-    for (int k = 0; k < 3; k++)
-      g[k] = sign * h[k];
-    if (isnan(d)) break;
-  }
-  return distance;
-}
-
-/* The composition, and the ends of what is endless: where the other shapes that are added end. */
-static double of_body(int count, const bw_shape shape[], int dims, const double x[3], double g[3])
-{
-  double distance = bw_shape__composed(count, shape, dims, x, g);
-  bool endless = false, cut[3];
-  for (int q = 0; q < count; q++)
-    endless = endless || (!shape[q].remove && bw_shape__rows[shape[q].kind].endless) ||
-              (!shape[q].remove && shape[q].outside);
-  if (!endless) return distance;
-  bw_shape__extent space;
-  bw_shape__space(count, shape, dims, &space, cut);
-  for (int d = 0; d < dims; d++) {
-    if (!cut[d] || !isfinite(space.lower[d])) continue;
-    const double below = space.lower[d] - x[d], above = x[d] - space.upper[d];
-    if (!(fmax(below, above) > distance)) continue;
-    distance = fmax(below, above);
-    g[0] = g[1] = g[2] = 0.0;
-    g[d] = above > below ? 1.0 : -1.0;
-  }
-  return distance;
-}
-
-double bw_shape_distance(int count, const bw_shape shape[], bool planar, const double x[3])
-{
-  double g[3];
-  return of_body(count, shape, planar ? 2 : 3, x, g);
-}
-
-void bw_shape_normal(int count, const bw_shape shape[], bool planar, const double x[3],
-                     double normal[3])
-{
-  (void)of_body(count, shape, planar ? 2 : 3, x, normal);
 }

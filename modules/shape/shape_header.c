@@ -244,6 +244,7 @@ bw_status bw_shape__open_header(bw_shape__header *h, double low, double high, bw
   char data[2 * sizeof h->data];
   const char *path = h->path;
   *out = NULL;
+  /* Is all said that is needed to read the voxels? */
   BW_REQUIRE(h->has_type && h->has_size, BW_EINPUT, "%s: the header lacks %s%s%s", h->path,
              h->has_type ? "the size" : "the type of the voxels",
              h->about.not_read[0] != 0 ? "; it has keys that are not known: " : "",
@@ -253,6 +254,7 @@ bw_status bw_shape__open_header(bw_shape__header *h, double low, double high, bw
              "%s: the header does not say in which order the bytes of a number are", h->path);
   BW_REQUIRE(!h->compressed || !h->at_end, BW_EINPUT,
              "%s: packed voxels do not tell where they begin, as they end the file", h->path);
+  /* Where they are: in a file beside the header, at the end of a file, or behind the header. */
   if (!h->attached) {
     BW_TRY(beside(h, sizeof data, data));
     path = data;
@@ -264,6 +266,7 @@ bw_status bw_shape__open_header(bw_shape__header *h, double low, double high, bw
     BW_TRY(bw_shape__open_packed(path, h->attached ? h->end : 0, &h->v, low, high, out));
   else
     BW_TRY(bw_shape_mask_open_raw(path, &h->v, low, high, out));
+  /* The mask keeps what the header told of its place and its directions. */
   (*out)->about = h->about;
   for (int d = 0; d < 3; d++)
     (*out)->source->flipped[d] = h->reversed[d];

@@ -46,11 +46,13 @@ typedef struct {
   /* The surface within the extent `e` (endless ones end there) in patches of about `spacing`. */
   bw_status (*charts)(const bw_shape *s, int dims, const bw_shape__extent *e, double spacing,
                       bw_shape__take take, void *to);
-  const bw_shape__basis *basis;
   bool needs_box, needs_radius, needs_pitch, needs_axis, needs_mask;
   bool endless; /* in some direction */
 } bw_shape__row;
 extern const bw_shape__row bw_shape__rows[BW_SHAPE_COUNT];
+
+/* Where the pores of a cell are, of a kind that has a pitch; NULL for the others. */
+const bw_shape__basis *bw_shape__basis_of(bw_shape_kind kind);
 
 double bw_shape__distance_box(const bw_shape *s, int dims, const double x[3], double g[3]);
 double bw_shape__distance_sphere(const bw_shape *s, int dims, const double x[3], double g[3]);

@@ -69,9 +69,10 @@ static extent bounds_cylinder(const bw_shape *s)
 
 /* Pores of one cubic lattice. The nearest image of each basis point is enough, also where pores
  * overlap. */
-static bool inside_pores(const bw_shape *s, int dims, const bw_shape__basis *basis,
-                         const double x[3])
+static bool inside_pores(const bw_shape *s, int dims, double tie, const double x[3])
 {
+  (void)tie;
+  const bw_shape__basis *basis = bw_shape__basis_of(s->kind);
   bool in = false;
   for (int q = 0; q < basis->count; q++) {
     double squared = 0.0;
@@ -83,29 +84,6 @@ static bool inside_pores(const bw_shape *s, int dims, const bw_shape__basis *bas
     in = in || within_radius(s, squared);
   }
   return in;
-}
-
-static const bw_shape__basis SC = {1, {{0.0, 0.0, 0.0}}};
-static const bw_shape__basis BCC = {2, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}}};
-static const bw_shape__basis FCC = {
-    4, {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}}};
-
-static bool inside_sc(const bw_shape *s, int dims, double tie, const double x[3])
-{
-  (void)tie;
-  return inside_pores(s, dims, &SC, x);
-}
-
-static bool inside_bcc(const bw_shape *s, int dims, double tie, const double x[3])
-{
-  (void)tie;
-  return inside_pores(s, dims, &BCC, x);
-}
-
-static bool inside_fcc(const bw_shape *s, int dims, double tie, const double x[3])
-{
-  (void)tie;
-  return inside_pores(s, dims, &FCC, x);
 }
 
 static extent bounds_endless(const bw_shape *s)
@@ -139,14 +117,14 @@ const bw_shape__row bw_shape__rows[BW_SHAPE_COUNT] = {
     [BW_SHAPE_CYLINDER] = {"cylinder", inside_cylinder, bounds_cylinder,
                            bw_shape__distance_cylinder, bw_shape__charts_cylinder,
                            .needs_radius = true, .needs_axis = true, .endless = true},
-    [BW_SHAPE_PORES_SC] = {"pores_sc", inside_sc, bounds_endless, bw_shape__distance_pores,
-                           bw_shape__charts_pores, &SC, .needs_radius = true, .needs_pitch = true,
+    [BW_SHAPE_PORES_SC] = {"pores_sc", inside_pores, bounds_endless, bw_shape__distance_pores,
+                           bw_shape__charts_pores, .needs_radius = true, .needs_pitch = true,
                            .endless = true},
-    [BW_SHAPE_PORES_BCC] = {"pores_bcc", inside_bcc, bounds_endless, bw_shape__distance_pores,
-                            bw_shape__charts_pores, &BCC, .needs_radius = true, .needs_pitch = true,
+    [BW_SHAPE_PORES_BCC] = {"pores_bcc", inside_pores, bounds_endless, bw_shape__distance_pores,
+                            bw_shape__charts_pores, .needs_radius = true, .needs_pitch = true,
                             .endless = true},
-    [BW_SHAPE_PORES_FCC] = {"pores_fcc", inside_fcc, bounds_endless, bw_shape__distance_pores,
-                            bw_shape__charts_pores, &FCC, .needs_radius = true, .needs_pitch = true,
+    [BW_SHAPE_PORES_FCC] = {"pores_fcc", inside_pores, bounds_endless, bw_shape__distance_pores,
+                            bw_shape__charts_pores, .needs_radius = true, .needs_pitch = true,
                             .endless = true},
     [BW_SHAPE_MASK] = {"mask", inside_mask, bounds_mask, bw_shape__distance_mask,
                        bw_shape__charts_mask, .needs_mask = true},

@@ -90,6 +90,7 @@ static bw_status page_type(const bw_shape__tiff *t, bw_shape__tiff_page *p)
       {SAMPLEFORMAT_INT, 64, BW_SHAPE_VOXEL_I64},   {SAMPLEFORMAT_IEEEFP, 32, BW_SHAPE_VOXEL_F32},
       {SAMPLEFORMAT_IEEEFP, 64, BW_SHAPE_VOXEL_F64}};
   uint16_t format = SAMPLEFORMAT_UINT, samples = 1;
+  /* What the page says of its numbers; a page that says nothing has whole ones without sign. */
   TIFFGetFieldDefaulted(t->tif, TIFFTAG_BITSPERSAMPLE, &p->bits);
   TIFFGetFieldDefaulted(t->tif, TIFFTAG_SAMPLEFORMAT, &format);
   TIFFGetFieldDefaulted(t->tif, TIFFTAG_SAMPLESPERPIXEL, &samples);
@@ -98,6 +99,7 @@ static bw_status page_type(const bw_shape__tiff *t, bw_shape__tiff_page *p)
              "%s: page %d has %d numbers per voxel; one is read: save it in "
              "shades of grey",
              t->path, t->page, samples);
+  /* One number per voxel: is it of a kind that the masks know? */
   for (size_t q = 0; q < sizeof types / sizeof types[0]; q++)
     if (types[q].format == format && types[q].bits == p->bits) {
       p->type = types[q].type;

@@ -5,7 +5,7 @@
 # usage: circles.sh SOURCE BUILD
 set -u
 source=$1 build=$2 bad=0
-knotted=' core coupler ns_channel pd_interface pd_material rigid scene shape ulph '
+knotted=' core coupler ns_channel pd_interface pd_material rigid scene ulph '
 
 # needs ARCHIVE: a line "file other" for every file that uses a function of another file of the archive
 needs() {

@@ -3,7 +3,7 @@
  * Three phases in one run, each ending in a checkpoint: the medium is held until the flow has
  * settled; it deforms, with breakage off and settling damping; breakage on.
  * Run:   mpirun -n 2 build/bin/porous_breakup cases/porous_breakup/porous_breakup.yaml
- * BUILD modules=coupler,shape */
+ * BUILD modules=coupler,shape,solid_tools */
 #include "bw_checkpoint.h"
 #include "bw_stop.h"
 #include "porous_case.h"

@@ -28,6 +28,23 @@ for folder in "$source"/modules/*/; do
     complain "modules/$(basename "$folder") has no row in tests/lint/modules.txt"
 done
 
+# CMakeLists.txt links what the row says, no more and no less. Rows "NAME MODULE MODULE ...", sorted.
+linked() {
+  tr '\n' ' ' <"$source/CMakeLists.txt" | grep -oE 'bw_module\([^)]*\)' |
+    sed -E 's/bw_module\(//; s/ (PRIVATE_LIBS|OPTIONS) .*//; s/ DEPENDS//; s/\)//' | ordered
+}
+ordered() {
+  while read -r name depends; do
+    # shellcheck disable=SC2046 # a list of words
+    echo "$name" $(echo "$depends" | tr -s ' ' '\n' | sort)
+  done | sort
+}
+linked >"$work/linked"
+rows | sed -E 's/\|[^|]*\|/ /' | ordered >"$work/named"
+diff "$work/linked" "$work/named" >"$work/differ" ||
+  complain "CMakeLists.txt (<) links other modules than tests/lint/modules.txt (>) names:
+$(cat "$work/differ")"
+
 # owner_check MODULE ALLOWED FILE WHAT: the names on standard input belong to allowed modules
 owner_check() {
   while read -r name; do

@@ -117,7 +117,10 @@ bw_status bw_scene__check_phases(const bw_scene_config *c)
   bw_scene__body_names(c, sizeof known, known);
   for (int q = 0; q < c->n_phases; q++) {
     const bw_scene_phase *p = &c->phases[q];
+    /* Phases follow each other: the end of this one is where the next one may begin. */
     BW_TRY(check_until(p, q, &end));
+    /* Who is held in this phase, and how many of them deform: those share one solid of the coupler,
+     * which is held as a whole. */
     int held = 0;
     for (const char *rest = p->hold; bw_scene__next_name(&rest, name);) {
       const int b = bw_scene__body_named(c, name);

@@ -89,6 +89,8 @@ static bw_status check_held(const bw_scene_config *c, const bw_scene_body *b,
     int d, end;
     BW_REQUIRE((h->by[0] != '\0') + (h->side[0] != '\0') + h->has_box == 1, BW_EINPUT,
                "bodies.%s.held.%d: give one of by, side and box", b->name, q);
+    /* Held by a body: its particles are prescribed ones of the same lattice, so it has to have that
+     * spacing. */
     const int by = bw_scene__body_named(c, h->by);
     BW_REQUIRE(h->by[0] == '\0' || (by >= 0 && !bw_scene__deforms(&c->bodies[by])), BW_EINPUT,
                "bodies.%s.held.%d.by = %s: there is no such body that is fixed or prescribed",
@@ -98,6 +100,7 @@ static bw_status check_held(const bw_scene_config *c, const bw_scene_body *b,
                "bodies.%s.held.%d.by = %s: they share a lattice, but their spacings are %g and %g; "
                "make them equal",
                b->name, q, h->by, b->spacing, c->bodies[by].spacing);
+    /* Held by a side or a box: there has to be something of the body. */
     BW_REQUIRE(h->side[0] == '\0' || bw_scene__side_named(h->side, &d, &end), BW_EINPUT,
                "bodies.%s.held.%d.side = %s: must be one of x_lower, x_upper, y_lower, y_upper, "
                "z_lower, z_upper",

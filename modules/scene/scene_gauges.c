@@ -104,6 +104,7 @@ static bw_status take_aim(bw_scene *s, int gauge)
   for (int q = 0; q < s->n_solids; q++)
     BW_THEN(st, BW_ALLOCATE(&aim->particle[q], s->solid[q].n));
   BW_TRY(bw_comm_agree(s->comm, st));
+  /* Every rank notes its own particles that the gauge looks at. */
   for (int q = 0; q < s->n_solids; q++) {
     const double ds = bw_solid_settings(s->solid[q].solid)->ds;
     for (size_t i = 0; i < s->solid[q].n; i++) {
@@ -115,6 +116,8 @@ static bw_status take_aim(bw_scene *s, int gauge)
       aim->particle[q][aim->n[q]++] = (int32_t)i;
     }
   }
+  /* Of all ranks: the nearest ones, and how many there are. A gauge of none would print nothing for
+   * ever, so it is refused. */
   if (bw_scene__given(g->nearest)) keep_nearest(s, g, aim);
   for (int q = 0; q < s->n_solids; q++)
     aim->count += aim->n[q];
@@ -143,6 +146,7 @@ bw_status bw_scene__gauges_create(bw_scene *s)
 {
   int n = 0;
   all_columns(s, NULL, &n);
+  /* Counted, now there is room for columns, their names and a row. */
   bw_status st = BW_ALLOCATE(&s->column, (size_t)n);
   BW_THEN(st, BW_ALLOCATE(&s->names, (size_t)n));
   BW_THEN(st, BW_ALLOCATE(&s->row, (size_t)n));
@@ -161,6 +165,7 @@ bw_status bw_scene__gauges_create(bw_scene *s)
     else
       name_column(s, &s->column[k], name);
   }
+  /* Columns are named. Particles are looked up once, as they stay with their rank. */
   for (int g = 0; g < s->config.n_gauges; g++)
     if (looks_at_particles(s, &s->config.gauges[g])) {
       BW_REQUIRE(

@@ -72,6 +72,7 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
              "bodies.%s.rigid: the body is %s; leave the block out, or make it rigid", b->name,
              bw_scene__word(bw_scene__motion_words, b->motion));
   if (b->motion != BW_SCENE_RIGID) return BW_OK;
+  /* What this build cannot do together. */
   BW_REQUIRE(!bw_scene__has_fluid(c) || !bw_scene__any_deforms(c), BW_EINPUT,
              "bodies.%s.motion = rigid: rigid bodies beside others that deform, in a flow: not in "
              "this build; make all that moves rigid, or leave the fluid out",
@@ -80,6 +81,7 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
              "bodies.%s.material = %s: there is no such material, and no mass; give the material, "
              "or rigid.mass",
              b->name, b->material[0] != '\0' ? b->material : "(nothing)");
+  /* A body turns freely, about one axis, or not at all (rigid_internal.h). */
   BW_REQUIRE(bw_scene__held_bits(b->rigid.held, &bits, wrong), BW_EINPUT,
              "bodies.%s.rigid.held = %s: must be of x, y, z, turn_x, turn_y, turn_z, turn", b->name,
              wrong);
@@ -87,6 +89,7 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
   BW_REQUIRE(bw_scene__planar(c) || (turns != 1 && turns != 2 && turns != 4), BW_EINPUT,
              "bodies.%s.rigid.held = %s: two free turns are no hinge; hold none, two, or all three",
              b->name, b->rigid.held);
+  /* Mass and points come from the true surface, which images have not. */
   for (int p = 0; p < b->n_shape; p++)
     BW_REQUIRE(!b->shape[p].has_image && !b->shape[p].has_stl, BW_EINPUT,
                "bodies.%s.shape.%d: an image or a surface of triangles cannot be rigid in this "

@@ -67,12 +67,15 @@ static bw_status solid_state(bw_scene *s, int q, bw_checkpoint *ck, bool read)
   char rows_name[48], sums_name[48], bits_name[48];
   double *rows = NULL, sums[BW_SOLID_RESTART_SUMS];
   uint8_t *bits = NULL;
+  /* Solids have no names of their own: a restart finds them by their number, which follows from the
+   * scene. */
   snprintf(rows_name, sizeof rows_name, "solid%d/rows", q);
   snprintf(sums_name, sizeof sums_name, "solid%d/sums", q);
   snprintf(bits_name, sizeof bits_name, "solid%d/bonds", q);
   bw_status st = BW_ALLOCATE(&rows, n * width);
   BW_THEN(st, BW_ALLOCATE(&bits, n * bytes));
   st = bw_comm_agree(s->comm, st);
+  /* Rows go by global id, so that any number of ranks may read them. */
   if (st == BW_OK && !read) {
     bw_solid_get_restart(solid, rows, sums);
     bw_solid_get_bits(solid, bits);
@@ -85,6 +88,7 @@ static bw_status solid_state(bw_scene *s, int q, bw_checkpoint *ck, bool read)
     BW_THEN(st, bw_checkpoint_get_numbers(ck, sums_name, BW_SOLID_RESTART_SUMS, sums));
     BW_THEN(st,
             bw_checkpoint_get_table(ck, bits_name, total, n, id, (int)bytes, BW_CK_UINT8, bits));
+    /* What was read is the state from here on. */
     BW_THEN(st, bw_solid_set_bits(solid, bits));
     BW_THEN(st, bw_solid_set_restart(solid, rows, sums));
     s->solid[q].steady = false;

@@ -95,6 +95,7 @@ static void put_table(FILE *out, const bw_config_field fields[], bool named)
 {
   bool first = true;
   fputs("{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{", out);
+  /* One property per key; its help stands beside what may be written there. */
   for (const bw_config_field *f = fields; f->key != NULL; f++) {
     if (named && strcmp(f->key, "name") == 0) continue;
     if (!first) fputs(",\n", out);
@@ -111,6 +112,7 @@ static void put_table(FILE *out, const bw_config_field fields[], bool named)
       put_value(out, f);
     fputs("]}", out);
   }
+  /* The keys that have to be given. */
   fputs("},\"required\":[", out);
   first = true;
   for (const bw_config_field *f = fields; f->key != NULL; f++) {

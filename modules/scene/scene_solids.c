@@ -240,18 +240,20 @@ static bw_status cut_cracks(bw_scene *s, bw_scene__solid *q)
 static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
 {
   int strangers[2] = {-1, -1};
-  bw_pd_link link[1024];
+  bw_pd_link *link = NULL;
   uint8_t *group = NULL, *own = NULL;
   if (q->n_bodies < 2) return BW_OK;
   const size_t all = bw_solid_get_extended(q->solid).n;
   bw_status st = BW_ALLOCATE(&group, all);
   BW_THEN(st, BW_ALLOCATE(&own, q->n));
+  BW_THEN(st, BW_ALLOCATE(&link, (size_t)bw_solid_max_family(q->solid)));
   st = bw_comm_agree(s->comm, st);
+  /* Groups of particles tell their bodies; a partner may be another rank's. */
   for (size_t i = 0; st == BW_OK && i < q->n; i++)
     own[i] = (uint8_t)bw_solid_group(q->solid, i);
   if (st == BW_OK) bw_solid_fill_extended(q->solid, 1, own, group);
   for (size_t i = 0; st == BW_OK && i < q->n; i++) {
-    const int n = bw_solid_max_family(q->solid) <= 1024 ? bw_solid_links(q->solid, i, link) : 0;
+    const int n = bw_solid_links(q->solid, i, link);
     for (int k = 0; k < n; k++) {
       const int a = q->body_of[own[i]], b = q->body_of[group[link[k].neighbour]];
       const bool fine =
@@ -262,6 +264,8 @@ static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
   }
   bw_release(&group);
   bw_release(&own);
+  bw_release(&link);
+  /* Only ranks where the two meet know of it: all agree. */
   if (st == BW_OK && strangers[0] >= 0)
     st = BW_FAIL(BW_EINPUT,
                  "bodies.%s and bodies.%s are nearer than a horizon, %g, and would be bonded; move "

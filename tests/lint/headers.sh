@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every public header (modules/*/bw_*.h) compiles alone, without a warning, as C11 and as C++17;
 # gives its functions C linkage; and needs no mpi.h, but for the one that hands out a communicator
-# and the one that core and grid send messages with.
+# and the one that core and grid send messages with. Headers that are installed include no others.
 # usage: headers.sh SOURCE
 cd "$1" || exit 2
 may_need_mpi='modules/core/bw_comm_mpi.h modules/core/bw_message.h'
@@ -47,4 +47,14 @@ for header in modules/*/bw_*.h; do
     complain "$header declares functions without BW_BEGIN_DECLS ... BW_END_DECLS (bw_decls.h)"
   fi
 done
+
+# What is installed: public headers, and those that cmake/install.cmake names for authors of laws.
+{ ls modules/*/bw_*.h; grep -oE 'modules/[a-z_]+/[a-z_]+\.h' cmake/install.cmake; } >"$work/installed"
+while read -r header; do
+  grep -ohE '^ *# *include +"[^"]+"' "$header" | sed 's/.*"\(.*\)"/\1/' | while read -r included; do
+    grep -q "/$included\$" "$work/installed" ||
+      echo "$header is installed and includes $included, which is not: see cmake/install.cmake"
+  done
+done <"$work/installed" >"$work/missing"
+[ ! -s "$work/missing" ] || complain "$(cat "$work/missing")"
 exit $bad

@@ -20,7 +20,7 @@
  *                While it breaks (work_breaking): reported. Undamped waves of the lattice are
  *                shorter than the step, and markers move at the velocity of its beginning.
  * broken_bond_fraction, fragments   no numbers in POROUS, where S1 stays whole: reported.
- * BUILD modules=coupler,shape case=porous_breakup
+ * BUILD modules=coupler,shape,solid_tools case=porous_breakup
  * TEST  ranks=1 timeout=7200 */
 #include "bw_memory.h"
 #include "bw_validation.h"

@@ -26,7 +26,7 @@ typedef enum {
 /* A law and its options. What a law does not read has to be left at its default. */
 typedef struct {
   int law;               /* bw_solid_law_row                                  default bond */
-  double poisson_ratio;  /* not bonds [-]                default NaN: that of bonds */
+  double poisson_ratio;  /* not bonds [-]; config.nu says the same     default NaN: that of bonds */
   int influence;         /* ordinary: bw_pd_state_influence              default constant */
   int weight;            /* correspondence: bw_pd_state_weight              default cubic */
   int elastic;           /* correspondence: bw_pd_material_elastic    default neo-Hookean */

@@ -39,6 +39,9 @@ static bw_status check_config(const bw_solid_config *c)
     BW_REQUIRE(value[q] >= 0 && isfinite(value[q]), BW_EINPUT,
                "solid: %s = %g must be zero or positive", name[q], value[q]);
   BW_TRY(bw_solid_law_check(&c->choice));
+  BW_REQUIRE(isnan(c->nu) || isnan(c->choice.poisson_ratio) || c->nu == c->choice.poisson_ratio,
+             BW_EINPUT, "solid: nu = %g, but choice.poisson_ratio = %g; give one of them", c->nu,
+             c->choice.poisson_ratio);
   const bool bonds = c->law == NULL && c->choice.law == BW_SOLID_BOND;
   BW_REQUIRE(bonds || c->law != NULL || c->surface_correction <= BW_PD_SURFACE_VOLUME, BW_EINPUT,
              "solid: surface_correction = %d is of bonds; families at faces are whole in a "

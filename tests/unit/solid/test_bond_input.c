@@ -100,6 +100,13 @@ static void flat_sites(bw_solid_config *c)
   c->geometry = BW_PD_PLANE_STRESS;
 }
 
+static void two_ratios(bw_solid_config *c)
+{
+  c->choice.law = BW_SOLID_ORDINARY;
+  c->nu = 0.25;
+  c->choice.poisson_ratio = 0.4;
+}
+
 static const struct {
   spoil spoil;
   const char *word;
@@ -113,6 +120,7 @@ static const struct {
            {small_m, "horizon_ratio = 0.5"},
            {nu_03, "leave nu out"},
            {nu_third, "1/4"},
+           {two_ratios, "choice.poisson_ratio = 0.4"},
            {linear, "exact"},
            {geometry, "geometry = 7"},
            {surface, "surface_correction = 9"},

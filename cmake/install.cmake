@@ -98,9 +98,8 @@ if(HELP2MAN AND NOT BW_SANITIZE)
   foreach(program ${programs})
     set(page ${CMAKE_BINARY_DIR}/man/${program}.1)
     add_custom_command(OUTPUT ${page}.gz DEPENDS ${program}
-      COMMAND ${CMAKE_COMMAND} -E env ${BW_MPI_ENVIRONMENT} ${HELP2MAN} --no-info --output=${page}
-              --name=${program} --version-string=${PROJECT_VERSION} $<TARGET_FILE:${program}>
-      COMMAND gzip -9nf ${page})
+      COMMAND ${CMAKE_COMMAND} -E env ${BW_MPI_ENVIRONMENT} sh ${PROJECT_SOURCE_DIR}/cmake/manual.sh
+              ${HELP2MAN} ${PROJECT_VERSION} $<TARGET_FILE:${program}> ${page})
     list(APPEND pages ${page}.gz)
   endforeach()
   add_custom_target(man ALL DEPENDS ${pages})

@@ -159,6 +159,19 @@ START_TEST(too_near)
       "elastic}\nphases: {until: 1}\n");
   ck_assert_ptr_null(s);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "nearer than a horizon"));
+  /* In families of more than a thousand partners, too. */
+  s = scene_of(
+      "domain: {length: [1.6, 0.8, 0.8], cells: [16, 8, 8]}\n"
+      "fluid:\n  density: 1\n  viscosity: 0.05\n  sides:\n"
+      "    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n" WALLS
+      "    z: {lower: {kind: wall}, upper: {kind: wall}}\n"
+      "materials: {m: {density: 10, young_modulus: 1000}}\nnumerics: {horizon_ratio: 6}\n"
+      "bodies:\n  a: {shape: {box: {from: [0.4, 0.3, 0.3], to: [0.6, 0.5, 0.5]}}, material: m,\n"
+      "      motion: elastic}\n"
+      "  b: {shape: {box: {from: [0.9, 0.3, 0.3], to: [1.1, 0.5, 0.5]}}, material: m,\n"
+      "      motion: elastic}\nphases: {until: 1}\n");
+  ck_assert_ptr_null(s);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "nearer than a horizon"));
 }
 END_TEST
 

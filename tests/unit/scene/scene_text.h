@@ -14,8 +14,10 @@ static inline bw_scene *scene_of(const char *text)
   bw_comm *world = bw_check_world();
   bw_scene_config *c = NULL;
   bw_scene *scene = NULL;
-  char path[64];
-  snprintf(path, sizeof path, "test_scene_np%d.yaml", bw_comm_size(world));
+  char path[128];
+  /* Tests of several programs may run at once. */
+  const char *program = strrchr(__BASE_FILE__, '/') + 1;
+  snprintf(path, sizeof path, "%s_np%d.yaml", program, bw_comm_size(world));
   if (bw_comm_rank(world) == 0) {
     FILE *out = fopen(path, "w");
     ck_assert_ptr_nonnull(out);

@@ -67,7 +67,7 @@ install(EXPORT Breakwater NAMESPACE bw:: FILE BreakwaterTargets.cmake
 # Headers of users, and those that the author of a law includes.
 file(GLOB headers CONFIGURE_DEPENDS modules/*/bw_*.h)
 list(APPEND headers modules/pd_body/pd_body.h modules/pd_body/pd_law.h modules/pd_body/pd_level.h
-     modules/pd_body/pd_springs.h modules/pd_body/pd_tensor_bound.h modules/pd_body/pd_walk.h)
+     modules/pd_body/pd_refine.h modules/pd_body/pd_springs.h modules/pd_body/pd_tensor_bound.h modules/pd_body/pd_walk.h)
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/breakwater)
 
 # A law is compiled for the blocks of the library it is linked with, whatever its own flags say. Which

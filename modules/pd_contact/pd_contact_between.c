@@ -68,6 +68,10 @@ static bw_status check(int n, bw_pd_body *const body[])
 {
   BW_REQUIRE(n >= 1, BW_EINPUT, "contact: %d bodies; at least 1", n);
   for (int q = 0; q < n; q++) {
+    BW_REQUIRE(body[q]->finest == 0, BW_EINPUT,
+               "contact: body %d has particles of several levels; contact knows one spacing of a "
+               "body: leave its boxes out",
+               q);
     BW_TRY(check_period(body[q], q));
     for (int p = 0; p < q; p++)
       BW_TRY(check_two(body[p], body[q], q));

@@ -181,6 +181,7 @@ enum {
   COL_LEFT,
   COL_WALLS,
   COL_LEAK = COL_WALLS + 3,
+  COL_TORTUOSITY,
   COL_COUNT
 };
 extern const char *const porous_columns[COL_COUNT]; /* names with units */

@@ -44,6 +44,7 @@ const char *const porous_columns[COL_COUNT] = {
     [COL_WALLS + 1] = "impulse_on_walls_y[N s]",
     [COL_WALLS + 2] = "impulse_on_walls_z[N s]",
     [COL_LEAK] = "leak_over_flux_past[-]",
+    [COL_TORTUOSITY] = "tortuosity[-]",
 };
 
 /* Mean of p/rho over the plane of cells i. */
@@ -228,6 +229,15 @@ static double permeability(const porous_run *p, double drop)
   return U * p->length * mu / (drop * p0); /* Q/S = U_b: the medium fills the section */
 }
 
+/* Of the stream through the medium's first box, where it stood or stands. */
+static double tortuosity(porous_run *p)
+{
+  const porous_config *q = p->config;
+  const double lower[3] = {q->medium.front, 0.0, 0.0};
+  const double upper[3] = {q->medium.front + p->length, q->domain.length[1], q->domain.length[2]};
+  return bw_ns_channel_tortuosity(p->fluid, 0, lower, upper);
+}
+
 bw_status porous_measure(porous_run *p, double row[COL_COUNT])
 {
   bw_coupler_report r;
@@ -239,6 +249,7 @@ bw_status porous_measure(porous_run *p, double row[COL_COUNT])
   row[COL_PERMEABILITY] = permeability(p, row[COL_DROP]);
   row[COL_SLIP] = r.slip_rms / p->config->fluid.bulk_velocity;
   row[COL_LEAK] = r.leak;
+  row[COL_TORTUOSITY] = tortuosity(p);
   bw_coupler_warn_slip(p->coupler, &r, bw_case_log(p->run));
   bw_coupler_warn_load(p->coupler, &r, bw_case_log(p->run));
   row[COL_BLOCKED] = (double)r.probes_blocked;

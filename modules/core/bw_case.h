@@ -97,8 +97,8 @@ bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUS
  * a whole or not at all. */
 typedef struct {
   FILE *out; /* where rank 0 writes to; NULL on the others */
-  char *text;
-  size_t length;
+  char *text;    /* what was written so far, on rank 0 */
+  size_t length; /* of it [bytes] */
 } bw_case_text;
 
 /* Begin one: t->out. BW_EMEM; end it also then. Collective. */

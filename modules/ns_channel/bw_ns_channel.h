@@ -189,6 +189,12 @@ typedef struct {
 /* Integrals of the present field, the same on all ranks. Collective. */
 bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns);
 
+/* Hydraulic tortuosity of the flow along an axis [-]: integral of |u| over that of u_axis (POROUS
+ * 2.7), over the cells whose centres are between two corners [L]; 1 of straight flow. Cells of a
+ * body at rest in it add nothing. NaN where nothing flows along the axis. Collective. */
+double bw_ns_channel_tortuosity(bw_ns_channel *ns, int axis, const double lower[3],
+                                const double upper[3]);
+
 /* One side of the present field. */
 typedef struct {
   double flux;      /* out of the box [L^3/T] */

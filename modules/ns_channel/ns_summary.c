@@ -63,6 +63,35 @@ bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns)
                          .outflow = sum[OUTFLOW]};
 }
 
+double bw_ns_channel_tortuosity(bw_ns_channel *ns, int axis, const double lower[3],
+                                const double upper[3])
+{
+  const bw_grid_view *g = ns->g;
+  double sum[2] = {0.0, 0.0}; /* of |u| and of its part along the axis, times volumes */
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++)
+      for (int i = 1; i <= g->m[0]; i++) {
+        const double x[3] = {(g->lo[0] + i - 0.5) * g->spacing[0], g->y_centre[g->lo[1] + j],
+                             (g->lo[2] + k - 0.5) * g->spacing[2]};
+        bool inside = true;
+        for (int c = 0; c < ns->components; c++)
+          inside = inside && x[c] > lower[c] && x[c] < upper[c];
+        if (!inside) continue;
+        /* At the centre: the mean of both faces of each component. */
+        const ptrdiff_t at = bw_at(g, i, j, k);
+        double square = 0.0, along = 0.0;
+        for (int c = 0; c < ns->components; c++) {
+          const double u = 0.5 * ((double)ns->u[c][at] + (double)ns->u[c][at - g->stride[c]]);
+          square += u * u;
+          if (c == axis) along = u;
+        }
+        sum[0] += sqrt(square) * ns->metrics.dyf[j];
+        sum[1] += along * ns->metrics.dyf[j];
+      }
+  bw_comm_sum(ns->comm, 2, sum);
+  return sum[1] != 0.0 ? sum[0] / fabs(sum[1]) : (double)NAN;
+}
+
 /* This rank's sum of du_c/dn (into the fluid) over the cells of a side, times their areas. A cell
  * has the mean of the component's two points. */
 static double slope(const bw_ns_channel *ns, int d, int s, int c)

@@ -258,7 +258,34 @@ START_TEST(re_entry_is_slowed)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(downwards_is_the_mirror_image_of_upwards),
-                                      BW_TEST(laminar_profiles_cross_unchanged),
-                                      BW_TEST(re_entry_is_slowed)};
+/* Straight to x = 0.6, slanted from there on. */
+static void bend(bw_ns_channel *ns)
+{
+  const bw_grid_view *g = ns->g;
+  for (int k = 0; k <= g->m[2]; k++)
+    for (int j = 0; j <= g->m[1]; j++)
+      for (int i = 1; i <= g->m[0]; i++) {
+        ns->u[0][bw_at(g, i - 1, j, k)] = ns->u[0][bw_at(g, i, j, k)] = 1;
+        ns->u[1][bw_at(g, i, j, k)] = i > g->m[0] / 2 ? (bw_real)0.75 : 0;
+      }
+}
+
+START_TEST(tortuosity_is_of_the_cells_between_the_corners)
+{
+  const double low[3] = {0.0, 0.2, 0.0}, straight[3] = {0.6, 0.8, 0.7}, high[3] = {1.2, 0.8, 0.7};
+  const through w = {.d = 0};
+  bw_ns_channel_config c = ns_config(closed, 0.02);
+  bw_ns_channel *ns = ns_solver(grid_through(bw_check_world(), &w, 7), &c);
+  bend(ns);
+  bw_check_near(bw_ns_channel_tortuosity(ns, 0, low, straight), 1.0, NS_TOLERANCE(1e-14));
+  /* sqrt(1 + 0.75^2) = 1.25 in the other half. */
+  bw_check_near(bw_ns_channel_tortuosity(ns, 0, low, high), 1.125, NS_TOLERANCE(1e-14));
+  ck_assert(isnan(bw_ns_channel_tortuosity(ns, 2, low, high)));
+  ns_free(&ns);
+}
+END_TEST
+
+static const bw_check_test tests[] = {
+    BW_TEST(downwards_is_the_mirror_image_of_upwards), BW_TEST(laminar_profiles_cross_unchanged),
+    BW_TEST(re_entry_is_slowed), BW_TEST(tortuosity_is_of_the_cells_between_the_corners)};
 BW_CHECK_MAIN("ns_channel.sides", tests)

@@ -96,7 +96,7 @@ bw_status bw_case_path(const bw_case *run, const char *name, char **path) BW_MUS
 /* A table or another text that the run writes into its folder: made in memory, then on the disk as
  * a whole or not at all. */
 typedef struct {
-  FILE *out; /* where rank 0 writes to; NULL on the others */
+  FILE *out;     /* where rank 0 writes to; NULL on the others */
   char *text;    /* what was written so far, on rank 0 */
   size_t length; /* of it [bytes] */
 } bw_case_text;

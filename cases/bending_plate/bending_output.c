@@ -93,7 +93,8 @@ static bw_status write_plate(bending_run *p, const char *path)
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
                                    {"velocity", BW_VTK_FLOAT64, 3, V},
                                    {"displacement", BW_VTK_FLOAT64, 3, U}};
-    st = bw_vtk_write_points(p->flow.comm, path, n, p->flow.X, 3, arrays);
+    st = bw_vtk_write_points(p->flow.comm, path, bw_ns_channel_time(p->flow.fluid), n, p->flow.X, 3,
+                             arrays);
   }
   bw_release(&U);
   bw_release(&V);
@@ -116,7 +117,7 @@ static bw_status write_fluid(bending_run *p, const char *path)
        .data = {bw_ns_channel_pressure(p->flow.fluid)},
        .scale = p->flow.config.fluid.density},
       {.name = "solid", .data = {solid}}};
-  BW_THEN(st, bw_vtk_write_grid(p->flow.grid, path, 3, fields));
+  BW_THEN(st, bw_vtk_write_grid(p->flow.grid, path, bw_ns_channel_time(p->flow.fluid), 3, fields));
   bw_release(&solid);
   return st;
 }

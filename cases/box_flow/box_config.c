@@ -1,6 +1,7 @@
 /* The keys of box_flow.yaml, their defaults, and every contradiction between them. */
 #include "box_case.h"
 
+#include "bw_ns_words.h"
 #include "bw_number.h"
 
 #include <limits.h>
@@ -17,30 +18,15 @@ static const bw_config_field domain_fields[] = {
     V(box_domain, faces, BW_OPTIONAL, BW_FILE, "",
       "path of a text file with the faces in y, from 0 to length[1]"),
     BW_CONFIG_END};
-static const bw_config_word viscous_words[] = {
-    {"explicit", BW_VISCOUS_EXPLICIT, "cheapest; the step is limited by dx^2/nu"},
-    {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "for cells that are thin in y"},
-    {"implicit", BW_VISCOUS_IMPLICIT, "no limit by the viscosity"},
-    {NULL, 0, NULL}};
 static const bw_config_field fluid_fields[] = {
     V(box_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T", "kinematic viscosity of the fluid"),
-    BW_CONFIG_WORD(box_fluid, viscous, BW_OPTIONAL, viscous_words,
+    BW_CONFIG_WORD(box_fluid, viscous, BW_OPTIONAL, bw_ns_viscous_words,
                    "how the viscous term advances in time"),
     BW_CONFIG_END};
-static const bw_config_word kind_words[] = {
-    {"periodic", BW_SIDE_PERIODIC, "both sides of a direction"},
-    {"wall", BW_SIDE_WALL, "no slip; velocity: it moves in its plane"},
-    {"free_slip", BW_SIDE_FREE_SLIP, "a plane of symmetry"},
-    {"inflow", BW_SIDE_INFLOW, "velocity given by profile"},
-    {"outflow", BW_SIDE_OUTFLOW, "convective"},
-    {NULL, 0, NULL}};
-static const bw_config_word profile_words[] = {
-    {"uniform", BW_PROFILE_UNIFORM, "velocity"},
-    {"poiseuille", BW_PROFILE_POISEUILLE, "laminar profile between the walls: bulk_velocity"},
-    {NULL, 0, NULL}};
 static const bw_config_field side_fields[] = {
-    BW_CONFIG_WORD(box_side, kind, BW_REQUIRED, kind_words, "what the side is to the fluid"),
-    BW_CONFIG_WORD(box_side, profile, BW_OPTIONAL, profile_words, "velocity profile of an inflow"),
+    BW_CONFIG_WORD(box_side, kind, BW_REQUIRED, bw_ns_side_words, "what the side is to the fluid"),
+    BW_CONFIG_WORD(box_side, profile, BW_OPTIONAL, bw_ns_profile_words,
+                   "velocity profile of an inflow"),
     V(box_side, velocity, BW_OPTIONAL, BW_ANY, "L/T",
       "velocity of a wall in its plane, or of a uniform inflow"),
     V(box_side, bulk_velocity, BW_OPTIONAL, BW_ANY, "L/T",
@@ -55,12 +41,8 @@ static const bw_config_field sides_fields[] = {
     BW_CONFIG_MAP_IF(box_sides, z, has_z, pair_fields,
                      "the sides normal to z; left out in two dimensions"),
     BW_CONFIG_END};
-static const bw_config_word forcing_words[] = {
-    {"flow_rate", BW_FORCING_FLOW_RATE, "value: bulk velocity [L/T]"},
-    {"gradient", BW_FORCING_GRADIENT, "value: -dp/dx over the density [L/T2]"},
-    {NULL, 0, NULL}};
 static const bw_config_field forcing_fields[] = {
-    BW_CONFIG_WORD(box_forcing, kind, BW_REQUIRED, forcing_words,
+    BW_CONFIG_WORD(box_forcing, kind, BW_REQUIRED, bw_ns_forcing_words,
                    "what is held constant along periodic x"),
     V(box_forcing, value, BW_REQUIRED, BW_ANY, "L/T or L/T2",
       "the bulk velocity, or the gradient -dp/dx over the density"),
@@ -129,7 +111,7 @@ static const char *word_of(const bw_config_word *words, int value)
 /* What is given has to have a meaning. */
 static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_ns_side *side)
 {
-  const char *dn = direction_name[d], *sn = end_name[s], *kind = word_of(kind_words, q->kind);
+  const char *dn = direction_name[d], *sn = end_name[s], *kind = word_of(bw_ns_side_words, q->kind);
   const bool moves = q->velocity[0] != 0.0 || q->velocity[1] != 0.0 || q->velocity[2] != 0.0;
   const bool laminar = q->profile == BW_PROFILE_POISEUILLE;
   /* A key that has no meaning for this kind of side is refused, not ignored. */
@@ -140,7 +122,8 @@ static bw_status side_resolve(const box_side *q, bool planar, int d, int s, bw_n
   BW_REQUIRE(laminar == isfinite(q->bulk_velocity) || q->kind != BW_SIDE_INFLOW, BW_EINPUT,
              "sides.%s.%s: bulk_velocity is %s the profile %s; give it with poiseuille, and "
              "velocity with uniform",
-             dn, sn, laminar ? "missing for" : "given with", word_of(profile_words, q->profile));
+             dn, sn, laminar ? "missing for" : "given with",
+             word_of(bw_ns_profile_words, q->profile));
   BW_REQUIRE(
       !moves || q->kind == BW_SIDE_WALL || (q->kind == BW_SIDE_INFLOW && !laminar), BW_EINPUT,
       "sides.%s.%s.velocity: [%g, %g, %g] belongs to a wall or a uniform inflow, this is %s "
@@ -179,8 +162,8 @@ static bw_status sides_resolve(const box_config *c, bw_grid_config *grid,
     const bool lower = side[0]->kind == BW_SIDE_PERIODIC, upper = side[1]->kind == BW_SIDE_PERIODIC;
     BW_REQUIRE(lower == upper, BW_EINPUT,
                "sides.%s: lower is %s and upper is %s; make both periodic or neither",
-               direction_name[d], word_of(kind_words, side[0]->kind),
-               word_of(kind_words, side[1]->kind));
+               direction_name[d], word_of(bw_ns_side_words, side[0]->kind),
+               word_of(bw_ns_side_words, side[1]->kind));
     grid->periodic[d] = lower;
     for (int s = 0; s < 2; s++)
       BW_TRY(side_resolve(side[s], planar, d, s, &fluid->side[d][s]));
@@ -255,7 +238,7 @@ bw_status box_resolve(box_config *c, bw_grid_config *grid, bw_ns_channel_config 
   BW_REQUIRE(!c->has_forcing || grid->periodic[0], BW_EINPUT,
              "forcing is %s, but sides.x is not periodic: there the sides drive the flow; leave "
              "forcing out or make x periodic",
-             word_of(forcing_words, c->forcing.kind));
+             word_of(bw_ns_forcing_words, c->forcing.kind));
   /* The solver's own check, before anything is allocated. */
   return bw_ns_channel_config_check(grid, fluid);
 }

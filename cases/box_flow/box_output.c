@@ -164,7 +164,7 @@ bw_status box_picture(box_run *b)
            bw_vtk_grid_extension(b->grid));
   bw_status st = bw_case_path(b->run, name, &path);
   BW_THEN(st, bw_case_path(b->run, "fluid.pvd", &series));
-  BW_THEN(st, bw_vtk_write_grid(b->grid, path, 2, fields));
+  BW_THEN(st, bw_vtk_write_grid(b->grid, path, bw_ns_channel_time(b->fluid), 2, fields));
   BW_THEN(st, bw_vtk_series_add(bw_grid_comm(b->grid), series, bw_ns_channel_time(b->fluid), name));
   bw_release(&path);
   bw_release(&series);

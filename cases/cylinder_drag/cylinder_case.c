@@ -176,8 +176,9 @@ bw_status cylinder_write(cylinder_flow *f, const bw_case *run)
   bw_probe_traction(f->probe[BW_PROBE_QUADRATIC], u, p, NULL, f->traction, NULL);
   BW_THEN(st, write_wall(f, run));
   const bw_vtk_array traction = {"traction", BW_VTK_FLOAT64, 3, f->traction};
-  BW_THEN(st, bw_vtk_write_grid(f->flow.grid, fluid, 2, fields));
-  BW_THEN(st, bw_vtk_write_points(comm, body, f->wall.n, f->wall.X, 1, &traction));
+  BW_THEN(st, bw_vtk_write_grid(f->flow.grid, fluid, bw_ns_channel_time(f->flow.fluid), 2, fields));
+  BW_THEN(st, bw_vtk_write_points(comm, body, bw_ns_channel_time(f->flow.fluid), f->wall.n,
+                                  f->wall.X, 1, &traction));
   bw_release(&fluid);
   bw_release(&body);
   return st;

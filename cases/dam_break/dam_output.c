@@ -152,7 +152,7 @@ static bw_status picture(dam_run *d, const char *name, size_t n, reader *read, i
   snprintf(pvd, sizeof pvd, "%s.pvd", name);
   BW_THEN(st, bw_case_path(d->run, file, &path));
   BW_THEN(st, bw_case_path(d->run, pvd, &series));
-  BW_THEN(st, bw_vtk_write_points(d->comm, path, n, x, count, array));
+  BW_THEN(st, bw_vtk_write_points(d->comm, path, bw_ulph_time(d->fluid), n, x, count, array));
   BW_THEN(st, bw_vtk_series_add(d->comm, series, bw_ulph_time(d->fluid), file));
   bw_release(&x);
   for (int q = 0; q < count; q++)

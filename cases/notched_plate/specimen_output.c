@@ -53,7 +53,7 @@ static bw_status write_particles(specimen *p, const char *path)
       U[i] = X[i] - p->X0[i];
     const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, p->damage},
                                    {"displacement", BW_VTK_FLOAT64, 3, U}};
-    st = bw_vtk_write_points(p->comm, path, p->n, X, 2, arrays);
+    st = bw_vtk_write_points(p->comm, path, p->time, p->n, X, 2, arrays);
   }
   bw_release(&X);
   bw_release(&U);

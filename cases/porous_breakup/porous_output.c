@@ -43,7 +43,7 @@ static bw_status write_fluid(porous_run *p, const char *path)
        .scale = p->config->fluid.density},
       {.name = "solid", .data = {solid}},
   };
-  BW_THEN(st, bw_vtk_write_grid(p->grid, path, 3, fields));
+  BW_THEN(st, bw_vtk_write_grid(p->grid, path, bw_ns_channel_time(p->fluid), 3, fields));
   bw_release(&X);
   bw_release(&solid);
   return st;
@@ -80,7 +80,8 @@ static bw_status write_solid(porous_run *p, const char *path)
                                    {"principal_strain", BW_VTK_FLOAT64, 3, t.strain},
                                    {"fragment", BW_VTK_INT64, 1, piece},
                                    {"id", BW_VTK_INT64, 1, bw_solid_id(p->solid)}};
-    st = bw_vtk_write_points(p->comm, path, n, X, sizeof arrays / sizeof *arrays, arrays);
+    st = bw_vtk_write_points(p->comm, path, bw_ns_channel_time(p->fluid), n, X,
+                             sizeof arrays / sizeof *arrays, arrays);
   }
   bw_release(&X);
   bw_release(&V);

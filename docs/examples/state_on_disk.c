@@ -15,8 +15,8 @@ static bw_status save(const bw_grid *grid, const bw_real *p, size_t n, const int
   const bw_comm *world = bw_grid_comm(grid);
   const bw_vtk_field field = {.name = "p", .data = {p}};
   const bw_vtk_array array = {"id", BW_VTK_INT64, 1, id};
-  BW_TRY(bw_vtk_write_grid(grid, "example-p.vti", 1, &field));
-  BW_TRY(bw_vtk_write_points(world, "example-marks.vtp", n, X, 1, &array));
+  BW_TRY(bw_vtk_write_grid(grid, "example-p.vti", 0.0, 1, &field));
+  BW_TRY(bw_vtk_write_points(world, "example-marks.vtp", 0.0, n, X, 1, &array));
 
   bw_checkpoint *ck = NULL;
   BW_TRY(bw_checkpoint_create(world, "example.h5", &ck));

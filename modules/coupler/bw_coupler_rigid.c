@@ -13,7 +13,7 @@ struct bw_coupler_rigid {
   size_t n; /* markers of this rank */
   bool placed;
   double *X, *V, *N, *dV, *M, *Q; /* (n,3), dV (n); M memory, Q force of a step, then lack */
-  double *inside;                 /* (bodies,6) int u dV and its moment at the step's beginning */
+  double *inside;                 /* (bodies,6) int (u - U) dV, its moment at the beginning */
   double *load;                   /* (bodies,6) as the bodies have it: relaxed, with weight */
   double *hydro;                  /* (bodies,6) of the fluid in the last step */
   double *scratch;                /* (bodies,6) */
@@ -133,9 +133,12 @@ static void reach(const bw_grid_view *g, int d, double x, double R, int lo[3], i
   hi[d] = (int)fmin(g->m[d], ceil(to) + 1.0 - g->lo[d]);
 }
 
-/* int u dV over body q where it is, and its moment about the centre, into sum (6): component d of
- * the velocity in the cells of its own points, by the share of each that is inside. Local. */
-static void add_inside(const bw_coupler_rigid *c, int q, double sum[6])
+/* int (u - U) dV over body q where it is, or will be after dt at its present velocity and spin, and
+ * its moment about the centre there, into sum (6): component d of the velocity in the cells of its
+ * own points, by the share of each that is inside. U is the body's own motion, which does not
+ * change in a step: without it the shares, whose sum changes as the body passes through the cells,
+ * would push. Local. */
+static void add_inside(const bw_coupler_rigid *c, int q, double dt, double sum[6])
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
@@ -144,8 +147,11 @@ static void add_inside(const bw_coupler_rigid *c, int q, double sum[6])
   const double volume = g->spacing[0] * g->spacing[1] * g->spacing[2];
   const int dims = g->n[2] == 1 ? 2 : 3;
   int lo[3], hi[3];
-  for (int d = 0; d < 3; d++)
-    reach(g, d, s.position[d], R, lo, hi);
+  double X[3];
+  for (int d = 0; d < 3; d++) {
+    X[d] = s.position[d] + dt * s.velocity[d];
+    reach(g, d, X[d], R, lo, hi);
+  }
   for (int d = 0; d < dims; d++)
     for (int k = lo[2]; k <= hi[2]; k++)
       for (int j = lo[1]; j <= hi[1]; j++)
@@ -154,29 +160,34 @@ static void add_inside(const bw_coupler_rigid *c, int q, double sum[6])
           double x[3], r[3] = {0.0, 0.0, 0.0};
           /* From the centre to the nearest image of the point. */
           for (int e = 0; e < dims; e++) {
-            r[e] = (cell[e] + g->lo[e] - (e == d ? 0.0 : 0.5)) * g->spacing[e] - s.position[e];
+            r[e] = (cell[e] + g->lo[e] - (e == d ? 0.0 : 0.5)) * g->spacing[e] - X[e];
             if (g->periodic[e]) r[e] -= g->length[e] * round(r[e] / g->length[e]);
           }
+          /* The shape is known where it is now: back from there, and turned back. */
           for (int e = 0; e < 3; e++)
-            x[e] = s.position[e] + r[e];
+            x[e] =
+                s.position[e] + r[e] -
+                dt * (s.spin[(e + 1) % 3] * r[(e + 2) % 3] - s.spin[(e + 2) % 3] * r[(e + 1) % 3]);
           const double away = bw_rigid_distance(c->rigid, q, x) / g->spacing[0];
           const double share = fmin(1.0, fmax(0.0, 0.5 - away)) * volume;
           if (share == 0.0) continue;
           /* (r x u e_d): e_e gets r_f u_d by the cyclic sign. */
-          const double momentum = share * (double)u[d][bw_at(g, i, j, k)];
+          const int a = (d + 1) % 3, b = (d + 2) % 3;
+          const double own = s.velocity[d] + s.spin[a] * r[b] - s.spin[b] * r[a];
+          const double momentum = share * ((double)u[d][bw_at(g, i, j, k)] - own);
           sum[d] += momentum;
-          sum[3 + (d + 1) % 3] += r[(d + 2) % 3] * momentum;
-          sum[3 + (d + 2) % 3] -= r[(d + 1) % 3] * momentum;
+          sum[3 + a] += r[b] * momentum;
+          sum[3 + b] -= r[a] * momentum;
         }
 }
 
 /* The same of all bodies, over all ranks. Collective. */
-static void measure_inside(const bw_coupler_rigid *c, double sum[])
+static void measure_inside(const bw_coupler_rigid *c, double dt, double sum[])
 {
   const int n = bw_rigid_count(c->rigid);
   memset(sum, 0, 6 * (size_t)n * sizeof *sum);
   for (int q = 0; q < n; q++)
-    add_inside(c, q, sum + 6 * (ptrdiff_t)q);
+    add_inside(c, q, dt, sum + 6 * (ptrdiff_t)q);
   bw_comm_sum(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 6 * (size_t)n, sum);
 }
 
@@ -203,7 +214,7 @@ static bw_status place(bw_coupler_rigid *c, const double *memory)
 bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)
 {
   /* What is to be taken out of the reaction: the fluid inside now, against that after the step. */
-  measure_inside(c, c->inside);
+  measure_inside(c, 0.0, c->inside);
   bw_ibm_mdf_begin_step(c->ibm);
   if (c->placed && !moves(c->rigid)) return BW_OK;
   if (c->placed) bw_ibm_mdf_memory(c->ibm, c->M);
@@ -243,8 +254,9 @@ static void find_force(bw_coupler_rigid *c, double dt)
       c->hydro[6 * q + d] = F[3 * q + d];
       c->hydro[6 * q + 3 + d] = T[3 * q + d];
     }
-  /* The reaction moves the fluid inside, too: that is no force on the body. */
-  measure_inside(c, c->scratch);
+  /* The reaction moves the fluid inside, too: that is no force on the body. It goes with the body:
+   * over a place that stands still, what the body comes to cover would count as pushed. */
+  measure_inside(c, dt, c->scratch);
   for (int i = 0; i < 6 * n; i++)
     c->hydro[i] += rho * (c->scratch[i] - c->inside[i]) / dt;
 }

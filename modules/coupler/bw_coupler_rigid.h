@@ -8,8 +8,9 @@
  *           (M. Uhlmann, J. Comput. Phys. 209 (2005) 448; T. Kempe and J. Froehlich, J. Comput.
  *           Phys. 231 (2012) 3663), the same for the torque about the centre of mass. What drives
  *           the fluid pushes the body, too, as the pressure that it stands for would: the fluid
- *           inside is driven like the rest. The integral is that of the velocity times the share
- *           of each cell inside, over the place that the body had.
+ *           inside is driven like the rest. The integral is that of the velocity less the body's
+ *           own, times the share of each cell inside, over the body, which moves: at t_{n+1} it is
+ *           where V_n brings it.
  *   bodies  m V' = F + (m - rho V_body) g + springs, walls, contact: sub-steps of bw_rigid
  *
  * Added mass. The load is that of the step before, so that the added mass m_a of a light body would

@@ -34,7 +34,7 @@ bool bw_scene__asked(const bw_scene *s, const char *quantity)
 bool bw_scene__balances(const bw_scene *s)
 {
   const bw_scene_config *c = &s->config;
-  for (int q = 0; q < c->n_gauges; q++)
+  for (int q = 0; q < c->n_gauges && s->grid != NULL && c->n_bodies > 0; q++)
     if (bw_scene__listed(c->gauges[q].of, "force") &&
         bw_scene__force_holds(c, &c->gauges[q], BW_SCENE__BY_BOX))
       return true;
@@ -64,12 +64,12 @@ static bw_status watch_box(bw_scene *s)
     lo[d] = (int)fmin(fmax(0.0, round((lower[d] - room) / g->spacing[d])), g->n[d] - 1.0);
     hi[d] = (int)fmax(fmin((double)g->n[d], round((upper[d] + room) / g->spacing[d])), 1.0);
     /* Sides through which the fluid comes and goes are not faces of the box. */
-    const bw_ns_side *side = bw_ns_channel_settings(s->fluid)->side[d];
+    const bw_ns_side *side = s->flow.side[d];
     if (side[0].kind != BW_SIDE_WALL && lo[d] < least) lo[d] = least;
     if (side[1].kind != BW_SIDE_WALL && hi[d] > g->n[d] - least) hi[d] = g->n[d] - least;
     if (g->n[d] == 1) lo[d] = 0, hi[d] = 1;
   }
-  return bw_ns_channel_watch_box(s->fluid, lo, hi);
+  return s->planned ? BW_OK : bw_ns_channel_watch_box(s->fluid, lo, hi);
 }
 
 static void find_speed(bw_scene *s)
@@ -101,20 +101,21 @@ static void find_speed(bw_scene *s)
 static bw_status build(bw_scene *s)
 {
   const bw_scene_config *c = &s->config;
-  if (bw_scene__has_fluid(c)) BW_TRY(bw_scene__fluid_create(s));
+  const bool flow = bw_scene__has_fluid(c);
+  if (flow) BW_TRY(bw_scene__fluid_create(s));
   find_speed(s);
   BW_TRY(bw_scene__rigid_create(s));
   BW_TRY(bw_scene__solids_create(s));
   if (s->fluid != NULL && s->n_solids > 0) BW_TRY(bw_scene__coupled_create(s));
-  if (s->fluid != NULL && s->n_solids == 0 && s->rigid == NULL && c->n_bodies > 0)
+  if (flow && s->n_solids == 0 && s->rigid == NULL && c->n_bodies > 0)
     BW_TRY(bw_scene__surfaces_create(s));
   if (bw_scene__balances(s)) BW_TRY(watch_box(s));
   BW_TRY(bw_scene__gauges_create(s));
   return bw_scene__phase_begin(s);
 }
 
-bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
-                          bw_scene **out)
+bw_status bw_scene__create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
+                           bool planned, bw_scene **out)
 {
   bw_scene *s = NULL;
   *out = NULL;
@@ -122,6 +123,7 @@ bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw
   s->config = *config;
   s->comm = comm;
   s->log = log;
+  s->planned = planned;
   s->watched = true;
   s->settled_energy = NAN;
   bw_scene_resolve(&s->config);
@@ -137,6 +139,12 @@ bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw
   return st;
 }
 
+bw_status bw_scene_create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
+                          bw_scene **out)
+{
+  return bw_scene__create(comm, config, log, false, out);
+}
+
 const bw_scene_config *bw_scene_settings(const bw_scene *s)
 {
   return &s->config;
@@ -149,27 +157,28 @@ static void block(FILE *out, bool runs, const char *name, const char *yes, const
 
 void bw_scene_blocks(const bw_scene *s, FILE *out)
 {
-  const bool flow = s->fluid != NULL, rigid = s->rigid != NULL;
-  const bool markers = s->markers != NULL || s->coupler != NULL || s->floats != NULL;
-  bool contact = s->assembly != NULL;
+  const bool flow = s->grid != NULL, rigid = s->rigid != NULL, solids = s->n_solids > 0;
+  const bool markers = flow && s->config.n_bodies > 0;
+  const bool coupled = flow && solids, force = bw_scene__asked(s, "force");
+  bool contact = !flow && s->n_solids > 1 && strcmp(s->config.contact.between, "none") != 0;
   for (int q = 0; q < s->n_solids; q++)
-    contact = contact || bw_solid_settings(s->solid[q].solid)->contact;
+    contact = contact || s->solid[q].contact;
   const bool meet = contact || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
   block(out, flow, "fluid, pressure", "the scene has a fluid", "no fluid");
   block(out, s->planar == false, "third dimension", "plane: none",
         flow ? "one cell in z" : "plane: stress or strain");
-  block(out, s->n_solids > 0, "particles, bonds",
+  block(out, solids, "particles, bonds",
         rigid ? "a body deforms, others are what it meets"
               : "a body deforms, or is an image in a flow",
         s->config.n_bodies > 0 ? "no body deforms: they have true surfaces" : "no body");
-  block(out, s->n_solids > 0 && s->alive, "solid steps", "a body deforms or is moved",
+  block(out, solids && s->alive, "solid steps", "a body deforms or is moved",
         "nothing of particles moves");
   block(out, rigid, "rigid bodies", "a body moves as one piece", "no body is rigid");
   block(out, meet, "contact", "bodies, or pieces of one, can meet",
-        s->n_solids > 0 || rigid ? "contact: none, or nothing can meet" : "no particles");
+        solids || rigid ? "contact: none, or nothing can meet" : "no particles");
   block(out, markers, "markers", "bodies are in a flow", "no body in a flow");
-  block(out, s->probe != NULL || s->coupler != NULL, "probes",
-        s->coupler != NULL ? "they load the solid" : "a gauge reads the force",
+  block(out, coupled || (markers && !rigid && force), "probes",
+        coupled ? "they load the solid" : "a gauge reads the force",
         "nobody reads the force by them");
   block(out, bw_scene__balances(s), "momentum balance", "a gauge reads the force on all bodies",
         "no gauge reads it");

@@ -101,8 +101,8 @@ void bw_scene_config_default(bw_scene_config *c)
   default_numerics(&c->numerics);
 }
 
-/* Who reads a knob: anybody, solids, bodies in a flow, solids in a flow. */
-enum { OF_ALL, OF_SOLIDS, OF_MARKERS, OF_COUPLING };
+/* Who reads a knob: anybody, solids, bodies in a flow, those that move by it, solids in it. */
+enum { OF_ALL, OF_SOLIDS, OF_MARKERS, OF_MOVING, OF_COUPLING };
 
 /* What `accuracy` sets where the file leaves it open. */
 typedef struct {
@@ -126,7 +126,7 @@ static const knob knobs[] = {
     {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},
     {D(probe_length), OF_MARKERS, {2.0, 2.0, 2.0}},
     {D(load_relaxation), OF_COUPLING, {0.1, 0.1, 0.1}},
-    {D(virtual_mass), OF_MARKERS, {1.0, 1.0, 1.0}},
+    {D(virtual_mass), OF_MOVING, {1.0, 1.0, 1.0}},
     {I(coupling_iterations), OF_COUPLING, {1, 1, 20}},
     {D(coupling_residual), OF_COUPLING, {1e-3, 1e-4, 1e-5}},
 };
@@ -189,6 +189,7 @@ static bool is_read(const bw_scene_config *c, const knob *k)
   const bool read[] = {[OF_ALL] = true,
                        [OF_SOLIDS] = deforms,
                        [OF_MARKERS] = flow && c->n_bodies > 0,
+                       [OF_MOVING] = flow && (deforms || bw_scene__any_rigid(c)),
                        [OF_COUPLING] = flow && deforms};
   return read[k->of];
 }

@@ -15,6 +15,16 @@ static void describe_solids(bw_scene *s, bw_log *log)
       snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
                s->config.bodies[s->solid[q].body[k]].name);
     }
+    if (s->sketched) {
+      const double ds = s->config.bodies[s->solid[q].body[0]].spacing;
+      const bw_solid_sample *a = &s->solid[q].sample;
+      bw_log_info(log,
+                  "solid      %s: about %.3g particles of %g, horizon %g, critical stretch %.3g",
+                  names, s->solid[q].sites, ds, a->horizon, a->critical_stretch);
+      bw_log_info(log, "           step at most about %.3g for bonds, %.3g for contact", a->dt_max,
+                  a->dt_contact);
+      continue;
+    }
     bw_log_info(log, "solid      %s: %lld particles of %g, horizon %g, critical stretch %.3g",
                 names, (long long)bw_solid_total(p), bw_solid_settings(p)->ds, bw_solid_horizon(p),
                 bw_solid_critical_stretch(p));
@@ -34,7 +44,7 @@ static void describe_fluid(bw_scene *s, bw_log *log)
   if (s->speed > 0.0)
     bw_log_info(log, "           fastest speed that the file names %g; cell Reynolds number %.3g",
                 s->speed, s->speed * g->spacing[1] / s->config.fluid.viscosity);
-  if (s->markers != NULL) {
+  if (s->inner.n > 0 || s->markers != NULL || (s->planned && s->n_solids == 0 && !s->rigid)) {
     int64_t n[2] = {(int64_t)s->inner.n, (int64_t)s->wall.n};
     bw_comm_sum_int(s->comm, 2, n);
     bw_log_info(log, "surfaces   %lld markers, %lld probes on the true surfaces", (long long)n[0],
@@ -74,7 +84,7 @@ void bw_scene__warn(bw_scene *s, bw_log *log)
                   "bodies.%s is %.2g particles thick: bending and cracks need four or more; take a "
                   "smaller spacing",
                   body->name, cells);
-    if (s->fluid != NULL && least < 7.5 * bw_grid_look(s->grid)->spacing[1] &&
+    if (s->grid != NULL && least < 7.5 * bw_grid_look(s->grid)->spacing[1] &&
         !bw_scene__deforms(body))
       bw_log_warn(log,
                   "bodies.%s is %.2g cells across: forces on it are some 10 %% off below 8; take "
@@ -83,21 +93,38 @@ void bw_scene__warn(bw_scene *s, bw_log *log)
   }
 }
 
-/* Faster than this the force on a rigid body in a flow is far too small: its layer is thinner than
- * cells. Measured with a sphere 8 cells across that falls: within 1 % of the velocity by Schiller
- * and Naumann's drag at a cell Reynolds number of 5, two thirds too fast at 19. */
+/* Faster than this the layer around a rigid body is thinner than cells. Measured with a sphere 8
+ * cells across that falls: its velocity is that by Schiller and Naumann's drag, less some per cent
+ * for the walls, at cell Reynolds numbers of 4 and 11, and 5 % above it at 39. */
 void bw_scene__warn_speed(bw_scene *s)
 {
-  enum { MOST = 8 };
+  enum { MOST = 20 };
   if (s->floats == NULL || s->too_fast) return;
   const double h = bw_grid_look(s->grid)->spacing[0], nu = s->config.fluid.viscosity;
   const double cell = bw_scene__rigid_speed(s) * h / nu;
   if (!(cell > MOST)) return;
   s->too_fast = true;
   bw_log_warn(s->log,
-              "a rigid body moves at a cell Reynolds number of %.3g at t = %g: above %d its drag "
-              "is too small; take %.1f times as many cells in each direction, or more viscosity",
+              "a rigid body moves at a cell Reynolds number of %.3g at t = %g: above %d the layer "
+              "around it is thinner than cells; take %.1f times as many in each direction",
               cell, s->time, MOST, cell / MOST);
+}
+
+/* Refuses a step of the file that the first step would refuse. */
+static bw_status check_step(bw_scene *s)
+{
+  const double step = s->config.numerics.step;
+  const bool flow = s->grid != NULL;
+  if (isnan(step)) return BW_OK;
+  /* What the flow becomes may bear less; that is found where it happens. */
+  const double most = !flow        ? bw_scene__solid_limit(s)
+                      : s->planned ? s->flow_plan.dt_max
+                                   : bw_ns_channel_dt_max(s->fluid);
+  BW_REQUIRE(step <= most * (1.0 + 1e-12), BW_EINPUT,
+             "numerics.step = %g: the %s at the start bear at most %.3g; take a shorter one, or "
+             "leave it out",
+             step, flow ? "fluid and its sides" : "bodies", most);
+  return BW_OK;
 }
 
 bw_status bw_scene_describe(bw_scene *s, bw_log *log)
@@ -115,7 +142,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   if (length > 0 && text[length - 1] == '\n') text[length - 1] = '\0';
   bw_log_info(log, "%s", text);
   bw_release(&text);
-  if (s->fluid != NULL) describe_fluid(s, log);
+  if (s->grid != NULL) describe_fluid(s, log);
   describe_solids(s, log);
   if (s->rigid != NULL) describe_rigid(s, log);
   if (s->coupler != NULL && s->alive) {
@@ -124,10 +151,12 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
     bw_log_info(log, "coupling   %d sub-steps of the solid in a step of %.3g",
                 bw_coupler_substeps(s->coupler, dt), dt);
   }
+  BW_TRY(check_step(s));
   const double limit = bw_scene__limit(s), end = bw_scene__end(s);
   bw_log_info(log, "time step  %.3g now%s%.3g", limit,
               isnan(end) ? "; end by " : ", steps in all about ",
               isnan(end) ? (double)s->config.n_phases : end / limit);
   bw_scene__warn(s, log);
-  return BW_OK;
+  BW_TRY(bw_scene__look_at_gaps(s, log));
+  return s->planned ? bw_scene__plan_describe(s, log) : BW_OK;
 }

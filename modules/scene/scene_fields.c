@@ -1,5 +1,6 @@
 /* The keys of a scene file: the top level, the domain, output and numerics. */
 #include "bw_coupler.h"
+#include "bw_ns_words.h"
 #include "bw_solid.h"
 #include "bw_solid_words.h"
 #include "scene_internal.h"
@@ -46,11 +47,6 @@ const bw_config_field bw_scene__output_fields[] = {
       "draw history.csv at the end (./run)"),
     BW_CONFIG_END};
 
-static const bw_config_word viscous_words[] = {
-    {"explicit", BW_VISCOUS_EXPLICIT, "cheapest; the step is limited by dx^2/nu"},
-    {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "for cells that are thin in y"},
-    {"implicit", BW_VISCOUS_IMPLICIT, "no limit by the viscosity"},
-    {NULL, 0, NULL}};
 static const bw_config_word load_words[] = {
     {"probes", BW_LOAD_PROBES, "stress seen by normal probes"},
     {"reaction", BW_LOAD_REACTION, "reaction of the markers"},
@@ -78,7 +74,7 @@ const bw_config_field bw_scene__numerics_fields[] = {
     V(OURS, disorder, BW_OPTIONAL, BW_FROM_TO(0, 0.4), "ds",
       "how far particles start off their sites, at most"),
     V(OURS, disorder_seed, BW_OPTIONAL, BW_ANY, "", "another number, another disorder"),
-    W(viscous, viscous_words, "how the viscous term of the fluid advances in time"),
+    W(viscous, bw_ns_viscous_words, "how the viscous term of the fluid advances in time"),
     W(load, load_words, "what of the fluid loads the solids"),
     V(OURS, forcing_iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
       "forcing iterations in each sub-step"),

@@ -1,5 +1,6 @@
 /* The keys of the fluid: its sides, start and forcing. */
 #include "bw_ns_channel.h"
+#include "bw_ns_words.h"
 #include "scene_internal.h"
 
 #define V BW_CONFIG_VALUE
@@ -8,20 +9,10 @@ static const bw_config_word model_words[] = {
     {"particles", BW_SCENE_PARTICLES, "particles with a free surface"},
     {"none", BW_SCENE_NO_FLUID, NULL},
     {NULL, 0, NULL}};
-static const bw_config_word kind_words[] = {
-    {"periodic", BW_SIDE_PERIODIC, "both sides of a direction"},
-    {"wall", BW_SIDE_WALL, "no slip; velocity: it moves in its plane"},
-    {"free_slip", BW_SIDE_FREE_SLIP, "a plane of symmetry"},
-    {"inflow", BW_SIDE_INFLOW, "velocity given by profile"},
-    {"outflow", BW_SIDE_OUTFLOW, "convective"},
-    {NULL, 0, NULL}};
-static const bw_config_word profile_words[] = {
-    {"uniform", BW_PROFILE_UNIFORM, "velocity"},
-    {"poiseuille", BW_PROFILE_POISEUILLE, "laminar profile between the walls: mean"},
-    {NULL, 0, NULL}};
 static const bw_config_field side_fields[] = {
-    BW_CONFIG_WORD(bw_scene_side, kind, BW_REQUIRED, kind_words, "what the side is to the fluid"),
-    BW_CONFIG_WORD(bw_scene_side, profile, BW_OPTIONAL, profile_words,
+    BW_CONFIG_WORD(bw_scene_side, kind, BW_REQUIRED, bw_ns_side_words,
+                   "what the side is to the fluid"),
+    BW_CONFIG_WORD(bw_scene_side, profile, BW_OPTIONAL, bw_ns_profile_words,
                    "velocity profile of an inflow"),
     V(bw_scene_side, velocity, BW_OPTIONAL, BW_POINT, "L/T",
       "velocity of a wall in its plane, or of a uniform inflow"),
@@ -54,12 +45,8 @@ static const bw_config_field start_fields[] = {
     V(bw_scene_start, file, BW_OPTIONAL, BW_FILE, "",
       "checkpoint of a scene with the same cells, whose fluid is taken"),
     BW_CONFIG_END};
-static const bw_config_word forcing_words[] = {
-    {"flow_rate", BW_FORCING_FLOW_RATE, "value: bulk velocity [L/T]"},
-    {"gradient", BW_FORCING_GRADIENT, "value: -dp/dx over the density [L/T2]"},
-    {NULL, 0, NULL}};
 static const bw_config_field forcing_fields[] = {
-    BW_CONFIG_WORD(bw_scene_forcing, kind, BW_REQUIRED, forcing_words,
+    BW_CONFIG_WORD(bw_scene_forcing, kind, BW_REQUIRED, bw_ns_forcing_words,
                    "what is held constant along a periodic direction"),
     BW_CONFIG_WORD(bw_scene_forcing, axis, BW_OPTIONAL, bw_scene__axis_words,
                    "along which direction"),

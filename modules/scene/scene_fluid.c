@@ -198,9 +198,9 @@ static bw_status configure(bw_scene *s, bw_grid_config *grid, bw_ns_channel_conf
 bw_status bw_scene__fluid_create(bw_scene *s)
 {
   bw_grid_config grid;
-  bw_ns_channel_config fluid;
-  BW_TRY(bw_comm_agree(s->comm, configure(s, &grid, &fluid)));
-  BW_TRY(bw_grid_create(s->comm, &grid, &s->grid));
-  BW_TRY(bw_ns_channel_create(s->grid, &fluid, &s->fluid));
+  BW_TRY(bw_comm_agree(s->comm, configure(s, &grid, &s->flow)));
+  BW_TRY((s->planned ? bw_grid_plan : bw_grid_create)(s->comm, &grid, &s->grid));
+  if (s->planned) return bw_ns_channel_plan(s->grid, &s->flow, &s->flow_plan);
+  BW_TRY(bw_ns_channel_create(s->grid, &s->flow, &s->fluid));
   return bw_ns_channel_set_velocity(s->fluid, start_velocity, &s->config, 0.0);
 }

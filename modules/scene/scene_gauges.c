@@ -167,7 +167,7 @@ bw_status bw_scene__gauges_create(bw_scene *s)
   }
   /* Columns are named. Particles are looked up once, as they stay with their rank. */
   for (int g = 0; g < s->config.n_gauges; g++)
-    if (looks_at_particles(s, &s->config.gauges[g])) {
+    if (!s->sketched && looks_at_particles(s, &s->config.gauges[g])) {
       BW_REQUIRE(
           s->n_solids > 0, BW_EINPUT,
           "gauges.%s: bodies of this scene do not deform, they have no particles to look at; "
@@ -175,7 +175,7 @@ bw_status bw_scene__gauges_create(bw_scene *s)
           s->config.gauges[g].name);
       BW_TRY(take_aim(s, g));
     }
-  return bw_scene__note_cuts(s);
+  return s->sketched ? BW_OK : bw_scene__note_cuts(s);
 }
 
 int bw_scene_columns(const bw_scene *s, const char *const **names)

@@ -12,7 +12,10 @@
 
 /* Bodies on one lattice: a solid. */
 typedef struct {
-  bw_solid *solid;
+  bw_solid *solid;                     /* NULL where it is only planned */
+  bw_solid_sample sample;              /* of a planned scene: what its material is like, */
+  double sites;                        /* and about how many particles it has */
+  bool contact;                        /* do its pieces meet each other? */
   int n_bodies, body[BW_SCENE_BODIES]; /* numbers in the file */
   int n_groups;
   int body_of[BW_PD_GROUPS];     /* of a material group */
@@ -61,7 +64,10 @@ struct bw_scene {
   const bw_comm *comm; /* borrowed */
   bw_log *log;         /* borrowed, may be NULL */
   bool planar;
-  bool alive; /* some body deforms, or is rigid or prescribed */
+  bool
+      planned; /* it is only looked at: nothing of the fluid is made, solids where they are small */
+  bool sketched; /* planned, and its solids are too large to be made */
+  bool alive;    /* some body deforms, or is rigid or prescribed */
 
   /* solids */
   int n_solids;
@@ -82,13 +88,15 @@ struct bw_scene {
   bool too_fast;                 /* has been said */
 
   /* fluid */
-  bw_grid *grid;
-  bw_ns_channel *fluid;
-  bw_coupler *coupler;    /* with what deforms; NULL: none */
-  bw_ibm_mdf *markers;    /* with what does not, alone; NULL: none */
-  bw_scene__points inner; /* its markers */
-  bw_scene__points wall;  /* its probe points; none where nobody asks for forces */
-  bool moving;            /* some of them are prescribed */
+  bw_grid *grid;             /* where planned, one that is only looked at */
+  bw_ns_channel_config flow; /* settings of the fluid */
+  bw_ns_plan flow_plan;      /* where planned */
+  bw_ns_channel *fluid;      /* NULL: none, or planned */
+  bw_coupler *coupler;       /* with what deforms; NULL: none */
+  bw_ibm_mdf *markers;       /* with what does not, alone; NULL: none */
+  bw_scene__points inner;    /* its markers */
+  bw_scene__points wall;     /* its probe points; none where nobody asks for forces */
+  bool moving;               /* some of them are prescribed */
   bw_probe *probe;
   bw_real *pressure;  /* that acted over the last step */
   double speed;       /* the fastest that the file names [L/T] */
@@ -113,6 +121,18 @@ struct bw_scene {
   int64_t pictures; /* so far */
 };
 
+/* scene_create.c: bw_scene_create; `planned`: what --check looks at, in time and memory that do not
+ * grow with the cells of the fluid nor, beyond BW_SCENE__MADE, with the particles. */
+enum { BW_SCENE__MADE = 200000 };
+bw_status bw_scene__create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
+                           bool planned, bw_scene **out) BW_MUST_CHECK;
+
+/* scene_plan.c: the sites of a solid, counted or, beyond some ten millions, by a sample. */
+bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
+                                const bw_solid_config *config, double *n) BW_MUST_CHECK;
+/* Lines of memory and pores; refuses steps beyond a limit. Collective. */
+bw_status bw_scene__plan_describe(bw_scene *s, bw_log *log) BW_MUST_CHECK;
+
 /* scene_solids.c */
 bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__solids_destroy(bw_scene *s);
@@ -134,6 +154,8 @@ typedef struct {
 bw_status bw_scene__sites_make(bw_scene *s, bw_scene__solid *q, const bw_solid_config *config,
                                bw_scene__sites *out) BW_MUST_CHECK;
 void bw_scene__sites_release(bw_scene__sites *sites);
+/* Numbers the material groups as sites_make does, without sites. */
+bw_status bw_scene__sites_groups(bw_scene *s, bw_scene__solid *q) BW_MUST_CHECK;
 /* Is x (3) in the place, given the extent of the body's particles? */
 bool bw_scene__in_where(const bw_scene_where *w, bool planar, double ds, const double lower[3],
                         const double upper[3], const double x[3]);
@@ -178,7 +200,7 @@ bw_status bw_scene__fluid_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__fluid_destroy(bw_scene *s);
 
 /* scene_surface.c: bodies that do not deform, in a fluid alone */
-bw_status bw_scene__surfaces_create(bw_scene *s) BW_MUST_CHECK;
+bw_status bw_scene__surfaces_create(bw_scene *s) BW_MUST_CHECK; /* planned: their points alone */
 void bw_scene__surfaces_destroy(bw_scene *s);
 bw_status bw_scene__surfaces_step(bw_scene *s, double dt) BW_MUST_CHECK;
 bw_status bw_scene__surfaces_restore(bw_scene *s) BW_MUST_CHECK;
@@ -191,8 +213,9 @@ bw_status bw_scene__coupled_create(bw_scene *s) BW_MUST_CHECK;
 
 /* scene_step.c */
 bw_status bw_scene__phase_begin(bw_scene *s) BW_MUST_CHECK;
-double bw_scene__limit(bw_scene *s);     /* longest step now, with its share [T] */
-double bw_scene__end(const bw_scene *s); /* of the scene [T]; NaN: not known */
+double bw_scene__limit(bw_scene *s);             /* longest step now, with its share [T] */
+double bw_scene__solid_limit(const bw_scene *s); /* of solids and rigid bodies, whole [T] */
+double bw_scene__end(const bw_scene *s);         /* of the scene [T]; NaN: not known */
 
 /* scene_gauges.c, scene_gauges_solid.c, scene_gauges_fluid.c */
 bw_status bw_scene__gauges_create(bw_scene *s) BW_MUST_CHECK;
@@ -207,8 +230,15 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
 
 /* scene_describe.c: warnings of what will be poor. */
 void bw_scene__warn(bw_scene *s, bw_log *log);
+/* scene_gaps.c: refuses bodies that block the stream, warns of gaps that cells do not see.
+ * Collective. */
+bw_status bw_scene__look_at_gaps(bw_scene *s, bw_log *log) BW_MUST_CHECK;
 /* Once, when a rigid body is too fast for the grid. Local. */
 void bw_scene__warn_speed(bw_scene *s);
+/* scene_picture.c: the name of the series of a solid; -1: of the surfaces of rigid bodies. */
+void bw_scene__series_name(const bw_scene *s, int solid, char name[2 * BW_SCENE_NAME]);
+/* scene_paraview.c: open.pvsm, which shows all series. Collective. */
+bw_status bw_scene__paraview(bw_scene *s, const bw_case *run) BW_MUST_CHECK;
 /* scene_profiles.c: the files of the lines and slices that are due. */
 bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge) BW_MUST_CHECK;
 /* scene_watch.c: what the rows of history.csv say of the gauges that are watched, to the log and

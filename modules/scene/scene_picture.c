@@ -103,7 +103,7 @@ static bw_status write_fluid(bw_scene *s, int solid, const char *path)
       field[n++] = (bw_vtk_field){.name = s->config.bodies[b].name, .data = {part[b]}};
     }
   }
-  BW_THEN(st, bw_vtk_write_grid(s->grid, path, n, field));
+  BW_THEN(st, bw_vtk_write_grid(s->grid, path, s->time, n, field));
   for (int b = 0; b < s->config.n_bodies; b++)
     bw_release(&part[b]);
   bw_release(&body);
@@ -132,7 +132,7 @@ static bw_status write_solid(bw_scene *s, int solid, const char *path)
                                    {"displacement", BW_VTK_FLOAT64, 3, U},
                                    {"velocity", BW_VTK_FLOAT64, 3, q->V},
                                    {"body", BW_VTK_INT32, 1, body}};
-    st = bw_vtk_write_points(s->comm, path, q->n, X, 4, arrays);
+    st = bw_vtk_write_points(s->comm, path, s->time, q->n, X, 4, arrays);
   }
   bw_release(&X);
   bw_release(&U);
@@ -164,7 +164,7 @@ static bw_status write_surfaces(bw_scene *s, int solid, const char *path)
                                    {"normal", BW_VTK_FLOAT64, 3, N},
                                    {"area", BW_VTK_FLOAT64, 1, bw_rigid_point_area(s->rigid)},
                                    {"body", BW_VTK_INT32, 1, body}};
-    st = bw_vtk_write_points(s->comm, path, n, X, 4, arrays);
+    st = bw_vtk_write_points(s->comm, path, s->time, n, X, 4, arrays);
   }
   bw_release(&X);
   bw_release(&V);
@@ -178,7 +178,7 @@ static bw_status add_to_series(bw_scene *s, const bw_case *run, const char *what
                                const char *extension, int solid,
                                bw_status (*write)(bw_scene *, int, const char *))
 {
-  char name[2 * BW_SCENE_NAME], series[2 * BW_SCENE_NAME], *path = NULL, *series_path = NULL;
+  char name[3 * BW_SCENE_NAME], series[3 * BW_SCENE_NAME], *path = NULL, *series_path = NULL;
   snprintf(name, sizeof name, "%s-%08lld%s", what, (long long)s->steps, extension);
   snprintf(series, sizeof series, "%s.pvd", what);
   bw_status st = bw_case_path(run, name, &path);
@@ -191,18 +191,26 @@ static bw_status add_to_series(bw_scene *s, const bw_case *run, const char *what
   return st;
 }
 
+void bw_scene__series_name(const bw_scene *s, int solid, char name[2 * BW_SCENE_NAME])
+{
+  /* A solid of several bodies has the name of the first. */
+  const char *body = solid < 0 ? "" : s->config.bodies[s->solid[solid].body[0]].name;
+  const bool taken = strcmp(body, "fluid") == 0 || strcmp(body, "rigid-surfaces") == 0;
+  snprintf(name, 2 * BW_SCENE_NAME, "%s%s", taken ? "body-" : "",
+           solid < 0 ? "rigid-surfaces" : body);
+}
+
 bw_status bw_scene_picture(bw_scene *s, const bw_case *run)
 {
+  char what[2 * BW_SCENE_NAME];
   if (s->fluid != NULL)
     BW_TRY(add_to_series(s, run, "fluid", bw_vtk_grid_extension(s->grid), 0, write_fluid));
+  bw_scene__series_name(s, -1, what);
   if (s->rigid != NULL && s->n_solids == 0)
-    BW_TRY(add_to_series(s, run, "rigid-surfaces", ".vtp", 0, write_surfaces));
+    BW_TRY(add_to_series(s, run, what, ".vtp", 0, write_surfaces));
   for (int q = 0; q < s->n_solids; q++) {
-    /* A solid of several bodies has the name of the first. */
-    char what[BW_SCENE_NAME + 8];
-    const char *name = s->config.bodies[s->solid[q].body[0]].name;
-    snprintf(what, sizeof what, "%s%s", strcmp(name, "fluid") == 0 ? "body-" : "", name);
+    bw_scene__series_name(s, q, what);
     BW_TRY(add_to_series(s, run, what, ".vtp", q, write_solid));
   }
-  return BW_OK;
+  return bw_scene__paraview(s, run);
 }

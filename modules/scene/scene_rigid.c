@@ -149,12 +149,11 @@ static void configure(const bw_scene *s, bw_rigid_config *config)
   if (s->grid != NULL) {
     /* Weight is the coupler's there, which knows the fluid displaced. */
     config->spacing = bw_grid_look(s->grid)->spacing[0];
-    const bw_ns_channel_config *fluid = bw_ns_channel_settings(s->fluid);
     for (int d = 0; d < (s->planar ? 2 : 3); d++) {
       config->upper[d] = c->domain.length[d];
       for (int end = 0; end < 2; end++)
-        config->walled[d][end] = fluid->side[d][end].kind == BW_SIDE_WALL ||
-                                 fluid->side[d][end].kind == BW_SIDE_FREE_SLIP;
+        config->walled[d][end] = s->flow.side[d][end].kind == BW_SIDE_WALL ||
+                                 s->flow.side[d][end].kind == BW_SIDE_FREE_SLIP;
     }
     return;
   }

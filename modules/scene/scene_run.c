@@ -214,7 +214,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
 {
   const bw_case_args *args = bw_case_args_of(r->run);
   bw_log *log = bw_case_log(r->run);
-  BW_TRY(bw_scene_create(args->comm, config, log, &r->scene));
+  BW_TRY(bw_scene__create(args->comm, config, log, args->check, &r->scene));
   bw_scene *s = r->scene;
   for (int k = 0; k < s->config.n_watch; k++)
     BW_REQUIRE(bw_scene__watched_column(s, s->config.watch[k].name) > 0, BW_EINPUT,
@@ -222,7 +222,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
                s->config.watch[k].name);
   BW_TRY(set_intervals(r));
   BW_TRY(bw_scene_describe(s, log));
-  /* --check ends here: everything was built, nothing was run. */
+  /* --check ends here: all was looked at, nothing large was made. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(restart(r, args->restart));
   BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&r->row, (size_t)s->n_columns)));

@@ -164,6 +164,18 @@ static bw_status fill_body(bw_scene *s, bw_scene__solid *q, int b, const bw_soli
   return st;
 }
 
+bw_status bw_scene__sites_groups(bw_scene *s, bw_scene__solid *q)
+{
+  for (int k = 0; k < q->n_bodies; k++) {
+    bw_scene__shapes shapes;
+    bw_status st = bw_scene__shapes_make(&s->config, q->body[k], &shapes);
+    BW_THEN(st, set_groups(s, q, q->body[k], &shapes));
+    bw_scene__shapes_release(&shapes);
+    BW_TRY(st);
+  }
+  return BW_OK;
+}
+
 bw_status bw_scene__sites_make(bw_scene *s, bw_scene__solid *q, const bw_solid_config *config,
                                bw_scene__sites *out)
 {

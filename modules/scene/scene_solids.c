@@ -213,7 +213,7 @@ static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_co
   c->damping.absolute = n->damping_absolute;
   c->disorder = n->disorder;
   c->disorder_seed = n->disorder_seed;
-  c->contact = meets_itself(s, q);
+  c->contact = q->contact;
   /* Bonds cross a periodic seam as the fluid does. */
   const bw_scene_sides *sides = &s->config.fluid.sides;
   const int kind[3] = {sides->x.lower.kind, sides->y.lower.kind, sides->z.lower.kind};
@@ -276,11 +276,28 @@ static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
   return bw_comm_agree(s->comm, st);
 }
 
+/* How many particles, and what its material is like. */
+static bw_status plan_solid(bw_scene *s, bw_scene__solid *q)
+{
+  bw_solid_config c;
+  bw_scene__options room;
+  q->contact = meets_itself(s, q);
+  settings_of(s, q, &c);
+  BW_TRY(lattice_of(s, q, &c));
+  BW_TRY(bw_scene__count_sites(s, q, &c, &q->sites));
+  bw_status st = bw_comm_agree(s->comm, bw_scene__sites_groups(s, q));
+  BW_THEN(st, materials_of(s, q, &c));
+  BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
+  BW_THEN(st, bw_solid_try(s->comm, &c, &q->sample));
+  return st;
+}
+
 static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
 {
   bw_solid_config c;
   bw_scene__options room;
   bw_scene__sites sites = {0};
+  q->contact = meets_itself(s, q);
   settings_of(s, q, &c);
   BW_TRY(lattice_of(s, q, &c));
   /* Groups are numbered while sites are filled; materials follow them. */
@@ -329,7 +346,14 @@ static bw_status launch(bw_scene *s, bw_scene__solid *q)
 bw_status bw_scene__solids_create(bw_scene *s)
 {
   bw_solid *solids[BW_SCENE_BODIES];
+  double sites = 0.0;
   divide(s);
+  for (int q = 0; q < s->n_solids && s->planned; q++) {
+    BW_TRY(plan_solid(s, &s->solid[q]));
+    sites += s->solid[q].sites;
+  }
+  s->sketched = sites > BW_SCENE__MADE;
+  if (s->sketched) return BW_OK;
   for (int q = 0; q < s->n_solids; q++) {
     BW_TRY(make_solid(s, &s->solid[q]));
     BW_TRY(launch(s, &s->solid[q]));

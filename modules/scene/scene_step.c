@@ -52,7 +52,7 @@ bw_status bw_scene__phase_begin(bw_scene *s)
   const bw_scene_phase *p = &s->config.phases[s->phase];
   const bw_scene_numerics *n = &s->config.numerics;
   s->settled_energy = NAN;
-  for (int q = 0; q < s->n_solids; q++) {
+  for (int q = 0; q < s->n_solids && !s->sketched; q++) {
     bool breaks = false;
     for (int k = 0; k < s->solid[q].n_bodies; k++)
       breaks = breaks || s->config.bodies[s->solid[q].body[k]].motion == BW_SCENE_BREAKABLE;
@@ -82,7 +82,9 @@ static double solid_limit(const bw_scene *s)
   double limit = rigid_limit(s);
   if (s->assembly != NULL) return fmin(limit, bw_solid_assembly_dt(s->assembly));
   for (int q = 0; q < s->n_solids; q++) {
-    const double a = bw_solid_dt_max(s->solid[q].solid), b = bw_solid_dt_contact(s->solid[q].solid);
+    const bw_scene__solid *p = &s->solid[q];
+    const double a = s->sketched ? p->sample.dt_max : bw_solid_dt_max(p->solid);
+    const double b = s->sketched ? p->sample.dt_contact : bw_solid_dt_contact(p->solid);
     limit = fmin(limit, 1.0 / sqrt(1.0 / (a * a) + 1.0 / (b * b)));
   }
   return limit;
@@ -94,14 +96,19 @@ static double fluid_limit(bw_scene *s)
   const double h = bw_grid_look(s->grid)->spacing[0];
   const double speed = fmax(s->speed, bw_scene__rigid_speed(s));
   const double coming = speed > 0.0 ? h / speed : INFINITY;
-  return fmin(bw_ns_channel_dt_max(s->fluid), coming);
+  return fmin(s->planned ? s->flow_plan.dt_max : bw_ns_channel_dt_max(s->fluid), coming);
+}
+
+double bw_scene__solid_limit(const bw_scene *s)
+{
+  return solid_limit(s);
 }
 
 double bw_scene__limit(bw_scene *s)
 {
   const bw_scene_numerics *n = &s->config.numerics;
   if (!isnan(n->step)) return n->step;
-  return n->step_share * (s->fluid != NULL ? fluid_limit(s) : solid_limit(s));
+  return n->step_share * (s->grid != NULL ? fluid_limit(s) : solid_limit(s));
 }
 
 /* Where the step has to end at the latest. */

@@ -159,10 +159,11 @@ bw_status bw_scene__surfaces_create(bw_scene *s)
   bw_ibm_mdf_config config = bw_ibm_mdf_config_default();
   config.n_iter = n->forcing_iterations;
   config.memory = n->memory;
-  BW_TRY(bw_ibm_mdf_create(s->grid, &config, &s->markers));
-  bw_ibm_mdf_set_ghosts(s->markers, ghosts, s->fluid);
   const double retraction = isnan(n->retraction) ? bw_ibm_mdf_retraction(&config) : n->retraction;
   BW_TRY(make_points(s, retraction * h, &s->inner));
+  if (s->planned) return BW_OK;
+  BW_TRY(bw_ibm_mdf_create(s->grid, &config, &s->markers));
+  bw_ibm_mdf_set_ghosts(s->markers, ghosts, s->fluid);
   for (int b = 0; b < s->config.n_bodies; b++)
     s->moving = s->moving || s->config.bodies[b].motion == BW_SCENE_PRESCRIBED;
   place(s, &s->inner, 0.0);

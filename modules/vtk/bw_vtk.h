@@ -24,8 +24,9 @@ typedef struct {
 const char *bw_vtk_grid_extension(const bw_grid *grid);
 
 /* Cell data of the grid as ImageData (uniform grid) or, when y is stretched, RectilinearGrid;
- * `path` has to end in the extension of that kind; field[count]. Collective. */
-bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
+ * `path` has to end in the extension of that kind; the file says its time [T] (NaN: it does not);
+ * field[count]. Collective. */
+bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, double time, int count,
                             const bw_vtk_field field[]) BW_MUST_CHECK;
 
 /* The elements of an array. */
@@ -46,9 +47,9 @@ typedef struct {
 } bw_vtk_array;
 
 /* Points as PolyData vertices, in rank order; position (n,3) of this rank [L]. n may differ and
- * be 0 on some ranks; array[count], the same names, types and components on all of them.
- * Collective. */
-bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
+ * be 0 on some ranks; time as above; array[count], the same names, types and components on all of
+ * them. Collective. */
+bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, double time, size_t n,
                               const double position[], int count,
                               const bw_vtk_array array[]) BW_MUST_CHECK;
 

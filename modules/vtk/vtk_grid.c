@@ -46,8 +46,8 @@ static void declare_coordinates(bw_vtk__writer *writer, bw_vtk__text *text, cons
   bw_vtk__add(text, "      </Coordinates>\n");
 }
 
-static void describe(bw_vtk__writer *writer, bw_vtk__text *text, const bw_grid_view *g, int count,
-                     const bw_vtk_field field[])
+static void describe(bw_vtk__writer *writer, bw_vtk__text *text, const bw_grid_view *g, double time,
+                     int count, const bw_vtk_field field[])
 {
   const char *type = file_type(g);
   const uint64_t cells = (uint64_t)g->n[0] * (uint64_t)g->n[1] * (uint64_t)g->n[2];
@@ -57,7 +57,9 @@ static void describe(bw_vtk__writer *writer, bw_vtk__text *text, const bw_grid_v
   if (g->uniform_y)
     bw_vtk__add(text, " Origin=\"0 0 0\" Spacing=\"%.17g %.17g %.17g\"", g->spacing[0],
                 g->spacing[1], g->spacing[2]);
-  bw_vtk__add(text, ">\n    <Piece Extent=\"0 %d 0 %d 0 %d\">\n", g->n[0], g->n[1], g->n[2]);
+  bw_vtk__add(text, ">\n");
+  bw_vtk__time(text, time);
+  bw_vtk__add(text, "    <Piece Extent=\"0 %d 0 %d 0 %d\">\n", g->n[0], g->n[1], g->n[2]);
   if (!g->uniform_y) declare_coordinates(writer, text, g);
   /* The order in which arrays are declared is the order in which their blocks follow in the
    * file. */
@@ -185,7 +187,7 @@ static bw_status write_blocks(bw_vtk__writer *writer, const bw_grid_view *g, int
   return st;
 }
 
-bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
+bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, double time, int count,
                             const bw_vtk_field field[])
 {
   const bw_grid_view *g = bw_grid_look(grid);
@@ -194,7 +196,7 @@ bw_status bw_vtk_write_grid(const bw_grid *grid, const char *path, int count,
   /* Nothing is written for arguments that make no file. */
   bw_status st = bw_comm_agree(writer.comm, check(grid, path, count, field));
   if (st == BW_OK) {
-    describe(&writer, &text, g, count, field);
+    describe(&writer, &text, g, time, count, field);
     st = bw_vtk__open(&writer, path, &text);
   }
   bw_release(&text.chars);

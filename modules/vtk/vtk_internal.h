@@ -40,6 +40,8 @@ typedef struct {
 /* Opening and closing lines common to all files; `type` is "ImageData" or another data set. */
 void bw_vtk__begin(bw_vtk__text *text, const char *type);
 void bw_vtk__end(bw_vtk__text *text, const char *type);
+/* The time as VTK's readers know it, between the data set's line and its piece; NaN: nothing. */
+void bw_vtk__time(bw_vtk__text *text, double time);
 
 /* <DataArray> of `values` elements in all, at the offset that follows those declared before. */
 void bw_vtk__declare(bw_vtk__writer *writer, bw_vtk__text *text, const char *name, bw_vtk_type type,

@@ -22,12 +22,14 @@ static bw_status check(const char *path, int count, const bw_vtk_array array[], 
   return BW_OK;
 }
 
-static void describe(bw_vtk__writer *writer, bw_vtk__text *text, uint64_t total, int count,
-                     const bw_vtk_array array[])
+static void describe(bw_vtk__writer *writer, bw_vtk__text *text, double time, uint64_t total,
+                     int count, const bw_vtk_array array[])
 {
   bw_vtk__begin(text, "PolyData");
+  bw_vtk__add(text, "  <PolyData>\n");
+  bw_vtk__time(text, time);
   bw_vtk__add(text,
-              "  <PolyData>\n    <Piece NumberOfPoints=\"%" PRIu64 "\" NumberOfVerts=\"%" PRIu64
+              "    <Piece NumberOfPoints=\"%" PRIu64 "\" NumberOfVerts=\"%" PRIu64
               "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
               "      <PointData>\n",
               total, total);
@@ -83,7 +85,7 @@ static bw_status write_blocks(bw_vtk__writer *writer, uint64_t total, uint64_t b
   return st;
 }
 
-bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
+bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, double time, size_t n,
                               const double position[], int count, const bw_vtk_array array[])
 {
   bw_vtk__writer writer = {.comm = comm};
@@ -93,7 +95,7 @@ bw_status bw_vtk_write_points(const bw_comm *comm, const char *path, size_t n,
   /* Points lie in the file in rank order: behind those of all lower ranks. */
   const int64_t before = bw_comm_prefix_sum(comm, total);
   bw_comm_sum_int(comm, 1, &total);
-  describe(&writer, &text, (uint64_t)total, count, array);
+  describe(&writer, &text, time, (uint64_t)total, count, array);
   bw_status st = bw_vtk__open(&writer, path, &text);
   bw_release(&text.chars);
   BW_THEN(st, write_blocks(&writer, (uint64_t)total, (uint64_t)before, n, position, count, array));

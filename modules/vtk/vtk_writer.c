@@ -2,6 +2,7 @@
 #include "vtk_internal.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 static const char closing[] = "\n  </AppendedData>\n</VTKFile>\n";
@@ -37,6 +38,16 @@ void bw_vtk__end(bw_vtk__text *text, const char *type)
 {
   /* The underscore marks where the offsets count from. */
   bw_vtk__add(text, "  </%s>\n  <AppendedData encoding=\"raw\">\n_", type);
+}
+
+void bw_vtk__time(bw_vtk__text *text, double time)
+{
+  /* In the text: one number needs no block. */
+  if (isfinite(time))
+    bw_vtk__add(text,
+                "    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" "
+                "NumberOfTuples=\"1\" format=\"ascii\">%.17g</DataArray>\n    </FieldData>\n",
+                time);
 }
 
 void bw_vtk__declare(bw_vtk__writer *writer, bw_vtk__text *text, const char *name, bw_vtk_type type,

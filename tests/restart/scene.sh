@@ -33,7 +33,13 @@ same falling_sphere 2 0.1 0.05 --set "domain.cells=[25, 40, 25]" --set output.pi
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/impact_on_plate/impact_on_plate.yaml" --quiet \
   --out "$out/three" --set phases.0.until.time=60e-6 --set bodies.plate.spacing=2e-3 \
   --set bodies.ball.spacing=2e-3 --set output.picture_every=0 --set output.sample_every=5e-6
-/usr/bin/python3 - "$out/impact_on_plate-whole/history.csv" "$out/three/history.csv" <<'END'
+# One rank and three of many bodies, and three that go on from the checkpoint of one.
+several="$build/bin/breakwater $source/tests/support/several_bodies.yaml --quiet"
+$several --out "$out/several-1"
+mpirun -n 3 $several --out "$out/several-3"
+$several --out "$out/several-half" --set phases.0.until.time=30e-6
+mpirun -n 3 $several --out "$out/several-half" --restart "$out/several-half/checkpoint-last.h5"
+cat >"$out/compare.py" <<'END'
 import csv, sys
 a, b = (list(csv.reader(open(path))) for path in sys.argv[1:])
 assert a[0] == b[0] and len(a) == len(b) > 10
@@ -47,3 +53,6 @@ for one, other in zip(a[1:], b[1:]):
         # 1e-16 of a sum of some thousand bonds, grown over some hundred steps
         assert abs(x - y) <= 1e-9 * scale, (one, other)
 END
+for pair in impact_on_plate-whole:three several-1:several-3 several-1:several-half; do
+  /usr/bin/python3 "$out/compare.py" "$out/${pair%:*}/history.csv" "$out/${pair#*:}/history.csv"
+done

@@ -42,4 +42,12 @@ big cylinder 100000 cylinder_drag cases/cylinder_drag/cylinder_drag.yaml --set u
   --set cylinder.downstream=800
 big tank 100000 dam_break cases/dam_break/dam_break.yaml --set fluid.spacing=0.000015 \
   --set "gauges=[{name: a, kind: depth, at: [1, 0, 0]}]"
+# Scenes: a sphere of a million markers, a wall of particles, a flap.
+big sphere 40000 breakwater scenes/falling_sphere/falling_sphere.yaml \
+  --set "domain.cells=[1000, 1600, 1000]"
+big flap 9000 breakwater scenes/flap_behind_cylinder/flap_behind_cylinder.yaml \
+  --set "domain.cells=[50000, 8200, 1]" --set "domain.length=[2.5, 0.41, 5e-5]" \
+  --set bodies.flap.spacing=5e-5 --set bodies.cylinder.spacing=5e-5
+big ball 9000 breakwater scenes/impact_on_plate/impact_on_plate.yaml \
+  --set bodies.ball.spacing=1e-6 --set bodies.plate.spacing=1e-6
 exit $failed

@@ -36,3 +36,13 @@ load, end = float(rows[-1]["load.x[M L/T2]"]), float(rows[-1]["end.x[L]"])
 # the rest of the swing after three decay times; two digits as printed
 assert abs(load - 40e3) < 100 and abs(end - 9.5e-5) < 0.1e-5, (load, end)
 END
+# Energy is kept: Verlet's order of the step.
+/usr/bin/python3 - out/hammer/history.csv <<'END'
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+energy = [sum(float(row[f"energy.{part}[M L2/T2]"]) for part in ("kinetic", "elastic", "contact", "fracture"))
+          for row in (rows[0], rows[-1])]
+spring = float(rows[-1]["hammer.force_on_support.y[M L/T2]"])
+assert abs(energy[0] - 176.4) < 0.1 and abs(energy[1] / energy[0] - 1) < 1e-3, energy
+assert abs(spring - 1e7 * float(rows[-1]["hammer.displacement.y[L]"])) < 1e-6 * abs(spring)
+END

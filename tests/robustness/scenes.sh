@@ -68,6 +68,13 @@ refused $flow "domain.cells=[120, 61, 1]" "cells are cubes"
 refused $flow fluid.sides.x.lower.mean=-1 "nothing comes in through this inflow"
 refused $flow "bodies.cylinder.velocity=[1, 0]" "a fixed body has no velocity"
 refused $flow "bodies.cylinder.shape={cylinder: {centre: [40, 2], radius: 0.5}}" "outside the domain"
+refused $flow "bodies.cylinder.shape={box: {from: [4, -1], to: [4.5, 5]}}" "they block the channel"
+refused $flow "numerics.step=1" "the fluid and its sides at the start bear at most"
+# An opening of one cell is a way, and told as too narrow.
+"$build/bin/breakwater" "$source/scenes/$flow/$flow.yaml" --check \
+  --set "bodies.cylinder.shape={box: {from: [4, -1], to: [4.5, 3.9333]}}" >"$out/log" 2>&1 ||
+  complain "a narrow opening: $(tail -1 "$out/log")"
+grep -q "upper wall in y is a gap of about 1.0 cells" "$out/log" || complain "no word of a narrow gap"
 [ ! -e "$out/refused/history.csv" ] || complain "a refused scene has written"
 
 # ---- help and schema ----------------------------------------------------------------------------

@@ -43,6 +43,12 @@ def check_cells(data, nz, path):
                 q += 1
 
 
+def check_time(data, time, path):
+    """The time of the file, as VTK's readers hand it on; NaN leaves none."""
+    stamp = data.GetFieldData().GetArray("TimeValue")
+    same(None if stamp is None else stamp.GetTuple1(0), time, f"{path} time")
+
+
 def check_points(data, path):
     """Rank 0 wrote two points, rank 1 (the last) none."""
     same(data.GetNumberOfPoints(), 2, f"{path} points")
@@ -62,12 +68,17 @@ image = read(vtkXMLImageDataReader(), f"{folder}/uniform.vti")
 same(image.GetSpacing(), (0.25, 0.5, 0.75), "uniform.vti spacing")
 same(image.GetOrigin(), (0, 0, 0), "uniform.vti origin")
 check_cells(image, N[2], "uniform.vti")
+check_time(image, 0.125, "uniform.vti")
 check_cells(read(vtkXMLImageDataReader(), f"{folder}/flat.vti"), 1, "flat.vti")
 rectilinear = read(vtkXMLRectilinearGridReader(), f"{folder}/stretched.vtr")
 check_cells(rectilinear, N[2], "stretched.vtr")
 y = rectilinear.GetYCoordinates()
 same((y.GetValue(0), y.GetValue(N[1])), (0.0, 3.5), "stretched.vtr ends of y")
 assert all(y.GetValue(j) < y.GetValue(j + 1) for j in range(N[1])), "y does not increase"
-check_points(read(vtkXMLPolyDataReader(), f"{folder}/points.vtp"), "points.vtp")
-same(read(vtkXMLPolyDataReader(), f"{folder}/none.vtp").GetNumberOfPoints(), 0, "none.vtp")
+points = read(vtkXMLPolyDataReader(), f"{folder}/points.vtp")
+check_points(points, "points.vtp")
+check_time(points, 0.375, "points.vtp")
+none = read(vtkXMLPolyDataReader(), f"{folder}/none.vtp")
+same(none.GetNumberOfPoints(), 0, "none.vtp")
+check_time(none, None, "none.vtp")
 print(f"VTK reads what was written: {checked} comparisons")

@@ -128,7 +128,7 @@ static bw_status picture(vortex *q, const char *name)
   char *path = NULL, *series = NULL;
   bw_status st = bw_case_path(q->run, name, &path);
   BW_THEN(st, bw_case_path(q->run, "fluid.pvd", &series));
-  BW_THEN(st, bw_vtk_write_grid(q->grid, path, 1, &field));
+  BW_THEN(st, bw_vtk_write_grid(q->grid, path, bw_ns_channel_time(q->fluid), 1, &field));
   BW_THEN(st, bw_vtk_series_add(bw_grid_comm(q->grid), series, bw_ns_channel_time(q->fluid), name));
   bw_release(&path);
   bw_release(&series);

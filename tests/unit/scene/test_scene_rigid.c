@@ -191,6 +191,45 @@ START_TEST(flow)
 }
 END_TEST
 
+/* The mean force of the flow on the disc from t = 0.3 on. */
+static double mean_force(const char *fluid, const char *body)
+{
+  char text[2048];
+  snprintf(text, sizeof text,
+           "domain: {length: [2, 1, 0.0625], cells: [32, 16, 1]}\n"
+           "fluid:\n  density: 1\n  viscosity: 0.005\n  start: {velocity: [%s, 0]}\n  sides:\n"
+           "    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n"
+           "    y: {lower: {kind: free_slip}, upper: {kind: free_slip}}\n"
+           "bodies:\n  disc: {shape: {sphere: {centre: [1, 0.5], radius: 0.2}}, motion: rigid, "
+           "velocity: [%s, 0], rigid: {mass: 1, held: [x, y, turn]}}\n"
+           "phases: {until: 1}\nnumerics: {step: 0.01}\ngauges: {d: {body: disc, of: force}}\n",
+           fluid, body);
+  bw_scene *s = made(text);
+  double sum = 0.0;
+  int n = 0;
+  while (!bw_scene_done(s)) {
+    bw_check_ok(bw_scene_step(s, INFINITY));
+    if (bw_scene_time(s) < 0.3) continue;
+    sum += gauge(s, "d.reaction.x");
+    n++;
+  }
+  bw_scene_destroy(&s);
+  return sum / n;
+}
+
+/* Galilei: a disc held in a stream, and one that is moved through still fluid, at a cell Reynolds
+ * number of 12.5. What the body comes to cover is not to count as pushed: over the place that the
+ * body had, the momentum inside took a quarter off the force; now 0.6 % are missing. The bound is
+ * the wandering of the wall through the cells, 0.1 of 6.4 on either side (bw_ibm_mdf.h), on a force
+ * that goes with the width. */
+START_TEST(stream_or_motion)
+{
+  const double held = mean_force("-1", "0"), moved = mean_force("0", "1");
+  ck_assert_double_lt(held, 0.0);
+  bw_check_near(moved / held, 1.0, 0.03);
+}
+END_TEST
+
 START_TEST(restart)
 {
   static const char *const mixed[] = {"a.position.x", "b.velocity.x", "b.spin.z", NULL};
@@ -238,5 +277,5 @@ END_TEST
 
 static const bw_check_test tests[] = {
     BW_TEST(springs), BW_TEST(mass_of_the_file), BW_TEST(rigid_meet), BW_TEST(rigid_and_particles),
-    BW_TEST(flow),    BW_TEST(restart),          BW_TEST(refused)};
+    BW_TEST(flow),    BW_TEST(stream_or_motion), BW_TEST(restart),    BW_TEST(refused)};
 BW_CHECK_MAIN("scene.rigid", tests)

@@ -87,7 +87,7 @@ static void write_and_check(bw_grid *grid, const char *name)
       {.name = "pressure", .data = {p}},
       {.name = "velocity", .data = {u, v, nz > 1 ? w : NULL}, .staggered = true},
       {.name = "scaled & <odd>", .data = {p}, .scale = -0.5}};
-  bw_check_ok(bw_vtk_write_grid(grid, path, 3, fields));
+  bw_check_ok(bw_vtk_write_grid(grid, path, 0.125, 3, fields));
   bw_comm_barrier(bw_check_world());
 
   vtk_file f = vtk_open(path);
@@ -194,7 +194,7 @@ START_TEST(points_in_rank_order)
                                  {"surface", BW_VTK_UINT8, 1, empty ? NULL : surface}};
   char path[512];
   make_folder(path, "points.vtp");
-  bw_check_ok(bw_vtk_write_points(bw_check_world(), path, n, position, 4, arrays));
+  bw_check_ok(bw_vtk_write_points(bw_check_world(), path, 0.375, n, position, 4, arrays));
   bw_comm_barrier(bw_check_world());
 
   size_t total = 0;
@@ -233,7 +233,7 @@ START_TEST(no_points_at_all)
   char path[512];
   make_folder(path, "none.vtp");
   const bw_vtk_array array = {"damage", BW_VTK_FLOAT32, 1, NULL};
-  bw_check_ok(bw_vtk_write_points(bw_check_world(), path, 0, NULL, 1, &array));
+  bw_check_ok(bw_vtk_write_points(bw_check_world(), path, NAN, 0, NULL, 1, &array));
   vtk_file f = vtk_open(path);
   vtk_has(&f, "NumberOfPoints=\"0\"");
   vtk_close(&f);
@@ -277,17 +277,17 @@ START_TEST(refusals_name_the_path)
   ck_assert_str_eq(bw_vtk_grid_extension(grid), ".vtr");
 
   make_folder(path, "wrong.vti");
-  bw_check_status(bw_vtk_write_grid(grid, path, 1, &field), BW_EINPUT);
+  bw_check_status(bw_vtk_write_grid(grid, path, NAN, 1, &field), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "wrong.vti"));
   make_folder(path, "nameless.vtr");
-  bw_check_status(bw_vtk_write_grid(grid, path, 1, &nameless), BW_EINPUT);
+  bw_check_status(bw_vtk_write_grid(grid, path, NAN, 1, &nameless), BW_EINPUT);
   make_folder(path, "no/such/folder.vtr");
-  bw_check_status(bw_vtk_write_grid(grid, path, 1, &field), BW_EIO);
+  bw_check_status(bw_vtk_write_grid(grid, path, NAN, 1, &field), BW_EIO);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "no/such/folder.vtr"));
 
   const bw_vtk_array two = {"pair", BW_VTK_FLOAT64, 2, &grid};
   make_folder(path, "pair.vtp");
-  bw_check_status(bw_vtk_write_points(comm, path, 0, NULL, 1, &two), BW_EINPUT);
+  bw_check_status(bw_vtk_write_points(comm, path, NAN, 0, NULL, 1, &two), BW_EINPUT);
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "'pair'"));
 
   /* Somebody's own file is left alone. */

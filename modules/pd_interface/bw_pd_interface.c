@@ -67,6 +67,10 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->now.position, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->now.list_normal, 3 * n));
   BW_THEN(st, BW_ALLOCATE(&pi->now.area, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.height, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.smooth, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->now.bend, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.bend, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->fit.own_normal, 3 * n));
   /* Normals of copies too: fits reach across ranks. */
@@ -202,6 +206,10 @@ static void release_all(bw_pd_interface *p)
                     (void **)&p->now.position,
                     (void **)&p->steps,
                     (void **)&p->now.area,
+                    (void **)&p->now.height,
+                    (void **)&p->now.smooth,
+                    (void **)&p->now.bend,
+                    (void **)&p->fit.bend,
                     (void **)&p->now.list_normal,
                     (void **)&p->seen.link,
                     (void **)&p->seen.state,
@@ -260,7 +268,10 @@ bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi)
                          .particle = pi->now.list,
                          .X = pi->now.position,
                          .N = pi->now.list_normal,
-                         .A = pi->now.area};
+                         .A = pi->now.area,
+                         .H = pi->now.height,
+                         .bend = pi->now.bend,
+                         .smooth = pi->now.smooth};
 }
 
 const bool *bw_pd_interface_is_surface(const bw_pd_interface *pi)

@@ -18,6 +18,10 @@
  *     that sum A n is nothing, as on a closed surface (a uniform pressure gives no net force), and
  *     sum A n_d x_d the volume, for each direction d (figures in docs/verification/pd_interface);
  *   equal: as with POROUS 3.96, the body's area over their number.
+ * Heights: a particle is a cube of edge ds, so on a side of the lattice the surface is ds/2 above
+ * the centre; on a smooth slanted one, whose sides are steps, their mean is ds/(2 sum_d |n_d|), n_d
+ * along the lattice's directions (ERRATA 33): the planes that cut off the particles' own volume. On
+ * ridges and edges ds/2.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
  * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
  * them as planes in the config (refused for a disordered cloud, which no plane mirrors). There
@@ -74,6 +78,11 @@ typedef struct {
   const double *X;         /* (n,3) position [L] */
   const double *N;         /* (n,3) unit outward normal, into the fluid */
   const double *A;         /* (n) area [L^2] */
+  const double *H;         /* (n) how far above the centre, along N, the surface is [L] */
+  const double *bend;      /* (n) change of N along the surface, sqrt(1/R_1^2 + 1/R_2^2), in the
+                              reference shape [1/L]; 0 where it is not smooth */
+  const bool *smooth;      /* (n) it is smooth there: N is one to a few degrees, not a ridge's or
+                              an edge's, whose sides look elsewhere */
 } bw_pd_surface;
 /* The surface as of the last update; arrays are borrowed until the next. Local. */
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);

@@ -116,8 +116,9 @@ static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit
   }
 }
 
-/* The fit at h, to value. Returns its rms residual; INFINITY, and value as it was: no fit. */
-static double solve_fit(fit_sums *sums, int dims, double value[3])
+/* The fit at h, to value; its slope along the surface to *bend. Returns its rms residual; INFINITY,
+ * and value as it was: no fit. */
+static double solve_fit(fit_sums *sums, int dims, double value[3], double *bend)
 {
   double(*m)[3] = sums->ff, inverse[3][3], c[3][3] = {{0.0}}, explained = 0.0;
   const double members = m[0][0], more = 1e-6 * (m[1][1] + m[2][2]);
@@ -135,7 +136,8 @@ static double solve_fit(fit_sums *sums, int dims, double value[3])
     /* Residual of a least-squares fit: sum of squares less what the fit explains. */
     explained += dot(c[a], sums->fn[a]);
   }
-  /* c[0] is the value at h itself; its slopes are not needed any more. */
+  *bend = sqrt(dot(c[1], c[1]) + dot(c[2], c[2]));
+  /* c[0] is the value at h itself. */
   const double length = sqrt(dot(c[0], c[0]));
   if (!(length > 0.5)) return INFINITY;
   for (int d = 0; d < 3; d++)
@@ -187,11 +189,19 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
     if (!pi->fit.touched[h]) continue;
     memcpy(n, there ? &pi->normal[3 * h] : none, sizeof n);
     if (there) sum_fit(pi, h, from, &sums);
-    const double rms = there ? solve_fit(&sums, pi->stencil.dims, n) : INFINITY;
+    double bend = 0.0;
+    const double rms = there ? solve_fit(&sums, pi->stencil.dims, n, &bend) : INFINITY;
+    pi->fit.bend[h] = bend; /* that of the last pass stays */
     /* First judgement: where the fit of a fit is rough, the
      * particle keeps 3.45 and is not seen any more. */
     put(pi, to, h, !judge ? n : rms <= SMOOTH ? &pi->normal[3 * h] : none);
   }
+}
+
+bool bw_pd_interface__is_smooth(const bw_pd_interface *pi, size_t h)
+{
+  const double *n = &pi->fit.told[BW_PD_INTERFACE__PASSES][3 * h];
+  return dot(n, n) > 0.0;
 }
 
 void bw_pd_interface__settle_normals(bw_pd_interface *pi)

@@ -90,7 +90,9 @@ typedef struct {
   int32_t *list; /* (n_list) which particle */
   size_t n_list;
   double *position, *list_normal; /* (n_list,3) */
-  double *area;                   /* (n_list) */
+  double *area, *height;          /* (n_list) */
+  double *bend;                   /* (n_list) */
+  bool *smooth;                   /* (n_list) */
   bw_pd_interface__lines *lines;  /* (n_list / 8, rounded up) */
   double *off_lattice; /* (the same,3,3,8) of a cloud: its line elements less the lattice's
                           [L]; NULL: a lattice */
@@ -102,6 +104,7 @@ typedef struct {
   double *told[BW_PD_INTERFACE__PASSES + 1]; /* (n_extended,3) the same by 3.45 and after each pass
                                                 of fits over it */
   bool *changed;                             /* (n_extended) since they were settled last */
+  double *bend;                              /* (n) slope of the last fit [1/L]; 0: none */
   bool *touched, *border; /* (n) a partner changed; it has copies or images as partners */
   double *borne;          /* (n_extended,3) scratch: forces that bear moments */
 } bw_pd_interface__fit;
@@ -169,6 +172,8 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd
 void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty);
 /* own_normal of the surface: 3.45, or its fit where that is smooth. Collective. */
 void bw_pd_interface__settle_normals(bw_pd_interface *pi);
+/* Did the fits find the surface smooth at h? After settle_normals. Local. */
+bool bw_pd_interface__is_smooth(const bw_pd_interface *pi, size_t h);
 
 /* bw_pd_lines.c. Of h, resolved last: where its line elements end. */
 void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);

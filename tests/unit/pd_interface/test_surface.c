@@ -251,6 +251,8 @@ START_TEST(flat_faces_are_exact)
     const double *x = &s.X[3 * q], *n = &s.N[3 * q];
     if (fabs(x[0] - 0.6) > 0.21 || fabs(x[2] - 0.6) > 0.21) continue;
     bw_check_near(n[1], x[1] > 7.5 ? 1.0 : -1.0, 1e-12);
+    bw_check_near(s.H[q], 0.5 * c.ds, 1e-12);
+    bw_check_near(s.bend[q], 0.0, 1e-9);
     ck_assert_msg(x[1] < 7.11 || x[1] > 7.89, "y = %g is not a face", x[1]);
     seen++;
   }

@@ -25,7 +25,8 @@ static const bw_config_field fluid_fields[] = {
 static const bw_config_field solid_fields[] = {
     V(porous_solid, density, BW_REQUIRED, BW_ABOVE(0), "kg/m3", "density of the solid"),
     V(porous_solid, young_modulus, BW_REQUIRED, BW_ABOVE(0), "Pa", "Young's modulus of the solid"),
-    V(porous_solid, fracture_energy, BW_REQUIRED, BW_ABOVE(0), "J/m2", "fracture energy G0"),
+    V(porous_solid, fracture_energy, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "J/m2",
+      "fracture energy G0; another one may go on from where nothing has broken yet"),
     V(porous_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "",
       "horizon over the spacing of the particles"),
     V(porous_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "N s/m7",

@@ -41,6 +41,10 @@ cp -r "$out/base" "$out/longer"
 porous longer --set breakage.steps=36 --restart "$out/longer/checkpoint-breakage.h5"
 cmp "$out/whole/history.csv" "$out/longer/history.csv" || fail "the longer run is another one"
 grep -q '"breakage.steps is 36, was 25"' "$out/longer/run.yaml" || fail "the change is not listed"
+# What ./run porous --full does: another fracture energy, from where nothing has broken.
+porous weaker --set breakage.steps=2 --set solid.fracture_energy=0.012 \
+  --restart "$out/base/checkpoint-deformation.h5"
+grep -q '"solid.fracture_energy is 0.012, was' "$out/weaker/run.yaml" || fail "weaker is not listed"
 mpirun -n 2 "$build/bin/porous_breakup" "$source/tests/support/porous_small.yaml" --quiet \
   --out "$out/complete" --set flow.steps=5 --set deformation.steps=40 --set breakage.steps=25 \
   --restart "$out/base/checkpoint-breakage.h5" || fail "a complete run"

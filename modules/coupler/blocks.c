@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROW = 7 }; /* area, position, velocity of a member */
+enum { ROW = 10 }; /* area, position, velocity, normal (or NaN) of a member */
 
 /* Bits of a block's number: 19 per direction, 3 for the face; the top bit marks particles with a
  * marker of their own, which are known by their id. */
@@ -16,7 +16,8 @@ static const int64_t OWN_MARKER = (int64_t)1 << 62;
 void bw_coupler__blocks_release(bw_coupler__blocks *b)
 {
   bw_exchange_destroy(&b->plan);
-  double **const all[] = {&b->send, &b->receive, &b->X, &b->V, &b->M, &b->dV, &b->area, &b->force};
+  double **const all[] = {&b->send, &b->receive, &b->X,    &b->V,    &b->N,
+                          &b->M,    &b->dV,      &b->area, &b->force};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&b->order);
@@ -147,10 +148,10 @@ static bw_status number_markers(bw_coupler__blocks *b, const int64_t received[])
 
 static bw_status allocate_markers(bw_coupler__blocks *b)
 {
-  double **const all[] = {&b->X, &b->V, &b->M, &b->force, &b->dV, &b->area};
-  for (int q = 0; q < 6; q++) {
+  double **const all[] = {&b->X, &b->V, &b->N, &b->M, &b->force, &b->dV, &b->area};
+  for (int q = 0; q < 7; q++) {
     bw_release(all[q]);
-    BW_TRY(BW_ALLOCATE(all[q], (q < 4 ? 3 : 1) * b->n));
+    BW_TRY(BW_ALLOCATE(all[q], (q < 5 ? 3 : 1) * b->n));
   }
   return BW_OK;
 }
@@ -204,6 +205,7 @@ static void gather_markers(bw_coupler *c)
   bw_coupler__blocks *b = &c->blocks;
   memset(b->X, 0, 3 * b->n * sizeof *b->X);
   memset(b->V, 0, 3 * b->n * sizeof *b->V);
+  memset(b->N, 0, 3 * b->n * sizeof *b->N);
   memset(b->area, 0, b->n * sizeof *b->area);
   /* In the fixed order of blocks and ids, so that sums are the same on any number of ranks. */
   for (size_t q = 0; q < b->n_members; q++) {
@@ -213,6 +215,7 @@ static void gather_markers(bw_coupler *c)
     for (int d = 0; d < 3; d++) {
       b->X[3 * m + d] += row[0] * row[1 + d];
       b->V[3 * m + d] += row[0] * row[4 + d];
+      if (!isnan(row[7])) b->N[3 * m + d] += row[0] * row[7 + d];
     }
   }
   for (size_t m = 0; m < b->n; m++) {
@@ -220,6 +223,12 @@ static void gather_markers(bw_coupler *c)
     b->dV[m] = b->area[m] * c->h; /* ERRATA 17 */
     for (int d = 0; d < 3; d++)
       b->X[3 * m + d] /= b->area[m], b->V[3 * m + d] /= b->area[m];
+    /* Members look about the same way, being of one face. Most of them know it, or none does. */
+    double *N = b->N + 3 * m;
+    const double length = sqrt(N[0] * N[0] + N[1] * N[1] + N[2] * N[2]);
+    const bool has = length > 0.5 * b->area[m];
+    for (int d = 0; d < 3; d++)
+      N[d] = has ? N[d] / length : NAN;
   }
 }
 
@@ -232,6 +241,7 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c)
     b->send[ROW * q] = c->area[q];
     memcpy(b->send + ROW * q + 1, c->marker_X + 3 * q, 3 * sizeof *b->send);
     memcpy(b->send + ROW * q + 4, c->marker_V + 3 * q, 3 * sizeof *b->send);
+    memcpy(b->send + ROW * q + 7, c->side + 3 * q, 3 * sizeof *b->send);
   }
   bw_exchange_forward(b->plan, ROW * sizeof *b->send, b->send, b->receive);
   gather_markers(c);

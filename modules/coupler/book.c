@@ -25,7 +25,8 @@ static const double SWINGING = -0.8; /* correlation of successive changes of the
                                         it changes its sign every step, -0.5 of noise */
 static const double STIRRED = 1e-3; /* kinetic energy over the energy held, from which it matters */
 static const double GROWN = 1.5;    /* of a window over the one before */
-static const double NOTHING = 1e-6; /* of the stream's energy in the solid's volume */
+static const double NOTHING = 1e-4; /* of the stream's energy in the solid's volume: waves of the
+                                        lattice that a start leaves are less */
 
 enum { MISSED, GIVEN, RECEIVED, CHANGE, PRODUCT, KINETIC, LATE };
 enum { BOOK, SWING, KINDS };

@@ -66,7 +66,8 @@ static bw_status create_parts(bw_coupler *c)
   ibm.kernel = c->config.kernel;
   ibm.n_iter = c->config.iterations;
   ibm.memory = c->config.memory;
-  /* Left open: the retraction at which a cylinder's drag has no error (ERRATA 21). */
+  /* Left open: markers with memory stand on the surface; without they are retracted (ERRATA 21). */
+  c->on_surface = isnan(c->config.retraction) && c->config.memory > 0.0;
   if (isnan(c->config.retraction)) c->config.retraction = bw_ibm_mdf_retraction(&ibm);
   probe.length = c->config.probe_length;
   probe.profile = c->config.probe_profile;
@@ -78,19 +79,22 @@ static bw_status create_parts(bw_coupler *c)
   memset(surface.lower, 0, sizeof surface.lower);
   BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->ibm));
   bw_ibm_mdf_set_ghosts(c->ibm, set_ghosts, c->fluid);
+  if (c->config.coupling_iterations > 1 && c->config.load == BW_LOAD_REACTION)
+    BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->inside_fluid));
   BW_TRY(bw_probe_create(grid, &probe, &c->probe));
   return bw_pd_interface_create(c->solid, &surface, &c->interface);
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 24 };
+enum { N_VECTORS = 26 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
       &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
       &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
       &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V,      &c->load,
-      &c->moment,   &c->M,        &c->marker_M, &c->book.X,    &c->book.V,      &c->book.change};
+      &c->moment,   &c->M,        &c->marker_M, &c->book.X,    &c->book.V,      &c->book.change,
+      &c->height,   &c->side};
   memcpy(vector, all, sizeof all);
 }
 
@@ -267,6 +271,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);
   bw_ibm_mdf_destroy(&c->ibm);
+  bw_ibm_mdf_destroy(&c->inside_fluid);
   bw_release(coupler);
 }
 

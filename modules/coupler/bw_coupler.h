@@ -35,15 +35,19 @@
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
  * velocity is that of a quasi-Newton step (IQN-ILS, iterate.c); what earlier tries do not tell is
  * relaxed by load_relaxation (0.1; smaller for light plates, whose first tries overshoot most). The
- * load is the whole load of the same step. Markers stay where the surface was at its beginning.
+ * load is the whole load of the same step, without the inertia of the fluid inside, which the
+ * reaction holds; it has to be that of the motion to the same residual. Markers stay where the
+ * surface was at its beginning.
  *
  * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
  * pressure swings between the sub-steps; what acted over the step is sum_r gamma_r p_r, and that is
  * what the probes read (the pressure conjugate to ERRATA 18's mean force).
  *
- * Where the surface is: a particle is a cube of edge ds, so the nominal surface lies ds/2 outside
- * the centre of a surface particle, along its normal. Probes start there. Markers sit `retraction`
- * grid spacings inside it (ERRATA 21): with ds = h and a retraction of 0.5 at the centres.
+ * Where the surface is: a particle is a cube of edge ds, so the nominal surface is the mean height
+ * of its open sides, ds/(2 sum_d |n_d|) outside its centre along its normal, ds/2 on a side of the
+ * lattice (ERRATA 33). Probes start there. Where it is curved, smooth and whole, markers with
+ * memory stand there too and know the normal (bw_ibm_mdf_set_normals); elsewhere, or with a
+ * `retraction`, they sit so many grid spacings inside (ERRATA 21), the same on flat faces.
  *
  * What markers remember (bw_ibm_mdf.h) is kept per particle: a block's memory is the sum over its
  * members, and goes back to them in shares of area. Particles that lost a bond have none: faces of
@@ -99,8 +103,9 @@ typedef struct {
   int iterations;            /* forcing iterations [-]                      default 1 */
   double memory;             /* of the markers (bw_ibm_mdf.h), 0 .. 0.5 [-]; 0: none, which asks
                                 for two iterations or more                  default 0.2 */
-  double retraction;         /* of the markers, in grid spacings [-]; NaN: the best one known
-                                for kernel and iterations (bw_ibm_mdf_retraction)  default NaN */
+  double retraction;         /* of the markers, in grid spacings [-]; NaN: none on smooth curved
+                                surfaces (above), elsewhere and without memory that of
+                                bw_ibm_mdf_retraction                       default NaN */
   double marker_spacing;     /* along the surface, in grid spacings, at most (whole particles);
                                 0: every surface particle is a marker   default 0 */
   double probe_length;       /* in grid spacings [-]                        default 2 */
@@ -111,8 +116,8 @@ typedef struct {
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
   double virtual_mass;       /* of the surface, over w rho A h; 0: none [-]   default 1 */
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
-  double coupling_residual;  /* iterated: rms change of the surface's velocity over its rms
-                                that ends the iteration [-]             default 1e-4 */
+  double coupling_residual;  /* iterated: what the surface's velocity and the load lack of a fixed
+                                point, over their norms, that ends it [-]   default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
   bool check_book;   /* stop when fluid and solid no longer exchange work as bodies do, with what
                         and since when (book.c, BW_EDIVERGED)              default true */

@@ -43,24 +43,25 @@ typedef struct {
   bw_exchange *plan;       /* members to the ranks of their markers */
   size_t n_members, n;     /* received members, markers */
   int32_t *order, *marker; /* (n_members) rising by block and id; which marker is whose */
-  double *send, *receive;  /* (n_surface,7), (n_members,7): area, X, V */
-  double *X, *V, *M, *dV, *area, *force; /* (n,3), (n,3), (n,3), (n), (n), (n,3) */
-  size_t n_surface;                      /* surface the plan is for */
-  int64_t events;                        /* broken bonds then, bw_solid_events */
-  int32_t *particle;                     /* (particles) and its members */
-  uint16_t *broken;                      /* (particles) broken bonds of each */
+  double *send, *receive;  /* (n_surface,10), (n_members,10): area, X, V, normal */
+  double *X, *V, *N, *M, *dV, *area, *force; /* (n,3), area and dV (n) */
+  size_t n_surface;                          /* surface the plan is for */
+  int64_t events;                            /* broken bonds then, bw_solid_events */
+  int32_t *particle;                         /* (particles) and its members */
+  uint16_t *broken;                          /* (particles) broken bonds of each */
   int8_t *face;   /* (particles) 2 axis + side of the reference normal, or -1 */
   int64_t *block; /* (particles) reference site over k, packed */
 } bw_coupler__blocks;
 
 /* Iterated coupling (iterate.c): state at the beginning of the step, positions then (n,3);
- * velocity with which the solid answers (n,3); guess of the markers' and its residual
- * (n_surface,3); what earlier tries of the step taught, (n_surface,3) a column. */
+ * velocity with which the solid answers (n,3), load of the try before (n,3), the fluid's velocity
+ * inside at the beginning (n,3); guess of the markers' and its residual (n_surface,3); what earlier
+ * tries of the step taught, (n_surface,3) a column. */
 enum { BW_COUPLER__COLUMNS = 30 };
 #define BW_COUPLER__THETA 0.8 /* of the displacement; ringing: -2/3 */
 typedef struct {
   bw_coupler__state start;
-  double *X, *answer, *guess, *residual;
+  double *X, *answer, *load, *inside, *guess, *residual;
   int columns, room; /* used, and how many there may be */
   double *q[BW_COUPLER__COLUMNS], *d[BW_COUPLER__COLUMNS];
 } bw_coupler__iteration;
@@ -71,6 +72,7 @@ struct bw_coupler {
   bw_solid *solid;
   bw_pd_interface *interface;
   bw_ibm_mdf *ibm;
+  bw_ibm_mdf *inside_fluid; /* reads the fluid where the particles are; NULL: nobody does */
   bw_probe *probe;
   bool held;
   size_t n;         /* particles of this rank */
@@ -88,6 +90,9 @@ struct bw_coupler {
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
   double *marker_M; /* (n,3) memory of the surface points [L^4/T^2]; NaN: they have none */
   double *root, *normal, *area;     /* probe points (n,3), normals (n,3), areas (n) */
+  double *height;                   /* (n) of the surface above its particles' centres [L] */
+  double *side;                     /* (n,3) normals that markers know; NaN: they are retracted */
+  bool on_surface;                  /* markers know their normals and stand on the surface */
   double *accel, *traction, *force; /* (n,3) each: of the surface points */
   double *load;                     /* (n,3) of c->force, on the particles [M L/T^2] */
   double *moment;                   /* (n,3) of the interface's rows [M L^2/T^2] */
@@ -135,9 +140,9 @@ bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
 /* The memory of the markers to the particles, at the end of a step. Collective. */
 void bw_coupler__remember(bw_coupler *c);
-/* Velocity (n_surface,3) of points that far inside the nominal surface, and of the markers, by the
- * solid's present velocities; c->spin and c->V are current after. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[]);
+/* Velocity (n_surface,3) of the surface points or of their markers, by the solid's present
+ * velocities; c->spin and c->V are current after. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, bool marker, double V[]);
 void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
 /* Sets c->V of the surface particles to what makes the markers move at V (n_surface,3). Collective.
  */
@@ -179,11 +184,9 @@ void bw_coupler__blocks_velocity(bw_coupler *c, double out[]);
 void bw_coupler__blocks_memory(bw_coupler *c);
 void bw_coupler__blocks_release(bw_coupler__blocks *b);
 
-/* How far inside the nominal surface markers sit. Local. */
-double bw_coupler__marker_depth(const bw_coupler *c);
-/* c->force to the particles, c->load (Collective); that, relaxed, to their force density F (Local).
- */
-void bw_coupler__carry_force(bw_coupler *c, double depth);
+/* c->force, of the surface points or of their markers, to the particles, c->load (Collective);
+ * that, relaxed, to their force density F (Local). */
+void bw_coupler__carry_force(bw_coupler *c, bool marker);
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation);
 void bw_coupler__state_release(bw_coupler__state *s);
 bw_status bw_coupler__state_create(const bw_coupler *c,
@@ -210,6 +213,9 @@ bw_status bw_coupler__book_close(bw_coupler *c) BW_MUST_CHECK;
 /* The status of a step that failed, `cause`; its message names the coupling where the book says so.
  * Collective. */
 bw_status bw_coupler__book_explain(bw_coupler *c, bw_status cause) BW_MUST_CHECK;
+/* Of an iterated step loaded by the reaction: takes the inertia of the fluid inside out of c->load.
+ * Collective. */
+void bw_coupler__free_inside(bw_coupler *c, double dt);
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);

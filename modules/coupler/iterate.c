@@ -13,7 +13,20 @@
  * of V and the change dr of r are known. What lies of r in the span of these dr is taken away by
  * the combination of the dV that belongs to it, the rest is relaxed: V <- V - sum_i (q_i.r) d_i +
  * omega (r - sum_i (q_i.r) q_i), q_i the dr made orthonormal, d_i the dV in the same combination. A
- * dr that hardly leaves the span of those before says nothing new and is left out. */
+ * dr that hardly leaves the span of those before says nothing new and is left out.
+ *
+ * A step has converged when it is a fixed point of both: the residual of the motion, and that of
+ * the load, by which it would change if the surface moved as the solid answers. This is the slope
+ * of the load against the motion, as the last two tries show it, times the residual of the motion:
+ * the load holds the added mass over dt, and is off by much more than the motion. The residual of a
+ * step is the larger one; where all of it vanishes one try will do, else there are two at least.
+ *
+ * Inertia of the fluid inside. The markers move it, and their reaction holds that force, which is
+ * none on the body. It is put on the solid's side (M. Uhlmann, J. Comput. Phys. 209 (2005) 448; T.
+ * Kempe and J. Froehlich, J. Comput. Phys. 231 (2012) 3663): m a = R + rho V_h (U - U before)/dt, U
+ * the fluid's velocity at each particle, at the end and at the beginning of the step. It has to be
+ * that of the fluid: with the body's own acceleration in its place, which the fluid inside follows
+ * within some steps only, a body as heavy as the fluid would be thrown about. */
 #include "bw_memory.h"
 #include "coupler_internal.h"
 
@@ -33,6 +46,8 @@ bw_status bw_coupler__iteration_create(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&t->answer, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&t->guess, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&t->residual, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&t->load, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&t->inside, 3 * c->n));
   for (int i = 0; i < t->room; i++) {
     BW_TRY(BW_ALLOCATE(&t->q[i], 3 * c->n));
     BW_TRY(BW_ALLOCATE(&t->d[i], 3 * c->n));
@@ -48,6 +63,8 @@ void bw_coupler__iteration_release(bw_coupler *c)
   bw_release(&t->answer);
   bw_release(&t->guess);
   bw_release(&t->residual);
+  bw_release(&t->load);
+  bw_release(&t->inside);
   for (int i = 0; i < t->room; i++) {
     bw_release(&t->q[i]);
     bw_release(&t->d[i]);
@@ -63,8 +80,56 @@ static bw_status give_guess(bw_coupler *c)
   return c->block > 1 ? bw_coupler__blocks_follow(c) : BW_OK;
 }
 
-/* The solid's answer to the guess, less the guess; its norm over that of the answer. */
-static double compare(bw_coupler *c, double dt)
+/* The velocity of the fluid in place of each particle, U (n,3). Collective. */
+static void look_inside(bw_coupler *c, double U[])
+{
+  bw_ibm_mdf_interpolate(c->inside_fluid, bw_ns_channel_velocity(c->fluid), U);
+}
+
+/* Before the first try: where the particles are, and how the fluid moves there. */
+static bw_status open_inside(bw_coupler *c)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  double *rest = c->accel, *volume = c->traction; /* scratch */
+  if (c->inside_fluid == NULL) return BW_OK;
+  memset(rest, 0, 3 * c->n * sizeof *rest);
+  for (size_t i = 0; i < c->n; i++)
+    volume[i] = bw_solid_volume(c->solid);
+  BW_TRY(bw_ibm_mdf_set_markers(c->inside_fluid, c->n, t->X, rest, volume, NULL));
+  look_inside(c, t->inside);
+  return BW_OK;
+}
+
+void bw_coupler__free_inside(bw_coupler *c, double dt)
+{
+  const double mass = c->config.rho * bw_solid_volume(c->solid);
+  double *U = c->traction; /* scratch: only probes use it */
+  if (c->inside_fluid == NULL) return;
+  look_inside(c, U);
+  for (size_t i = 0; i < 3 * c->n; i++)
+    c->load[i] += mass / dt * (U[i] - c->iteration.inside[i]);
+}
+
+/* By how much the load would change, over its own norm, if the surface moved on by the residual:
+ * `residual` is its norm, `step` that of what changed the guess since the try before. */
+static double load_residual(bw_coupler *c, double residual, double step)
+{
+  bw_coupler__iteration *t = &c->iteration;
+  double sums[2] = {0.0, 0.0};
+  for (size_t i = 0; i < 3 * c->n; i++) {
+    const double change = c->load[i] - t->load[i];
+    sums[0] += change * change;
+    sums[1] += c->load[i] * c->load[i];
+  }
+  bw_comm_sum(bw_solid_comm(c->solid), 2, sums);
+  memcpy(t->load, c->load, 3 * c->n * sizeof *t->load);
+  if (residual == 0.0) return 0.0;
+  /* The first try shows no slope. */
+  return c->iterations == 1 ? INFINITY : residual * sqrt(sums[0] / fmax(sums[1], 1e-300)) / step;
+}
+
+/* The solid's answer to the guess, less the guess; its norm, and over that of the answer. */
+static double compare(bw_coupler *c, double dt, double *norm)
 {
   bw_coupler__iteration *t = &c->iteration;
   double *V = c->accel, sums[2] = {0.0, 0.0}; /* scratch */
@@ -86,6 +151,7 @@ static double compare(bw_coupler *c, double dt)
     }
   /* Relative to the answer, over all ranks. */
   bw_comm_sum(bw_solid_comm(c->solid), 2, sums);
+  *norm = sqrt(sums[0]);
   return sums[0] > 0.0 ? sqrt(sums[0] / fmax(sums[1], 1e-300)) : 0.0;
 }
 
@@ -146,8 +212,8 @@ static void forget(bw_coupler__iteration *t)
   t->q[t->columns] = q, t->d[t->columns] = d;
 }
 
-/* The next guess. */
-static void improve(bw_coupler *c)
+/* The next guess; returns the norm of what it changes. */
+static double improve(bw_coupler *c)
 {
   bw_coupler__iteration *t = &c->iteration;
   const double omega = c->config.load_relaxation;
@@ -164,21 +230,28 @@ static void improve(bw_coupler *c)
     dV[k] = omega * rest[k];
   /* The quasi-Newton step for what is known. */
   subtract(c, f, t->d, dV);
-  for (size_t k = 0; k < 3 * c->n_surface; k++)
+  double squared = 0.0;
+  for (size_t k = 0; k < 3 * c->n_surface; k++) {
     t->guess[k] += dV[k];
+    squared += dV[k] * dV[k];
+  }
+  bw_comm_sum(bw_solid_comm(c->solid), 1, &squared);
   /* Kept for the difference with the residual of the next try. */
   memcpy(rest, t->residual, 3 * c->n_surface * sizeof *rest);
+  return fmax(sqrt(squared), 1e-300);
 }
 
 bw_status bw_coupler__iterate(bw_coupler *c, double dt)
 {
   bw_coupler__iteration *t = &c->iteration;
   const bw_coupler__work work = c->work;
+  double norm = 0.0, step = 0.0;
   /* Every try begins here: fluid and solid at t, markers at the old surface. */
   bw_coupler__state_capture(c, &t->start);
   bw_solid_get_position(c->solid, t->X);
   /* The first guess: the surface moves on as it does. */
   memcpy(t->guess, c->marker_V, 3 * c->n_surface * sizeof *t->guess);
+  BW_TRY(open_inside(c));
   /* Columns of earlier steps are not used, so that a restart repeats the step exactly. */
   t->columns = 0;
   for (c->iterations = 1;; c->iterations++) {
@@ -188,13 +261,14 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
     BW_TRY(bw_coupler__advance_fluid(c, dt));
     BW_TRY(bw_coupler__load_solid(c, dt, 1.0));
     BW_TRY(bw_coupler__advance_solid(c, dt, 1.0));
-    /* Does the surface move as the fluid was told? */
-    c->residual = compare(c, dt);
+    /* Does the surface move as the fluid was told, and is its load that of this motion? */
+    c->residual = compare(c, dt, &norm);
+    c->residual = fmax(c->residual, load_residual(c, norm, step));
     if (c->residual <= c->config.coupling_residual) break;
     if (c->iterations == c->config.coupling_iterations) break;
     /* From the second try on there is a difference to learn from. */
     if (c->iterations > 1) learn(c);
-    improve(c);
+    step = improve(c);
     /* Back to t for another try; the last one is not undone. */
     BW_TRY(bw_coupler__state_restore(c, &t->start));
   }

@@ -13,6 +13,25 @@ static void count_probes(const bw_coupler *c, int64_t count[2])
   }
 }
 
+/* The largest speed that a side's function gives now, on the faces beside this rank's cells. */
+static double speed_of_function(const bw_coupler *c, int d, int s)
+{
+  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
+  const bw_ns_side *side = &bw_ns_channel_settings(c->fluid)->side[d][s];
+  const int e = (d + 1) % 3, f = (d + 2) % 3;
+  const double t = bw_ns_channel_time(c->fluid);
+  double most = 0.0, x[3], u[3] = {0.0, 0.0, 0.0};
+  x[d] = s == 0 ? 0.0 : g->length[d];
+  for (int k = 1; k <= g->m[f]; k++)
+    for (int j = 1; j <= g->m[e]; j++) {
+      x[e] = (g->lo[e] + j - 0.5) * g->spacing[e];
+      x[f] = (g->lo[f] + k - 0.5) * g->spacing[f];
+      side->function(x, t, side->context, u);
+      most = fmax(most, sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
+    }
+  return most;
+}
+
 /* The largest speed that drives the fluid: of inflows, walls, a given flow rate, bodies; the mean
  * of the fluid where nothing of this moves. Collective. */
 double bw_coupler__reference_speed(bw_coupler *c)
@@ -26,6 +45,7 @@ double bw_coupler__reference_speed(bw_coupler *c)
       const double *v = side->velocity;
       most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
       if (side->profile == BW_PROFILE_POISEUILLE) most = fmax(most, fabs(side->bulk_velocity));
+      if (side->profile == BW_PROFILE_CALLBACK) most = fmax(most, speed_of_function(c, d, s));
     }
   for (size_t q = 0; q < c->n_surface; q++) {
     const double *v = c->marker_V + 3 * q;

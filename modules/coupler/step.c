@@ -103,7 +103,8 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (c->config.count_work) bw_coupler__count_work(c, dt);
   if (probes) st = bw_coupler__probe_force(c, dt);
   /* Forces act on the surface, outside the centres: they bring a moment with them. */
-  bw_coupler__carry_force(c, probes ? 0.0 : bw_coupler__marker_depth(c));
+  bw_coupler__carry_force(c, !probes);
+  bw_coupler__free_inside(c, dt);
   /* F' <- (1 - w) F' + w F against the added mass (bw_coupler.h). */
   bw_coupler__relax_load(c, dt, relaxation);
   /* With weight and buoyancy: from here on the solid knows its load. */

@@ -17,21 +17,20 @@ static bool within_box(const bw_grid_view *g, const double x[3])
   return true;
 }
 
-/* How far inside the nominal surface markers sit (ERRATA 21). */
-double bw_coupler__marker_depth(const bw_coupler *c)
+/* Over the grid's spacing; a retraction is off by 6 c^2 h^2/R^2 of the resistance at most, 2e-4. */
+static const double BENT = 0.02;
+
+/* How far outside its particle's centre surface point q is, or its marker. Markers that know their
+ * normal stand on the surface, others sit inside it (ERRATA 21). */
+static double outside(const bw_coupler *c, size_t q, bool marker)
 {
-  return c->config.retraction * c->h;
+  const bool inside = marker && isnan(c->side[3 * q]);
+  return c->height[q] - (inside ? c->config.retraction * c->h : 0.0);
 }
 
-/* How far outside a particle's centre a point is that lies `depth` inside the nominal surface. */
-static double outside(const bw_coupler *c, int32_t particle, double depth)
-{
-  return 0.5 * bw_solid_spacing(c->solid, (size_t)particle) - depth;
-}
-
-/* Velocity V of the points `depth` inside the nominal surface, along the normals of the surface
- * particles, and their spin; computed once for each motion of the solid. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[])
+/* Velocity V of the surface points, or of their markers, and their spin; computed once for each
+ * motion of the solid. Collective. */
+void bw_coupler__surface_velocity(bw_coupler *c, bool marker, double V[])
 {
   /* Collective, and therefore once for each motion of the solid. */
   if (!c->motion_known) {
@@ -42,7 +41,7 @@ void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[])
   for (size_t q = 0; q < c->n_surface; q++) {
     /* V + out spin x N: a surface that turns moves faster than its particles' centres. */
     const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
-    const double out = outside(c, c->particle[q], depth);
+    const double out = outside(c, q, marker);
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       c->spin[3 * q + (size_t)d] = spin[d];
@@ -54,7 +53,7 @@ void bw_coupler__surface_velocity(bw_coupler *c, double depth, double V[])
 
 void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 {
-  bw_coupler__surface_velocity(c, bw_coupler__marker_depth(c), V);
+  bw_coupler__surface_velocity(c, true, V);
 }
 
 void bw_coupler__tell_surface(bw_coupler *c, const double V[])
@@ -67,19 +66,35 @@ void bw_coupler__tell_surface(bw_coupler *c, const double V[])
       c->V[3 * (size_t)c->particle[q] + d] += V[3 * q + d] - before[3 * q + d];
 }
 
-/* Surface particles inside the box: probe roots on the nominal surface, half a particle outside
- * the centre; markers `retraction` grid spacings inside that. */
+/* Which particles have lost a bond. */
+static void look_at_bonds(bw_coupler *c)
+{
+  if (c->events == bw_solid_events(c->solid)) return;
+  bw_solid_get_broken(c->solid, c->broken);
+  c->events = bw_solid_events(c->solid);
+}
+
+/* Surface particles inside the box: probe roots on the nominal surface, the mean of their open
+ * sides; markers there too, or `retraction` grid spacings inside. */
 static void place(bw_coupler *c)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_pd_surface s = bw_pd_interface_surface(c->interface);
-  const double depth = bw_coupler__marker_depth(c);
   size_t n = 0;
+  look_at_bonds(c);
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
-    const double out = outside(c, s.particle[q], 0.0), in = outside(c, s.particle[q], depth);
     /* Ghost layers and what has left do not meet the fluid. */
     if (!within_box(g, X)) continue;
+    c->particle[n] = s.particle[q];
+    c->height[n] = s.H[q];
+    /* A normal is of use where it is one, and where there is memory: what pushes across a ridge
+     * would pass for shear. Where nearly nothing bends a retraction does the same. */
+    const bool bent = s.bend[q] * c->h > BENT;
+    const bool sided = c->on_surface && bent && c->broken[c->particle[n]] == 0;
+    for (int d = 0; d < 3; d++)
+      c->side[3 * n + d] = sided ? N[d] : NAN;
+    const double out = outside(c, n, false), in = outside(c, n, true);
     for (int d = 0; d < 3; d++) {
       c->root[3 * n + d] = X[d] + out * N[d];
       c->marker_X[3 * n + d] = X[d] + in * N[d];
@@ -88,8 +103,7 @@ static void place(bw_coupler *c)
     /* Rows of the surface are thinned out to those inside, which remember where they came from. */
     c->area[n] = s.A[q];
     c->marker_dV[n] = s.A[q] * c->h; /* ERRATA 17 */
-    c->row[n] = (int32_t)q;
-    c->particle[n++] = s.particle[q];
+    c->row[n++] = (int32_t)q;
   }
   c->n_surface = n;
   /* The surface has moved: its velocities are those of now. */
@@ -192,10 +206,6 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
 /* The memory of the surface points: that of their particles, none where a bond has broken. */
 static void place_memory(bw_coupler *c)
 {
-  if (c->events != bw_solid_events(c->solid)) {
-    bw_solid_get_broken(c->solid, c->broken);
-    c->events = bw_solid_events(c->solid);
-  }
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (size_t d = 0; d < 3; d++)
@@ -210,11 +220,14 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
   const bw_coupler__blocks *b = &c->blocks;
   place_memory(c);
   c->handed = c->block > 1 ? b->n : c->n_surface;
-  if (c->block == 1)
-    return bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV,
-                                  c->marker_M);
-  bw_coupler__blocks_gather_memory(c);
-  return bw_ibm_mdf_set_markers(c->ibm, b->n, b->X, b->V, b->dV, b->M);
+  if (c->block > 1) {
+    bw_coupler__blocks_gather_memory(c);
+    BW_TRY(bw_ibm_mdf_set_markers(c->ibm, b->n, b->X, b->V, b->dV, b->M));
+  } else
+    BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV,
+                                  c->marker_M));
+  return c->on_surface ? bw_ibm_mdf_set_normals(c->ibm, c->block > 1 ? b->N : c->side, c->config.nu)
+                       : BW_OK;
 }
 
 void bw_coupler__remember(bw_coupler *c)
@@ -264,7 +277,7 @@ static void surface_motion(bw_coupler *c, double dt)
 {
   const double drive[3] = {bw_ns_channel_driving(c->fluid)};
   /* On the nominal surface, where probes begin. */
-  bw_coupler__surface_velocity(c, 0.0, c->root_V);
+  bw_coupler__surface_velocity(c, false, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (int d = 0; d < 3; d++) {
@@ -327,9 +340,9 @@ static double power_held_back(bw_coupler *c)
   return sum;
 }
 
-/* c->load: the surface points' forces, which act `depth` inside the nominal surface, on the
- * particles: force, moment and power are the same. */
-void bw_coupler__carry_force(bw_coupler *c, double depth)
+/* c->load: the forces of the surface points, or of their markers, on the particles: force, moment
+ * and power are the same. */
+void bw_coupler__carry_force(bw_coupler *c, bool marker)
 {
   memset(c->load, 0, 3 * c->n * sizeof *c->load);
   memset(c->moment, 0, 3 * c->n * sizeof *c->moment);
@@ -338,7 +351,7 @@ void bw_coupler__carry_force(bw_coupler *c, double depth)
     const double *N = c->normal + 3 * q, *force = c->force + 3 * q;
     double *load = c->load + 3 * (size_t)c->particle[q],
            *moment = c->moment + 3 * (size_t)c->row[q];
-    const double out = outside(c, c->particle[q], depth);
+    const double out = outside(c, q, marker);
     for (int d = 0; d < 3; d++) {
       const int e = (d + 1) % 3, f = (d + 2) % 3;
       load[d] = force[d];

@@ -16,6 +16,7 @@ typedef struct {
   int held_block;           /* number (from 1) of the block that is prescribed; 0: none */
   bool no_contact, still;   /* still: fluid at rest */
   bw_coupler_load_kind load;
+  int iterations; /* of the coupling; 0: explicit */
 } bodies_set_up;
 
 typedef struct {
@@ -106,6 +107,7 @@ static inline bw_coupler_config bodies_coupling(const bodies_set_up *b)
   c.nu = 0.02;
   c.load = b->load;
   c.load_relaxation = 0.3;
+  if (b->iterations > 0) c.coupling_iterations = b->iterations;
   c.gravity[1] = -b->gravity;
   return c;
 }

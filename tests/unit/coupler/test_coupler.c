@@ -8,24 +8,30 @@
 #include <stdio.h>
 #include <string.h>
 
-/* With ds = h a retraction of 0.5 puts markers at the particles' centres, 0 on the nominal
- * surface: half a spacing further out along the normal. */
+/* Probes begin on the surface, (1/2) h outside the centre (ds = h), on a smooth slanted surface at
+ * the mean height of its steps; markers so far inside as the retraction says (the cube is flat: its
+ * markers know no normal). */
 START_TEST(markers_sit_where_the_retraction_says)
 {
-  for (int q = 0; q < 2; q++) {
-    const double retraction = 0.5 * q;
+  for (int q = 0; q < 3; q++) {
+    const double retraction = q < 2 ? 0.5 * q : NAN;
+    const bw_ibm_mdf_config forcing = bw_ibm_mdf_config_default();
     scene s = build(retraction, 1.0);
     const bw_coupler *c = s.coupler;
     double *X = NULL;
     bw_check_ok(BW_ALLOCATE(&X, 3 * bw_solid_count(s.solid)));
     bw_solid_get_position(s.solid, X);
-    for (size_t m = 0; m < c->n_surface; m++)
+    for (size_t m = 0; m < c->n_surface; m++) {
+      const double *n = c->normal + 3 * m;
+      const bool smooth = bw_pd_interface_surface(c->interface).smooth[c->row[m]];
+      const double height = smooth ? 0.5 / (fabs(n[0]) + fabs(n[1]) + fabs(n[2])) : 0.5;
+      const double in = q < 2 ? retraction : bw_ibm_mdf_retraction(&forcing);
       for (int d = 0; d < 3; d++) {
         const double centre = X[3 * (size_t)c->particle[m] + d];
-        const double out = (0.5 - retraction) * H * c->normal[3 * m + d];
-        bw_check_near(c->marker_X[3 * m + d], centre + out, ROUND_OFF);
-        bw_check_near(c->root[3 * m + d], centre + 0.5 * H * c->normal[3 * m + d], ROUND_OFF);
+        bw_check_near(c->marker_X[3 * m + d], centre + (height - in) * H * n[d], ROUND_OFF);
+        bw_check_near(c->root[3 * m + d], centre + height * H * n[d], ROUND_OFF);
       }
+    }
     bw_release(&X);
     destroy(&s);
   }
@@ -50,7 +56,7 @@ START_TEST(linear_pressure_lifts_the_body)
   for (size_t i = 0; i < bw_solid_count(s.solid); i++)
     s.coupler->V_before[3 * i] = -3.0 * 0.25; /* the particles are at rest now */
   bw_check_ok(bw_coupler__probe_force(s.coupler, 0.25));
-  bw_coupler__carry_force(s.coupler, 0.0);
+  bw_coupler__carry_force(s.coupler, false);
   bw_coupler__relax_load(s.coupler, 0.25, 0.5);
   double force[3];
   memcpy(force, s.coupler->force_probe, sizeof force);
@@ -157,7 +163,7 @@ START_TEST(the_load_has_the_markers_moment_and_power)
   for (size_t q = 0; q < c->n_surface; q++)
     for (size_t d = 0; d < 3; d++)
       c->force[3 * q + d] = cos(30.0 * c->marker_X[3 * q + d]) + c->marker_X[3 * q + (d + 2) % 3];
-  bw_coupler__carry_force(s.coupler, 0.3 * H);
+  bw_coupler__carry_force(s.coupler, true);
   for (size_t q = 0; q < c->n_surface; q++)
     add_force(c->marker_X + 3 * q, c->force + 3 * q, c->marker_V + 3 * q, sum[0]);
   for (size_t i = 0; i < n; i++)

@@ -40,6 +40,7 @@ typedef struct {
   size_t n; /* particles of this rank */
   double *X0, *X, *V;
   double inner[2]; /* momentum of the fluid inside the solid */
+  double force[2]; /* of the last step along x: by the reaction, by the momentum of a box */
   double *row;     /* (rows, COLUMNS) */
   int rows, room;
   char path[1024];
@@ -86,6 +87,9 @@ static inline bw_status flap_make_fluid(const bw_comm *comm, flap *f)
   fluid.side[2][0].kind = fluid.side[2][1].kind = BW_SIDE_PERIODIC;
   BW_TRY(bw_grid_create(comm, &grid, &f->grid));
   BW_TRY(bw_ns_channel_create(f->grid, &fluid, &f->fluid));
+  /* A box around cylinder and flap, from wall to wall. */
+  BW_TRY(bw_ns_channel_watch_box(f->fluid, (int[3]){(int)(0.1 / f->h), 0, 0},
+                                 (int[3]){(int)(0.7 / f->h), grid.n[1], 1}));
   /* What does not come up in time is there from the start. */
   BW_TRY(bw_ns_channel_set_velocity(f->fluid, flap_stream, &f->of, 0.0));
   f->dt = fmin(f->of.dt * 82.0 / f->cells, 0.8 * bw_ns_channel_dt_max(f->fluid));
@@ -194,6 +198,8 @@ static inline bw_status flap_sample(const bw_comm *comm, flap *f)
   flap_look_at_solid(comm, f, tip, inner);
   row[T] = bw_ns_channel_time(f->fluid);
   row[TRIES] = r.iterations;
+  f->force[0] = r.force_reaction[0];
+  f->force[1] = r.force_control_volume[0];
   for (int d = 0; d < 2; d++) {
     /* The reaction moves the fluid inside, too. */
     const double moved = (inner[d] - f->inner[d]) / f->dt;

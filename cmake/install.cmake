@@ -112,9 +112,13 @@ foreach(folder ${folders})
     cmake_path(GET folder PARENT_PATH kind)
     cmake_path(GET kind FILENAME kind)
     install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/breakwater/${kind}
-            FILES_MATCHING PATTERN "*.yaml" PATTERN "*.nrrd" PATTERN "README.md")
+            FILES_MATCHING PATTERN "*.yaml" PATTERN "*.nrrd" PATTERN "README.md"
+            PATTERN "*.png" PATTERN "reference.csv")
   endif()
 endforeach()
+# The Python package as a source that pip takes; it finds templates and program from the prefix.
+install(DIRECTORY python DESTINATION ${CMAKE_INSTALL_DATADIR}/breakwater
+        PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # ---- how other projects find it -----------------------------------------------------------------

@@ -237,14 +237,13 @@ static bw_status plan_halo(bw_pd_body *pd, const bw_particles_halo *halo, const 
   /* Asking is collective: no rank may begin without the others. */
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
-    const bw_particles_question question = {.n = halo->n,
-                                            .owner = owner,
-                                            .key_bytes = 3 * sizeof *home,
-                                            .key = home,
-                                            .find = find_own,
-                                            .context = near};
-    st = bw_particles_copies_create(pd->comm, pd->n, &question, 6 * sizeof(bw_real),
-                                    &pd->halo.copies);
+    const bw_particles_question ask = {.n = halo->n,
+                                       .owner = owner,
+                                       .key_bytes = 3 * sizeof *home,
+                                       .key = home,
+                                       .find = find_own,
+                                       .context = near};
+    st = bw_particles_copies_create(pd->comm, pd->n, &ask, 6 * sizeof(bw_real), &pd->halo.copies);
   }
   /* What never changes is sent once; motion comes with every refresh. */
   if (st == BW_OK) {

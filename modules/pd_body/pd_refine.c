@@ -9,6 +9,7 @@
 #include "pd_body.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Cells lower .. upper - 1 of one level. */

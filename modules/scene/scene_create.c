@@ -164,6 +164,7 @@ void bw_scene_blocks(const bw_scene *s, FILE *out)
   for (int q = 0; q < s->n_solids; q++)
     contact = contact || s->solid[q].contact;
   const bool meet = contact || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
+  /* Fields and particles first: the other blocks stand on them. */
   block(out, flow, "fluid, pressure", "the scene has a fluid", "no fluid");
   block(out, s->planar == false, "third dimension", "plane: none",
         flow ? "one cell in z" : "plane: stress or strain");
@@ -176,6 +177,7 @@ void bw_scene_blocks(const bw_scene *s, FILE *out)
   block(out, rigid, "rigid bodies", "a body moves as one piece", "no body is rigid");
   block(out, meet, "contact", "bodies, or pieces of one, can meet",
         solids || rigid ? "contact: none, or nothing can meet" : "no particles");
+  /* What is between fluid and bodies, and what gauges alone ask for. */
   block(out, markers, "markers", "bodies are in a flow", "no body in a flow");
   block(out, coupled || (markers && !rigid && force), "probes",
         coupled ? "they load the solid" : "a gauge reads the force",

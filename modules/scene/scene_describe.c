@@ -15,6 +15,7 @@ static void describe_solids(bw_scene *s, bw_log *log)
       snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
                s->config.bodies[s->solid[q].body[k]].name);
     }
+    /* Of a plan no particle is made: numbers are those of a sample of the material. */
     if (s->sketched) {
       const double ds = s->config.bodies[s->solid[q].body[0]].spacing;
       const bw_solid_sample *a = &s->solid[q].sample;
@@ -139,9 +140,11 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   fprintf(out, "accuracy: %s sets (promised error: not measured)\n", words[s->config.accuracy]);
   bw_scene_knobs(&s->config, out);
   fclose(out);
+  /* The log ends its lines by itself. */
   if (length > 0 && text[length - 1] == '\n') text[length - 1] = '\0';
   bw_log_info(log, "%s", text);
   bw_release(&text);
+  /* Sizes and limits of what runs, then how many steps that makes. */
   if (s->grid != NULL) describe_fluid(s, log);
   describe_solids(s, log);
   if (s->rigid != NULL) describe_rigid(s, log);

@@ -84,6 +84,7 @@ static bw_status check_way(const bw_scene *s, const bodies *all, bw_log *log)
   if (axis < 0) return BW_OK;
   const double total = (double)real[0] * real[1] * real[2];
   if (total > LOOKED_AT) coarse = ceil(pow(total / LOOKED_AT, s->planar ? 0.5 : 1.0 / 3.0));
+  /* Cells of the fluid, or larger ones where there are too many to look at. */
   for (int d = 0; d < 3; d++) {
     c.n[d] = (int)fmax(1.0, ceil(real[d] / coarse));
     c.periodic[d] = s->flow.side[d][0].kind == BW_SIDE_PERIODIC;
@@ -96,6 +97,7 @@ static bw_status check_way(const bw_scene *s, const bodies *all, bw_log *log)
   bw_release(&c.cell);
   bw_release(&c.front);
   BW_TRY(st);
+  /* Larger cells may close what is open, so that they only warn. */
   BW_REQUIRE(
       through || coarse > 1.0, BW_EINPUT,
       "bodies: they block the channel: no way of open cells leads from one side to the other "

@@ -73,6 +73,7 @@ static void put_series(FILE *out, const char *folder, int q, const shown *p)
                              0.87, 0.87, p->most, 0.71, 0.02,          0.15};
   char path[BW_SCENE_PATH + 2 * BW_SCENE_NAME + 8];
   snprintf(path, sizeof path, "%s/%s.pvd", folder, p->file);
+  /* Three proxies of ParaView: the files, a table of colours, and how both are shown. */
   open_proxy(out, "sources", "PVDReader", SOURCE + q);
   put_word(out, SOURCE + q, "FileName", path);
   fputs("    </Proxy>\n", out);
@@ -88,6 +89,7 @@ static void put_series(FILE *out, const char *folder, int q, const shown *p)
   put_numbers(out, SHOWN + q, "PointSize", 1, (const double[]){4});
   if (p->slice > 0) put_numbers(out, SHOWN + q, "SliceMode", 1, (const double[]){5}); /* XY */
   if (p->slice > 0) put_numbers(out, SHOWN + q, "Slice", 1, (const double[]){p->slice});
+  /* Elements 3 and 4 say where the values stand, at cells or at points, and their name. */
   open_property(out, SHOWN + q, "ColorArrayName", 5);
   for (int k = 0; k < 3; k++)
     fprintf(out, "        <Element index=\"%d\" value=\"\"/>\n", k);
@@ -157,6 +159,7 @@ static bw_status look(bw_scene *s, shown *p, int *n, double lower[3], double upp
   for (int d = 0; d < 3; d++)
     lower[d] = HUGE_VAL, upper[d] = -HUGE_VAL;
   *n = 0;
+  /* With a fluid its box is what is looked at. */
   if (s->fluid != NULL) {
     const bool uniform = bw_grid_look(s->grid)->uniform_y;
     p[*n] = (shown){.file = "fluid",
@@ -170,6 +173,7 @@ static bw_status look(bw_scene *s, shown *p, int *n, double lower[3], double upp
     for (int d = 0; d < 3; d++)
       lower[d] = 0.0, upper[d] = s->config.domain.length[d];
   }
+  /* Without one it is the box of all bodies. */
   for (int b = 0; b < s->config.n_bodies && s->fluid == NULL; b++) {
     bw_scene__shapes shapes;
     const bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
@@ -180,6 +184,7 @@ static bw_status look(bw_scene *s, shown *p, int *n, double lower[3], double upp
     bw_scene__shapes_release(&shapes);
     BW_TRY(st);
   }
+  /* Particles, or the points of rigid surfaces, each solid by itself. */
   const shown points = {.kind = "GeometryRepresentation", .look = "Points", .most = 1.0};
   for (int q = 0; q < s->n_solids; q++) {
     p[*n] = points;

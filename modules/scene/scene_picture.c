@@ -120,6 +120,7 @@ static bw_status write_solid(bw_scene *s, int solid, const char *path)
   BW_THEN(st, BW_ALLOCATE(&damage, q->n));
   BW_THEN(st, BW_ALLOCATE(&body, q->n));
   st = bw_comm_agree(s->comm, st);
+  /* Displacements are from the places at rest; bodies are numbered from 1 in the file. */
   if (st == BW_OK) {
     bw_solid_get_position(q->solid, X);
     bw_solid_get_velocity(q->solid, q->V);
@@ -158,6 +159,7 @@ static bw_status write_surfaces(bw_scene *s, int solid, const char *path)
     for (int b = 0; b < s->config.n_bodies; b++)
       for (size_t i = 0; i < n; i++)
         if (bw_rigid_point_body(s->rigid)[i] == s->rigid_of[b]) body[i] = b + 1;
+    /* In the plane points are shown in the middle of the one layer of cells. */
     for (size_t i = 0; i < n && s->planar && s->grid != NULL; i++)
       X[3 * i + 2] = 0.5 * bw_grid_look(s->grid)->length[2];
     const bw_vtk_array arrays[] = {{"velocity", BW_VTK_FLOAT64, 3, V},

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Do what the pages docs/add-*.md say, to a copy of the tree: usage: pages.py SOURCE WORK [PAGE ...]
+"""Do what the pages docs/add-*.md say, to a copy of the tree: usage: pages.py SOURCE WORK [--apply] [PAGE ...]
 
 Every block of code on these pages stands under one line that says what it is:
   <!-- part of: FILE -->               the block is the text of these lines of FILE
@@ -11,7 +11,7 @@ Every block of code on these pages stands under one line that says what it is:
   <!-- prints -->                      lines that the last commands print, among others
 and by themselves <!-- copy: FROM to TO --> copies a folder, <!-- all of: FILE --> says that the parts of
 FILE shown so far are all of it but for empty lines. First all pages are applied to the copy of the
-tree in WORK, which has to be there; then what they run is run, page by page.
+tree in WORK, which has to be there; then, unless --apply is given, what they run is run, page by page.
 """
 import pathlib
 import re
@@ -149,7 +149,8 @@ def main():
     source, work = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     check_itself(work)
     tree = work / "tree"
-    pages = [source / "docs" / (name + ".md") for name in sys.argv[3:]] or \
+    names = [name for name in sys.argv[3:] if name != "--apply"]
+    pages = [source / "docs" / (name + ".md") for name in names] or \
         sorted((source / "docs").glob("add-*.md"))
     bad, read = [], {}
     for page in pages:
@@ -161,8 +162,10 @@ def main():
             read.pop(page, None)
     for page, blocks in read.items():
         try:
-            run(tree, blocks)
-            print(f"docs/{page.name}: {len(blocks)} blocks, done as it says")
+            if "--apply" not in sys.argv:
+                run(tree, blocks)
+            did = "fits the tree" if "--apply" in sys.argv else "done as it says"
+            print(f"docs/{page.name}: {len(blocks)} blocks, {did}")
         except Wrong as wrong:
             bad.append(f"docs/{page.name}: {wrong}")
     print("\n".join(bad))

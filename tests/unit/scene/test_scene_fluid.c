@@ -176,6 +176,28 @@ START_TEST(too_near)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(places), BW_TEST(driven), BW_TEST(ramp),
-                                      BW_TEST(force),  BW_TEST(flap),   BW_TEST(too_near)};
+/* A uniform inflow may rise whatever stands beside it, a laminar one between two walls alone. */
+START_TEST(ramps_beside_free_slip)
+{
+#define BESIDE(inflow)                                                                             \
+  CHANNEL "fluid:\n  density: 1\n  viscosity: 0.1\n  sides:\n"                                     \
+          "    x: {lower: {kind: inflow, " inflow ", ramp: 0.5}, upper: {kind: outflow}}\n"        \
+          "    y: {lower: {kind: free_slip}, upper: {kind: free_slip}}\n"                          \
+          "phases: {until: 0.25}\ngauges: {v: {point: [1, 0.5], of: velocity}}\n"
+  bw_scene *s = made(BESIDE("velocity: [2, 0, 0]"));
+  run(s);
+  /* Half of the ramp: the whole of the box has what enters. */
+  bw_check_near(gauge(s, "v.x"), 1.0, 1e-6);
+  bw_scene_destroy(&s);
+  ck_assert_ptr_null(scene_of(BESIDE("profile: poiseuille, mean: 2")));
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(places),
+                                      BW_TEST(driven),
+                                      BW_TEST(ramp),
+                                      BW_TEST(force),
+                                      BW_TEST(flap),
+                                      BW_TEST(too_near),
+                                      BW_TEST(ramps_beside_free_slip)};
 BW_CHECK_MAIN("scene.fluid", tests)

@@ -311,8 +311,9 @@ START_TEST(contradictions_are_refused)
   c.side[0][0].kind = BW_SIDE_INFLOW, c.side[0][0].profile = BW_PROFILE_CALLBACK;
   refused(closed, &c, "function");
   c.side[0][0].function = brings_nothing, c.side[0][1].kind = BW_SIDE_WALL;
+  c.side[0][0].velocity[0] = 0;
   refused(closed, &c, "outflow"); /* nobody knows what a callback brings */
-  c.side[0][1].kind = BW_SIDE_OUTFLOW;
+  c.side[0][1].kind = BW_SIDE_OUTFLOW, c.side[0][0].velocity[0] = -1;
   c.side[0][0].profile = BW_PROFILE_POISEUILLE;
   refused(closed, &c, "bulk_velocity");
   c.side[0][0].bulk_velocity = 1, c.side[1][0].velocity[0] = 1;

@@ -152,8 +152,8 @@ START_TEST(phases)
 }
 END_TEST
 
-/* A block between two grips that part: beyond its yield stress it flows, whatever law it is; without
- * one it would carry E times the stretch. */
+/* A block between two grips that part: beyond its yield stress it flows; without one it would carry
+ * E times the stretch. */
 START_TEST(a_metal_yields)
 {
   static const char *const plastic[] = {"", ", plastic: j2, yield_stress: 0.5"};

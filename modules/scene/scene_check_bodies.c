@@ -56,12 +56,12 @@ static bw_status check_size(const bw_scene_config *c, const bw_scene_body *b,
     BW_REQUIRE(length > 0.0 && length < HUGE_VAL, BW_EINPUT,
                "bodies.%s.shape: it goes from %g to %g along %c; give it an extent", b->name,
                s->lower[d], s->upper[d], "xyz"[d]);
-    BW_REQUIRE(!c->has_domain || length < 1e3 * c->domain.length[d], BW_EINPUT,
+    BW_REQUIRE(!c->has_domain || length < 10.0 * c->domain.length[d], BW_EINPUT,
                "bodies.%s.shape: it is %g long along %c, in a domain of %g; check its unit",
                b->name, length, "xyz"[d], c -> domain.length[d]);
     n *= fmax(1.0, length / b->spacing);
   }
-  BW_REQUIRE(n < 1e11, BW_EINPUT,
+  BW_REQUIRE(n < 2e10, BW_EINPUT,
              "bodies.%s.spacing = %g: the lattice would hold %.3g sites; check the unit, or take a "
              "larger spacing",
              b->name, b->spacing, n);

@@ -225,6 +225,9 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
   /* --check ends here: all was looked at, nothing large was made. */
   if (args->check) return BW_OK;
   if (args->restart != NULL) BW_TRY(restart(r, args->restart));
+  /* Where the end is a time, the checkpoint may lie behind it. */
+  if (!isnan(bw_scene__end(s)))
+    BW_TRY(bw_case_check_end(r->run, "phases.until.time", bw_scene__end(s), s->time));
   BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&r->row, (size_t)s->n_columns)));
   BW_TRY(bw_case_history(r->run, s->n_columns, s->names, s->time, r->rows, &r->history));
   if (args->restart != NULL) BW_TRY(draw_again(r));

@@ -18,10 +18,20 @@ same() {
     --restart "$out/$name-half/checkpoint-last.h5" "$@"
   cmp "$out/$name-whole/history.csv" "$out/$name-half/history.csv"
 }
+# behind NAME END [arguments]: a checkpoint behind the end that is asked for is refused
+behind() {
+  name=$1 end=$2
+  shift 2
+  "$build/bin/breakwater" "$source/scenes/$name/$name.yaml" --quiet --out "$out/$name-half" "$@" \
+    --set phases.0.until.time="$end" \
+    --restart "$out/$name-half/checkpoint-last.h5" 2> "$out/behind.txt" && exit 1
+  grep -q "already, beyond phases.until.time = $end" "$out/behind.txt" || { cat "$out/behind.txt"; exit 1; }
+}
 # On one rank: on several the books are summed in another order after a restart.
 same kalthoff_winkler 1 30e-6 20e-6 --set bodies.plate.spacing=2e-3 --set output.picture_every=0 \
   --set output.sample_every=5e-6
 same beam_under_load 1 2e-3 1e-3 --set bodies.beam.spacing=4e-3 --set output.sample_every=2e-4
+behind beam_under_load 0.0005 --set bodies.beam.spacing=4e-3 --set output.sample_every=2e-4
 same impact_on_plate 1 60e-6 40e-6 --set bodies.plate.spacing=2e-3 --set bodies.ball.spacing=2e-3 \
   --set output.picture_every=0 --set output.sample_every=5e-6
 same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.length=[8, 4, 0.125]" \

@@ -37,6 +37,7 @@ refused() {
 }
 beam=beam_under_load flow=flow_past_cylinder
 refused $beam bodies.beam.material=wood "bodies.beam.material = wood: there is no such material"
+refused $flow "bodies.cylinder.shape={cylinder: {centre: [4, 2], radius: 60}}" "it is 120 long along x"
 refused $flow output.picture_every=1e-20 "output.picture_every = 1e-20: 2e+21 times to the end"
 refused $flow output.checkpoint_every=inf "output.checkpoint_every = inf: must be a time"
 refused $flow gauges.wake.every=1e-9 "gauges.wake.every = 1e-09: 2e+10 times to the end"

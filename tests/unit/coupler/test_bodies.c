@@ -66,7 +66,8 @@ START_TEST(restart_in_the_middle_of_leaving)
                                 .block = {{25, 5, 29, 9}},
                                 .load = BW_LOAD_REACTION};
   bodies_scene s = bodies_build(&set_up);
-  const char *path = "test_bodies.h5";
+  char path[32]; /* of this number of ranks: tests run side by side */
+  snprintf(path, sizeof path, "test_bodies_np%d.h5", bw_comm_size(bw_check_world()));
   double X[2][3 * MOST];
   bw_coupler_report r = {0};
   bw_checkpoint *ck = NULL;

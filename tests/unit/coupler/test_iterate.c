@@ -112,7 +112,8 @@ START_TEST(a_restart_iterates_the_same_way)
   scene s = build(0.3, 0.1);
   const double c = make_light(&s);
   const size_t n = 3 * bw_solid_count(s.solid);
-  const char *path = "test_iterate.h5";
+  char path[32]; /* of this number of ranks: tests run side by side */
+  snprintf(path, sizeof path, "test_iterate_np%d.h5", bw_comm_size(bw_check_world()));
   double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
   bw_checkpoint *ck = NULL;
   iterate(&s, c, 60);

@@ -44,9 +44,14 @@ static void count(const dam_config *c, double *water, double *walls)
     *walls += sites_in(c, c->obstacles[q].lower, c->obstacles[q].upper);
 }
 
-/* What bw_ulph_create refuses of a tank that is built. */
+/* What is refused of a tank that is built. */
 static bw_status check_obstacles(const dam_config *c)
 {
+  static const double most = 2147483647.0; /* sites along an axis (bw_shape_fill_shared) */
+  for (int k = 0; k < axes_of(c); k++)
+    BW_REQUIRE(c->tank.size[k] / c->fluid.spacing + 2 * LAYERS <= most, BW_EINPUT,
+               "tank.size[%d] = %g is %.3g spacings of %g, more than 2^31: take a larger spacing",
+               k, c->tank.size[k], c->tank.size[k] / c->fluid.spacing, c->fluid.spacing);
   for (int q = 0; q < c->n_obstacles; q++) {
     const dam_box *o = &c->obstacles[q];
     for (int k = 0; k < axes_of(c); k++)

@@ -29,6 +29,8 @@ with turned "water.0: lower.1. is 0.3 and upper.1. is 0" \
   --set 'water=[{lower: [0, 0.3, 0], upper: [0.6, 0, 0]}]'
 with no_water "water" --set 'water=[]'
 with too_little "no site of spacing 0.015" --set 'water=[{lower: [0, 0, 0], upper: [0.001, 0.001, 0]}]'
+with huge_tank "is 3e.09 spacings of 0.015, more than 2" --set tank.size='[45000000, 0.6, 0]' \
+  --set 'gauges=[{name: a, kind: depth, at: [1, 0, 0]}]'
 with thin_wall "wall 1 is thinner than 3 dx = 0.045" \
   --set 'obstacles=[{lower: [1, -0.06, 0], upper: [1.03, 0.1, 0]}]'
 with in_the_water "is inside wall 1: cut the wall out of the fluid" \

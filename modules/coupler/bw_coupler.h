@@ -36,7 +36,7 @@
  * velocity is that of a quasi-Newton step (IQN-ILS, iterate.c); what earlier tries do not tell is
  * relaxed by load_relaxation (0.1; smaller for light plates, whose first tries overshoot most). The
  * load is the whole load of the same step, without the inertia of the fluid inside, which the
- * reaction holds; it has to be that of the motion to the same residual. Markers stay where the
+ * reaction holds; it has to be that of the motion, too. Markers stay where the
  * surface was at its beginning.
  *
  * Pressure on the surface: forcing acts with the full dt, pressure with gamma_r dt, so that the
@@ -116,8 +116,9 @@ typedef struct {
   double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
   double virtual_mass;       /* of the surface, over w rho A h; 0: none [-]   default 1 */
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
-  double coupling_residual;  /* iterated: what the surface's velocity and the load lack of a fixed
-                                point, over their norms, that ends it [-]   default 1e-4 */
+  double coupling_residual;  /* iterated: what the surface's velocity lacks of a fixed point, over
+                                its norm, that ends it; of the load its square root [-]
+                                                                            default 1e-4 */
   double gravity[3];         /* on solid and fluid [L/T^2]                  default 0 */
   bool check_book;   /* stop when fluid and solid no longer exchange work as bodies do, with what
                         and since when (book.c, BW_EDIVERGED)              default true */

@@ -18,8 +18,10 @@
  * A step has converged when it is a fixed point of both: the residual of the motion, and that of
  * the load, by which it would change if the surface moved as the solid answers. This is the slope
  * of the load against the motion, as the last two tries show it, times the residual of the motion:
- * the load holds the added mass over dt, and is off by much more than the motion. The residual of a
- * step is the larger one; where all of it vanishes one try will do, else there are two at least.
+ * the load holds the added mass over dt, and is off by much more than the motion. The motion has to
+ * come to coupling_residual and the load to its square root, 1 % of itself by default; the residual
+ * of a step is the larger of the first and the second squared. Where both vanish one try will do,
+ * else there are two at least.
  *
  * Inertia of the fluid inside. The markers move it, and their reaction holds that force, which is
  * none on the body. It is put on the solid's side (M. Uhlmann, J. Comput. Phys. 209 (2005) 448; T.
@@ -263,7 +265,8 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
     BW_TRY(bw_coupler__advance_solid(c, dt, 1.0));
     /* Does the surface move as the fluid was told, and is its load that of this motion? */
     c->residual = compare(c, dt, &norm);
-    c->residual = fmax(c->residual, load_residual(c, norm, step));
+    const double load = load_residual(c, norm, step);
+    c->residual = fmax(c->residual, load * load);
     if (c->residual <= c->config.coupling_residual) break;
     if (c->iterations == c->config.coupling_iterations) break;
     /* From the second try on there is a difference to learn from. */

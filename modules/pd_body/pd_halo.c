@@ -161,11 +161,11 @@ static int32_t find_own(const void *near, const void *key)
 typedef struct {
   const bw_pd_body *pd;
   const passenger *own;
-} question;
+} asker;
 
 static int offsets_of(const void *context, size_t i, int32_t offset[])
 {
-  const question *q = (const question *)context;
+  const asker *q = (const asker *)context;
   const int l = q->own[i].level;
   const bw_pd_stencil *s = &q->pd->level[l].stencil;
   int n = 0;
@@ -179,7 +179,7 @@ static int offsets_of(const void *context, size_t i, int32_t offset[])
 static bw_status find_copies(const bw_pd_body *pd, const crowd *g, const passenger own[],
                              const int32_t site[], bw_particles_map *near, bw_particles_halo *halo)
 {
-  const question q = {.pd = pd, .own = own};
+  const asker q = {.pd = pd, .own = own};
   bw_particles_lattice lattice = {.partition = g->partition,
                                   .n_offset = pd->directions,
                                   .offset = pd->level->stencil.offset,

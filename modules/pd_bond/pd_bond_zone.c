@@ -3,7 +3,8 @@
  * Conditions are of three kinds. A particle whose family is whole wants no force under any uniform
  * strain: all cubics of A vanish. Of one that misses cells, with the surface correction `tensor`,
  * only the harmonics have to, as in pd_bond_tensor.c: what is left is what a traction on its face
- * needs. Without that correction it is left as faces are left, and held particles want nothing. */
+ * needs; and of its neighbours, which bear a share of that. Without that correction it is left as
+ * faces are left, and held particles want nothing. */
 #include "bw_memory.h"
 #include "pd_bond_levels.h"
 
@@ -202,6 +203,19 @@ static bool is_whole(const bw_pd_body *pd, const bw_pd_block *block, int lane, c
   return true;
 }
 
+/* cut of the neighbours of those that are cut, too. Collective. */
+static bw_status widen(bw_pd_bond_zone *z)
+{
+  const bw_pd_body *pd = z->pd;
+  bw_real *before = NULL;
+  BW_TRY(bw_comm_agree(pd->comm, bw_pd_body_storage_array(pd->points.n_storage, &before)));
+  memcpy(before, z->cut, pd->points.n_storage * sizeof *before);
+  mark(z, before, z->cut);
+  bw_pd_body_fill_places(pd, z->cut);
+  bw_pd_body_release_storage_array(&before);
+  return BW_OK;
+}
+
 /* cut of the near particles: cells of the own family are missing; or, of one with bonds to coarser
  * particles, half of these by weight miss some, as it is as near to a face as they. Collective. */
 static bw_status find_cut(bw_pd_bond_zone *z)
@@ -237,7 +251,7 @@ static bw_status find_cut(bw_pd_bond_zone *z)
     }
     bw_pd_body_fill_places(pd, cut);
   }
-  return BW_OK;
+  return pd->bonds.factor != NULL ? widen(z) : BW_OK;
 }
 
 /* Harmonics of degree 3 as sums of monomials; returns how many. */

@@ -25,7 +25,7 @@ typedef struct {
   tag *of_root;    /* (n) rows of roots */
   cross_bond *cross;
   double *X, *V, *all_X; /* (n,3), (n,3), (n_all,3) not shifted */
-  double *weight;        /* (n) density over that of the first group */
+  double *weight;        /* (n) mass over that of a particle of the first group and of level 0 */
 } joiner;
 
 static int32_t root_of(int32_t parent[], int32_t h)
@@ -128,7 +128,8 @@ static bw_status prepare(joiner *j)
   BW_TRY(BW_ALLOCATE(&j->all_X, 3 * j->n_all));
   BW_TRY(BW_ALLOCATE(&j->weight, j->n));
   for (size_t h = 0; h < j->n; h++)
-    j->weight[h] = bw_solid_density(j->pd, h) / bw_solid_settings(j->pd)->rho;
+    j->weight[h] = bw_solid_density(j->pd, h) / bw_solid_settings(j->pd)->rho *
+                   (bw_solid_volume_of(j->pd, h) / bw_solid_volume(j->pd));
   for (size_t h = 0; h < j->n; h++)
     j->parent[h] = (int32_t)h;
   return join_own(j);

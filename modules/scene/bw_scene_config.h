@@ -18,6 +18,7 @@ enum {
   BW_SCENE_MATERIALS = 16, /* materials */
   BW_SCENE_BODIES = 64,    /* bodies */
   BW_SCENE_PARTS = 12,     /* shapes of a body */
+  BW_SCENE_LEVELS = 16,    /* boxes in which it is finer */
   BW_SCENE_HELD = 6,       /* places where a body is held */
   BW_SCENE_CRACKS = 8,     /* cracks of a body */
   BW_SCENE_LOADS = 32,     /* loads */
@@ -151,18 +152,13 @@ typedef struct {
   double cell;              /* cells it is filled with [L]; NaN: half the spacing */
 } bw_scene_stl;
 typedef struct {
-  bool has_box;                 /* box is given */
-  bool has_cylinder;            /* cylinder is given */
-  bool has_sphere;              /* sphere is given */
-  bool has_pores;               /* pores is given */
-  bool has_image;               /* image is given */
-  bool has_stl;                 /* stl is given */
-  bw_scene_box box;             /* particles in it */
-  bw_scene_cylinder cylinder;   /* when has_cylinder */
-  bw_scene_sphere sphere;       /* when has_sphere */
-  bw_scene_pores pores;         /* when has_pores */
-  bw_scene_image image;         /* when has_image */
-  bw_scene_stl stl;             /* when has_stl */
+  bool has_box, has_cylinder, has_sphere, has_pores, has_image, has_stl; /* which are given */
+  bw_scene_box box;                                                      /* particles in it */
+  bw_scene_cylinder cylinder;                                            /* when has_cylinder */
+  bw_scene_sphere sphere;                                                /* when has_sphere */
+  bw_scene_pores pores;                                                  /* when has_pores */
+  bw_scene_image image;                                                  /* when has_image */
+  bw_scene_stl stl;                                                      /* when has_stl */
   char minus[BW_SCENE_NAME];    /* a body whose shapes are taken away */
   bool remove;                  /* this shape is taken away */
   char material[BW_SCENE_NAME]; /* of the sites of this shape; "": the body's */
@@ -180,6 +176,12 @@ typedef struct {
   double from[3], to[3]; /* the segment, in 3D two corners of the cut [L] */
   double along[3];       /* 3D: the other edge of the parallelogram, from `from` [L] */
 } bw_scene_crack;
+/* Where a body's particles are finer (bw_pd_body.h); belts of the levels between are added. */
+typedef struct {
+  int level;      /* 1: half the spacing, 2: a quarter, ... */
+  double from[3]; /* lower corner of a box along x, y, z [L] */
+  double to[3];   /* upper corner [L] */
+} bw_scene_level;
 typedef struct {
   double rate;      /* [1/T], right-handed about the axis */
   double axis[3];   /* [-] */
@@ -219,6 +221,8 @@ typedef struct {
   bw_scene_held held[BW_SCENE_HELD]; /* where it is held */
   int n_cracks;                      /* how many of cracks */
   bw_scene_crack cracks[BW_SCENE_CRACKS]; /* there from the start */
+  int n_levels;                           /* how many of levels */
+  bw_scene_level levels[BW_SCENE_LEVELS]; /* where it is finer */
   int self_contact; /* does what breaks off collide with the rest? INT_MIN: if it breaks */
 } bw_scene_body;
 

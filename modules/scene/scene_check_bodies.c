@@ -135,6 +135,30 @@ static bw_status check_cracks(const bw_scene_config *c, const bw_scene_body *b,
   return BW_OK;
 }
 
+/* Finer boxes: of bodies that deform by bonds, alone on their lattice, which is not turned. */
+static bw_status check_levels(const bw_scene_config *c, const bw_scene_body *b,
+                              const bw_scene__shapes *s)
+{
+  if (b->n_levels == 0) return BW_OK;
+  BW_REQUIRE(bw_scene__deforms(b) && !c->has_domain && b->turn == 0, BW_EINPUT,
+             "bodies.%s.levels: they are of bodies that deform, outside of a flow, without turn; "
+             "leave them out",
+             b->name);
+  BW_REQUIRE(strcmp(c->contact.between, "none") == 0 || b->motion != BW_SCENE_BREAKABLE ||
+                 b->self_contact == 0,
+             BW_EINPUT,
+             "bodies.%s.levels: contact knows one spacing; give self_contact: false, or contact: "
+             "{between: none}",
+             b->name);
+  for (int q = 0; q < b->n_levels; q++)
+    BW_REQUIRE(meets(s, bw_scene__planar(c) ? 2 : 3, b->levels[q].from, b->levels[q].to), BW_EINPUT,
+               "bodies.%s.levels.%d: nothing of the body is in it; it goes from (%g, %g, %g) to "
+               "(%g, %g, %g)",
+               b->name, q, s->lower[0], s->lower[1], s->lower[2], s->upper[0], s->upper[1],
+               s->upper[2]);
+  return BW_OK;
+}
+
 /* Is one point in both? A grid of points over what their extents share is looked at. */
 static bw_status check_overlap(const bw_scene_config *c, int a, int b, const bw_scene__shapes *sa,
                                const bw_scene__shapes *sb)
@@ -172,6 +196,7 @@ static bw_status check_body(const bw_scene_config *c, int b, const bw_scene__sha
   BW_TRY(check_size(c, body, s));
   BW_TRY(check_held(c, body, s));
   BW_TRY(check_cracks(c, body, s));
+  BW_TRY(check_levels(c, body, s));
   for (int a = 0; a < b; a++) {
     bw_scene__shapes other;
     bw_status st = bw_scene__shapes_make(c, a, &other);

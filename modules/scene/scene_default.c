@@ -20,6 +20,7 @@ static void default_body(bw_scene_body *b)
   b->held[0].layers = 1;
   b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
+  b->levels[0] = (bw_scene_level){INT_MIN, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
   bw_scene_shape *s = &b->shape[0];
   s->box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   s->cylinder = (bw_scene_cylinder){2, {NAN, NAN}, NAN, NAN, NAN};

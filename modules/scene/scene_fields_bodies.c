@@ -1,4 +1,5 @@
 /* The keys of materials, bodies and loads. */
+#include "bw_pd_body.h"
 #include "bw_shape.h"
 #include "scene_internal.h"
 
@@ -91,6 +92,11 @@ static const bw_config_field crack_fields[] = {
     V(bw_scene_crack, along, BW_OPTIONAL, BW_POINT, "L",
       "in three dimensions: the cut is the parallelogram of to - from and this edge"),
     BW_CONFIG_END};
+static const bw_config_field level_fields[] = {
+    V(bw_scene_level, level, BW_REQUIRED, BW_FROM_TO(1, BW_PD_FINEST), "",
+      "1: half the spacing, 2: a quarter, and so on"),
+    V(bw_scene_level, from, BW_REQUIRED, BW_POINT, "L", "lower corner of a box along x, y, z"),
+    V(bw_scene_level, to, BW_REQUIRED, BW_POINT, "L", "upper corner"), BW_CONFIG_END};
 const bw_config_word bw_scene__motion_words[] = {
     {"fixed", BW_SCENE_FIXED, "it does not move"},
     {"prescribed", BW_SCENE_PRESCRIBED, "it moves as velocity, rotation and swing say"},
@@ -144,6 +150,9 @@ const bw_config_field bw_scene__body_fields[] = {
     BW_CONFIG_LIST(bw_scene_body, held, n_held, BW_OPTIONAL, held_fields, "where it is held"),
     BW_CONFIG_LIST(bw_scene_body, cracks, n_cracks, BW_OPTIONAL, crack_fields,
                    "cuts that are there from the start"),
+    BW_CONFIG_LIST(
+        bw_scene_body, levels, n_levels, BW_OPTIONAL, level_fields,
+        "boxes in which its particles are finer; cracks have to stay in the finest ones"),
     BW_CONFIG_WORD(bw_scene_body, self_contact, BW_OPTIONAL, self_words,
                    "does what breaks off collide with the rest? Left out: if the body breaks"),
     BW_CONFIG_END};

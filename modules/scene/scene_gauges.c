@@ -120,7 +120,8 @@ static bw_status take_aim(bw_scene *s, int gauge)
    * ever, so it is refused. */
   if (bw_scene__given(g->nearest)) keep_nearest(s, g, aim);
   for (int q = 0; q < s->n_solids; q++)
-    aim->count += aim->n[q];
+    for (int k = 0; k < aim->n[q]; k++)
+      aim->count += bw_scene__share(&s->solid[q], (size_t)aim->particle[q][k]);
   bw_comm_sum(s->comm, 1, &aim->count);
   BW_REQUIRE(aim->count > 0, BW_EINPUT,
              "gauges.%s: no %sparticle of %s is there; change region or body", g->name,

@@ -25,6 +25,12 @@ bw_status bw_scene__note_cuts(bw_scene *s)
   return BW_OK;
 }
 
+/* Volume of a particle over that of the coarsest: means are of volume. */
+double bw_scene__share(const bw_scene__solid *p, size_t i)
+{
+  return bw_solid_volume_of(p->solid, i) / bw_solid_volume(p->solid);
+}
+
 /* Mean of a vector over the particles of a gauge. Collective. */
 static void mean_vector(bw_scene *s, const bw_scene__aim *aim, const char *word, double value[3])
 {
@@ -39,7 +45,8 @@ static void mean_vector(bw_scene *s, const bw_scene__aim *aim, const char *word,
     for (int k = 0; k < aim->n[q]; k++)
       for (size_t d = 0; d < 3; d++) {
         const size_t at = 3 * (size_t)aim->particle[q][k] + d;
-        value[d] += (p->V[at] - origin * p->X0[at]) / aim->count;
+        const double share = bw_scene__share(p, (size_t)aim->particle[q][k]) / aim->count;
+        value[d] += (p->V[at] - origin * p->X0[at]) * share;
       }
   }
   bw_comm_sum(s->comm, 3, value);
@@ -54,7 +61,8 @@ static bw_status damage_of(bw_scene *s, const bw_scene__aim *aim, double value[2
     BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&damage, s->solid[q].n)));
     bw_solid_get_damage(s->solid[q].solid, damage);
     for (int k = 0; k < aim->n[q]; k++) {
-      value[0] += damage[aim->particle[q][k]] / aim->count;
+      value[0] += damage[aim->particle[q][k]] *
+                  bw_scene__share(&s->solid[q], (size_t)aim->particle[q][k]) / aim->count;
       value[1] = fmax(value[1], damage[aim->particle[q][k]]);
     }
     bw_release(&damage);
@@ -76,7 +84,7 @@ static bw_status support_of(bw_scene *s, const bw_scene__aim *aim, double value[
     if (!pd->current && s->assembly == NULL) BW_TRY(bw_solid_evaluate(solid));
     for (int k = 0; k < aim->n[q]; k++) {
       const size_t i = (size_t)aim->particle[q][k];
-      const double mass = bw_solid_density(solid, i) * bw_solid_volume(solid);
+      const double mass = bw_solid_density(solid, i) * bw_solid_volume_of(solid, i);
       for (int d = 0; d < pd->dimension; d++)
         value[d] += mass * (double)(pd->a[d][i] + pd->load.extra[d][i]);
     }

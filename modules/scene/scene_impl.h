@@ -138,6 +138,8 @@ bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__solids_destroy(bw_scene *s);
 /* Body of an own particle. */
 int bw_scene__body_of(const bw_scene__solid *q, size_t i);
+/* Volume of its particle i over that of the coarsest [-]. Local. */
+double bw_scene__share(const bw_scene__solid *q, size_t i);
 /* scene_law.c: what the law of a solid is asked for; NULL: nothing. BW_EINPUT where its materials
  * ask for what one solid cannot have. Local. */
 typedef struct {

@@ -76,7 +76,7 @@ static bw_status aim(bw_scene *s, bw_scene__acting *a, double *volume)
   const bw_scene__solid *q = &s->solid[a->solid];
   const int b = bw_scene__body_named(&s->config, l->on);
   const double ds = bw_solid_settings(q->solid)->ds;
-  double lower[3], upper[3], count;
+  double lower[3], upper[3], sum = 0;
   extent_of(s, q, b, lower, upper);
   BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&a->particle, q->n)));
   for (size_t i = 0; i < q->n; i++) {
@@ -84,15 +84,15 @@ static bw_status aim(bw_scene *s, bw_scene__acting *a, double *volume)
     const double *x = q->X0 + 3 * i;
     if (l->has_where && !bw_scene__in_where(&l->where, s->planar, ds, lower, upper, x)) continue;
     a->particle[a->n++] = (int32_t)i;
+    sum += bw_solid_volume_of(q->solid, i);
   }
-  count = (double)a->n;
-  bw_comm_sum(s->comm, 1, &count);
+  bw_comm_sum(s->comm, 1, &sum);
   BW_REQUIRE(
-      count > 0, BW_EINPUT,
+      sum > 0, BW_EINPUT,
       "loads.%d.where: it holds no particle of %s; its particles go from (%g, %g, %g) to (%g, "
       "%g, %g)",
       a->load, l->on, lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]);
-  *volume = count * bw_solid_volume(q->solid);
+  *volume = sum;
   return BW_OK;
 }
 

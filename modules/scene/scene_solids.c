@@ -221,6 +221,25 @@ static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_co
     if (kind[d] == BW_SIDE_PERIODIC) c->period[d] = s->config.domain.length[d];
 }
 
+/* Boxes of all bodies that share the lattice. */
+static bw_status levels_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_config *c)
+{
+  for (int k = 0; k < q->n_bodies; k++) {
+    const bw_scene_body *b = &s->config.bodies[q->body[k]];
+    for (int r = 0; r < b->n_levels; r++) {
+      BW_REQUIRE(c->n_box < BW_PD_BOXES, BW_EINPUT,
+                 "bodies.%s.levels: bodies that hold each other have more than %d boxes together; "
+                 "join some",
+                 b->name, (int)BW_PD_BOXES);
+      bw_pd_box *box = &c->box[c->n_box++];
+      box->level = b->levels[r].level;
+      for (int d = 0; d < (s->planar ? 2 : 3); d++)
+        box->lower[d] = b->levels[r].from[d], box->upper[d] = b->levels[r].to[d];
+    }
+  }
+  return BW_OK;
+}
+
 static bw_status cut_cracks(bw_scene *s, bw_scene__solid *q)
 {
   for (int k = 0; k < q->n_bodies; k++) {
@@ -303,6 +322,7 @@ static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
   /* Groups are numbered while sites are filled; materials follow them. */
   bw_status st = bw_scene__sites_make(s, q, &c, &sites);
   BW_THEN(st, materials_of(s, q, &c));
+  BW_THEN(st, levels_of(s, q, &c));
   BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
   BW_THEN(st,
           bw_solid_create(s->comm, &c, &(bw_pd_sites){sites.n, sites.site, sites.kind, sites.group},

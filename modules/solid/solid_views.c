@@ -113,6 +113,11 @@ double bw_solid_density(const bw_solid *s, size_t i)
   return bw_pd_body_material(s->body, i)->rho;
 }
 
+double bw_solid_volume_of(const bw_solid *s, size_t i)
+{
+  return bw_pd_body_level(s->body, i)->dv;
+}
+
 double bw_solid_spacing(const bw_solid *s, size_t i)
 {
   return bw_pd_body_level(s->body, i)->ds;

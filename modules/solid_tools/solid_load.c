@@ -46,23 +46,37 @@ static bool in_box(const bw_pd_body *pd, size_t i, const double lower[3], const 
   return in;
 }
 
+static int level_of(const bw_pd_body *pd, size_t i)
+{
+  return (int)(bw_pd_body_level(pd, i) - pd->level);
+}
+
+/* Faces of cells of a level that one of level 0 has room for. */
+static int64_t faces(const bw_pd_body *pd, int level)
+{
+  return (int64_t)1 << (pd->dimension - 1) * level;
+}
+
 bw_status bw_solid_load_traction(const bw_solid *s, const double lower[3], const double upper[3],
                                  double area, const double traction[3], double F[])
 {
   const bw_pd_body *pd = bw_solid_body(s);
   BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT,
              "solid_load_traction: area = %g must be positive", area);
-  /* Counted over all ranks: each gets the same share of the whole force. */
+  /* Counted over all ranks: each gets the same share of the whole force; finer ones by the face of
+   * their cell, of which a cell of level 0 has `faces`. */
   int64_t chosen = 0;
   for (size_t i = 0; i < pd->n; i++)
-    chosen += in_box(pd, i, lower, upper);
+    chosen += in_box(pd, i, lower, upper) ? faces(pd, pd->finest) / faces(pd, level_of(pd, i)) : 0;
   bw_comm_sum_int(pd->comm, 1, &chosen);
   BW_REQUIRE(chosen > 0, BW_EINPUT,
              "solid_load_traction: no free particle has its place in the box %g %g %g .. %g %g %g",
              lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]);
   for (size_t i = 0; i < pd->n; i++)
     for (int k = 0; k < pd->dimension && in_box(pd, i, lower, upper); k++) /* sum F dV = t A */
-      F[3 * i + (size_t)k] += traction[k] * area / ((double)chosen * bw_pd_body_level(pd, i)->dv);
+      F[3 * i + (size_t)k] += traction[k] * area *
+                              ((double)faces(pd, pd->finest) / (double)faces(pd, level_of(pd, i))) /
+                              ((double)chosen * bw_pd_body_level(pd, i)->dv);
   return BW_OK;
 }
 

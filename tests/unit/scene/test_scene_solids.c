@@ -179,8 +179,46 @@ START_TEST(a_metal_yields)
 }
 END_TEST
 
+/* Levels: loads give the momentum that they say, whatever cells they meet; gauges are means of
+ * volume; what levels do not go with is refused by name. */
+START_TEST(levels)
+{
+#define FINER                                                                                      \
+  "numerics: {surface_correction: none}\nbodies: {a: {shape: {box: {from: [0, 0], to: [0.8, "      \
+  "0.6]}},"                                                                                        \
+  " material: m, motion: elastic, spacing: 0.1, levels: {level: 1, from: [0.4, 0.3], to: [1, "     \
+  "1]}}}\n"
+  static const char *const acts[] = {"{on: a, kind: traction, where: x_upper, value: [10, 0]}",
+                                     "{on: a, kind: force, value: [12, 0]}"};
+  for (int q = 0; q < 2; q++) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             BLOCK FINER "loads: %s\nphases: {until: 0.2}\n"
+                         "gauges: {v: {body: a, of: velocity}}\n",
+             acts[q]);
+    bw_scene *s = made(text);
+    /* 12 of 48 cells in four parts each. */
+    ck_assert_int_eq(bw_solid_total(s->solid[0].solid), 36 + 4 * 12);
+    run(s);
+    const double mass = 3 * 0.48 * 2;
+    bw_check_near(gauge(s, "v.x"), 12 * 0.2 / mass, TINY);
+    bw_scene_destroy(&s);
+  }
+  ck_assert_ptr_null(scene_of(BLOCK "bodies: {a: {shape: {box: {from: [0, 0], to: [1, 1]}},"
+                                    " material: m, motion: elastic, spacing: 0.1,"
+                                    " levels: {level: 1, from: [2, 2], to: [3, 3]}}}\n"
+                                    "phases: {until: 0.5}\n"));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "levels.0"));
+  ck_assert_ptr_null(scene_of(BLOCK "bodies: {a: {shape: {box: {from: [0, 0], to: [1, 1]}},"
+                                    " material: m, motion: elastic, spacing: 0.1, turn: 20,"
+                                    " levels: {level: 1, from: [0, 0], to: [1, 1]}}}\n"
+                                    "phases: {until: 0.5}\n"));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "turn"));
+}
+END_TEST
+
 static const bw_check_test tests[] = {BW_TEST(a_metal_yields), BW_TEST(weight),
                                       BW_TEST(loads),          BW_TEST(prescribed),
                                       BW_TEST(collision),      BW_TEST(materials_and_holes),
-                                      BW_TEST(phases)};
+                                      BW_TEST(phases),         BW_TEST(levels)};
 BW_CHECK_MAIN("scene.solids", tests)

@@ -1,6 +1,7 @@
 /* Bodies of several levels: cells, forces by an independent sum over pairs, momenta, energy, ranks,
  * restart, cracks on the finest level alone, refusals.
  * TEST ranks=1,2,3,4 */
+#include "pd_bond.h"
 #include "pd_test.h"
 
 #include <string.h>
@@ -171,6 +172,33 @@ START_TEST(momenta_are_kept_with_balanced_factors)
     crowd q = crowd_of(pd);
     check_momenta(&c, &q);
     crowd_release(&q);
+    bw_solid_destroy(&pd);
+    pd_body_release(&body);
+  }
+}
+END_TEST
+
+/* Jumps that meet faces, edges and each other: no factor runs away, with faces corrected or not. */
+START_TEST(factors_stay_bounded)
+{
+  static const bw_pd_box boxes[] = {{1, {2.5, -9, -9}, {99, 99, 99}},
+                                    {1, {-9, -9, -9}, {1.5, 1.5, 1.5}},
+                                    {1, {1, 1.5, 1}, {4.5, 2.5, 2}},
+                                    {2, {3, 2, -9}, {3.5, 2.5, 99}}};
+  for (int way = 0; way < 16; way++) {
+    bw_solid_config c = nested(way < 8 ? BW_PD_PLANE_STRESS : BW_PD_3D, 1, BW_PD_JUMP_BALANCED);
+    c.box[0] = boxes[way % 4];
+    c.surface_correction = way / 4 % 2 == 0 ? BW_PD_SURFACE_NONE : BW_PD_SURFACE_TENSOR;
+    pd_body body = way < 8 ? pd_box(13, 9, 1) : pd_box(11, 7, 5);
+    bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+    const bw_pd_body *in = bw_solid_body(pd);
+    for (size_t b = 0; b < in->bonds.n_block; b++)
+      for (uint32_t q = in->bonds.block[b].slot; q < in->bonds.block[b + 1].slot; q++)
+        for (int lane = 0; lane < BW_PD_LANES; lane++) {
+          if (!(in->bonds.slot[q].family >> lane & 1)) continue;
+          const double alpha = bw_pd_bond__alpha(in, &in->bonds.block[b], &in->bonds.slot[q], lane);
+          ck_assert_msg(alpha > 0.0999 && alpha < 4.0001, "way %d: factor %g", way, alpha);
+        }
     bw_solid_destroy(&pd);
     pd_body_release(&body);
   }
@@ -352,6 +380,7 @@ END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(forces_are_those_of_a_sum_over_pairs),
                                       BW_TEST(momenta_are_kept_with_balanced_factors),
+                                      BW_TEST(factors_stay_bounded),
                                       BW_TEST(energy_is_kept),
                                       BW_TEST(same_motion_and_bonds_on_any_number_of_ranks),
                                       BW_TEST(restart_on_another_number_of_ranks),

@@ -71,6 +71,12 @@ typedef struct {
   double step, end; /* time step; end of the run [s] */
   double after;     /* stop this long after the crack reached an end [s]    default: never */
 } specimen_time;
+/* What the material bears, for gauges of failure: NaN: that one is not asked for. */
+typedef struct {
+  double tension, yield, cohesion; /* strengths [Pa] */
+  double friction_angle;           /* with cohesion [degrees] */
+  double flaw;                     /* crack whose release is found, with the fracture energy [m] */
+} specimen_strength;
 /* Files. */
 typedef struct {
   int sample_every, picture_every; /* steps between rows, between pictures   default 10, 200 */
@@ -87,6 +93,7 @@ typedef struct {
   specimen_follow follow;
   specimen_time time;
   specimen_files output;
+  specimen_strength strength;
 } specimen_config;
 
 extern const bw_config_field specimen_fields[]; /* its keys (specimen_input.c) */

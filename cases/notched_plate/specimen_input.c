@@ -112,6 +112,18 @@ static const bw_config_field output_fields[] = {
       "steps between pictures damage-*.vtp"),
     BW_CONFIG_END};
 
+static const bw_config_field strength_fields[] = {
+    V(specimen_strength, tension, BW_OPTIONAL, BW_ABOVE(0), "Pa",
+      "in tension: gauges rankine and energy"),
+    V(specimen_strength, yield, BW_OPTIONAL, BW_ABOVE(0), "Pa", "gauge mises"),
+    V(specimen_strength, cohesion, BW_OPTIONAL, BW_ABOVE(0), "Pa",
+      "gauges mohr_coulomb and drucker_prager, with friction_angle"),
+    V(specimen_strength, friction_angle, BW_OPTIONAL, BW_FROM_TO(0, 89), "deg", "with cohesion"),
+    V(specimen_strength, flaw, BW_OPTIONAL, BW_ABOVE(0), "m",
+      "gauge griffith: a crack of this length is tried wherever the largest principal stress is "
+      "half of its largest value or more; with solid.fracture_energy"),
+    BW_CONFIG_END};
+
 const bw_config_field specimen_fields[] = {
     BW_CONFIG_MAP(specimen_config, shape, shape_fields, "the plate and its lattice"),
     BW_CONFIG_LIST(specimen_config, notches, n_notches, BW_OPTIONAL, notch_fields,
@@ -124,6 +136,8 @@ const bw_config_field specimen_fields[] = {
     BW_CONFIG_MAP(specimen_config, follow, follow_fields, "the crack that is measured"),
     BW_CONFIG_MAP(specimen_config, time, time_fields, "how long the run is"),
     BW_CONFIG_MAP(specimen_config, output, output_fields, "when files are written"),
+    BW_CONFIG_MAP(specimen_config, strength, strength_fields,
+                  "what the material bears: gauges of failure in the pictures, and weakest-*.csv"),
     BW_CONFIG_END};
 #undef V
 
@@ -150,7 +164,8 @@ specimen_config specimen_default(void)
                  .angle_over = NAN,
                  .every = 1},
       .time = {.step = NAN, .end = NAN, .after = NAN},
-      .output = {.sample_every = 10, .picture_every = 200}};
+      .output = {.sample_every = 10, .picture_every = 200},
+      .strength = {NAN, NAN, NAN, NAN, NAN}};
   c.notches[0] = (specimen_notch){{NAN, NAN}, {NAN, NAN}};
   c.holes[0] = (specimen_hole){{NAN, NAN}, NAN};
   c.loads[0] = (specimen_load){

@@ -3,6 +3,7 @@
 #include "bw_file.h"
 #include "bw_memory.h"
 #include "bw_vtk.h"
+#include "specimen_failure.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -39,11 +40,35 @@ bw_status specimen_sample(specimen *p, bw_history *history)
   return BW_OK;
 }
 
-static bw_status write_particles(specimen *p, const char *path)
+enum { ARRAYS = 2 + BW_SOLID_FAILURE_GAUGES };
+
+/* Damage, displacement, and the gauges that are asked for, each in an array of its own. */
+static int name_arrays(const specimen *p, const double U[], const double used[], double column[],
+                       char name[][32], bw_vtk_array out[ARRAYS])
 {
-  double *X = NULL, *U = NULL;
+  int asked[BW_SOLID_FAILURE_GAUGES];
+  const int n = used != NULL ? specimen_gauges(p, asked) : 0;
+  out[0] = (bw_vtk_array){"damage", BW_VTK_FLOAT64, 1, p->damage};
+  out[1] = (bw_vtk_array){"displacement", BW_VTK_FLOAT64, 3, U};
+  for (int q = 0; q < n; q++) {
+    double *mine = column + (size_t)q * p->n;
+    for (size_t i = 0; i < p->n; i++)
+      mine[i] = used[BW_SOLID_FAILURE_GAUGES * i + (size_t)asked[q]];
+    snprintf(name[q], sizeof name[q], "used_%s", bw_solid_failure_name[asked[q]]);
+    out[2 + q] = (bw_vtk_array){name[q], BW_VTK_FLOAT64, 1, mine};
+  }
+  return 2 + n;
+}
+
+/* used: gauges of failure, or NULL. */
+static bw_status write_particles(specimen *p, const char *path, const double used[])
+{
+  double *X = NULL, *U = NULL, *column = NULL;
+  char name[BW_SOLID_FAILURE_GAUGES][32];
+  bw_vtk_array arrays[ARRAYS];
   bw_status st = BW_ALLOCATE(&X, 3 * p->n);
   BW_THEN(st, BW_ALLOCATE(&U, 3 * p->n));
+  BW_THEN(st, BW_ALLOCATE(&column, BW_SOLID_FAILURE_GAUGES * p->n));
   st = bw_comm_agree(p->comm, st);
   /* Present places, with the displacement from the reference shape. */
   if (st == BW_OK) {
@@ -51,26 +76,34 @@ static bw_status write_particles(specimen *p, const char *path)
     bw_solid_get_damage(p->solid, p->damage);
     for (size_t i = 0; i < 3 * p->n; i++)
       U[i] = X[i] - p->X0[i];
-    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, p->damage},
-                                   {"displacement", BW_VTK_FLOAT64, 3, U}};
-    st = bw_vtk_write_points(p->comm, path, p->time, p->n, X, 2, arrays);
+    const int n = name_arrays(p, U, used, column, name, arrays);
+    st = bw_vtk_write_points(p->comm, path, p->time, p->n, X, n, arrays);
   }
   bw_release(&X);
   bw_release(&U);
+  bw_release(&column);
   return st;
 }
 
 bw_status specimen_picture(specimen *p, const bw_case *run)
 {
+  int asked[BW_SOLID_FAILURE_GAUGES];
   char name[64], *path = NULL, *series = NULL;
+  double *used = NULL;
   snprintf(name, sizeof name, "damage-%06lld.vtp", (long long)p->steps);
   bw_status st = bw_case_path(run, name, &path);
   BW_THEN(st, bw_case_path(run, "damage.pvd", &series));
-  BW_THEN(st, write_particles(p, path));
+  if (specimen_gauges(p, asked) > 0) {
+    BW_THEN(st, bw_comm_agree(p->comm, BW_ALLOCATE(&used, BW_SOLID_FAILURE_GAUGES * p->n)));
+    BW_THEN(st, specimen_used(p, used));
+    BW_THEN(st, specimen_weakest(p, run, used));
+  }
+  BW_THEN(st, write_particles(p, path, used));
   /* The series names the file only after it is there. */
   BW_THEN(st, bw_vtk_series_add(p->comm, series, p->time, name));
   bw_release(&path);
   bw_release(&series);
+  bw_release(&used);
   return st;
 }
 

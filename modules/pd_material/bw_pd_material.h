@@ -16,6 +16,7 @@
  * work P:dF by the trapezoidal rule is what W, the elastic energy J sigma:C^-1:sigma/2, gains and
  * what is dissipated.
  * Plane strain: F33 = 1. Plane stress: F33 follows from sigma33 = 0.
+ * An energy of one's own is a bw_pd_material_energy (docs/add-a-material.md).
  *
  * Shapes   tensors of 9 row-major numbers; symmetric ones xx yy zz yz xz xy; BW_PD_MATERIAL_LANES
  *          points at a time. Always in double. Sources: docs/sources.md ULPH; Holzapfel, Nonlinear
@@ -64,13 +65,29 @@ typedef struct {
   double hardening; /* dk/dp [M/(L T^2)] */
 } bw_pd_material_yield;
 
+enum { BW_PD_MATERIAL_PARAMETERS = 4 }; /* numbers of an energy of one's own, at most */
+
+typedef struct bw_pd_material_energy bw_pd_material_energy;
+
 /* A material. */
 typedef struct {
-  bw_pd_material_plane plane;     /* what is left out of space */
-  bw_pd_material_elastic elastic; /* its energy; not read where it yields */
-  double lam, mu;                 /* Lame's constants [M/(L T^2)] */
-  bw_pd_material_yield yield;     /* where it yields */
+  bw_pd_material_plane plane;       /* what is left out of space */
+  bw_pd_material_elastic elastic;   /* its energy; not read where it yields */
+  double lam, mu;                   /* Lame's constants [M/(L T^2)] */
+  bw_pd_material_yield yield;       /* where it yields */
+  const bw_pd_material_energy *own; /* borrowed: an energy in place of `elastic`; NULL: none */
+  double parameter[BW_PD_MATERIAL_PARAMETERS]; /* of `own`, as it likes */
 } bw_pd_material_point;
+
+/* An energy of one's own. At small strain it has to be Hooke's of lam and mu: stable steps and
+ * linear statics take those. */
+struct bw_pd_material_energy {
+  const char *name; /* its word */
+  /* P and, unless NULL, W of H = F - 1 in space: in the plane H[8] is what F33 - 1 is, and the
+   * others out of it are 0. Local. */
+  void (*stress)(const bw_pd_material_point *m, const bw_pd_material_lanes H[9],
+                 bw_pd_material_lanes P[9], bw_pd_material_lanes *W);
+};
 
 /* Elastic material of Young's modulus E [M/(L T^2)] and Poisson's ratio nu, without yield. */
 bw_pd_material_point bw_pd_material_elastic_point(bw_pd_material_plane plane,

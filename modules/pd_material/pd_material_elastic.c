@@ -180,6 +180,28 @@ static void hencky(const bw_pd_material_point *m, lanes H[9], lanes P[9], lanes 
   }
 }
 
+/* An energy of one's own in plane stress: P33 = 0 in every lane, by the secant's steps from the
+ * slope of Hooke's law; no thickness below a hundredth. */
+static void own_thickness(const bw_pd_material_point *m, lanes H[9])
+{
+  lanes P[9], before = lanes_all(0), last = lanes_all(0);
+  H[8] = across(m, H[0] + H[4]);
+  for (int pass = 0; pass < 50; pass++) {
+    double most = 0;
+    m->own->stress(m, H, P, NULL);
+    for (int k = 0; k < BW_PD_MATERIAL_LANES; k++) {
+      const bool known = pass > 0 && P[8][k] != last[k];
+      const double slope = known ? (P[8][k] - last[k]) / (H[8][k] - before[k]) : m->lam + 2 * m->mu;
+      before[k] = H[8][k], last[k] = P[8][k];
+      /* What is as small as rounding is left, or the secant would divide by it. */
+      if (fabs(P[8][k]) < 1e-15 * m->mu || !(slope > 0)) continue;
+      H[8][k] = fmax(H[8][k] - P[8][k] / slope, -0.99);
+      most = fmax(most, fabs(H[8][k] - before[k]) / (1 + fabs(H[8][k])));
+    }
+    if (!(most > 1e-15)) break;
+  }
+}
+
 void bw_pd_material_stress(const bw_pd_material_point *m, bw_pd_material_lanes H[9],
                            bw_pd_material_lanes P[9], bw_pd_material_lanes *W)
 {
@@ -187,5 +209,10 @@ void bw_pd_material_stress(const bw_pd_material_point *m, bw_pd_material_lanes H
                                 lanes *) = {linear, saint_venant, neo_hookean, hencky};
   /* In the plane nothing leaves it: what the caller has out of it is replaced. */
   if (m->plane != BW_PD_MATERIAL_SPACE) H[2] = H[5] = H[6] = H[7] = H[8] = lanes_all(0);
-  stress[m->elastic](m, H, P, W);
+  if (m->own == NULL) {
+    stress[m->elastic](m, H, P, W);
+    return;
+  }
+  if (m->plane == BW_PD_MATERIAL_PLANE_STRESS) own_thickness(m, H);
+  m->own->stress(m, H, P, W);
 }

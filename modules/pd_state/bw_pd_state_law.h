@@ -22,8 +22,8 @@
  * neighbours (18 in space: horizon_ratio 1.5, family_reach horizon) are the most accurate where
  * nothing breaks. A particle whose bonds no longer span the space is on central springs.
  * A bond breaks when its stretch is beyond s0 of its G0; or when it is stretched and the mean of
- * what its ends have used of a limit of the largest principal stress, or of the flow's factor, is
- * above 1.
+ * what its ends have used of a criterion's limit (bw_pd_material_criterion.h), or of the flow's
+ * factor, is above 1.
  *
  * Between two groups each end has its own constants, and the smaller G0 or the joint's own counts.
  * A law given no options (NULL) takes the defaults. */
@@ -60,17 +60,25 @@ typedef enum {
 typedef enum {
   BW_PD_STATE_BREAKS_BY_STRETCH, /* its stretch, of G0 */
   BW_PD_STATE_BREAKS_BY_STRESS,  /* the largest principal Cauchy stress of its ends */
-  BW_PD_STATE_BREAKS_BY_FLOW     /* the factor of the plastic flow of its ends */
+  BW_PD_STATE_BREAKS_BY_FLOW,    /* the factor of the plastic flow of its ends */
+  /* What their stress uses of a criterion (bw_pd_material_criterion.h). */
+  BW_PD_STATE_BREAKS_BY_ENERGY,
+  BW_PD_STATE_BREAKS_BY_MISES,
+  BW_PD_STATE_BREAKS_BY_MOHR_COULOMB,
+  BW_PD_STATE_BREAKS_BY_CONE /* Drucker-Prager */
 } bw_pd_state_breaks;
 
 /* What the correspondence law is asked for: `options` of bw_pd_body_create. */
 typedef struct {
-  bw_pd_state_weight weight;                /* default cubic */
-  bw_pd_material_elastic elastic;           /* default neo-Hookean */
-  bw_pd_material_yield yield[BW_PD_GROUPS]; /* of each group; default: it does not yield */
-  double stabilisation;                     /* gamma [-]; default 4/3 */
-  bw_pd_state_breaks breaks;                /* default by stretch */
-  double limit;                             /* of stress [M/(L T^2)] or flow [-] */
+  bw_pd_state_weight weight;        /* default cubic */
+  bw_pd_material_elastic elastic;   /* default neo-Hookean */
+  const bw_pd_material_energy *own; /* borrowed: an energy in place of it; default NULL: none */
+  double parameter[BW_PD_MATERIAL_PARAMETERS]; /* of `own`                           default 0 */
+  bw_pd_material_yield yield[BW_PD_GROUPS];    /* of each group; default: it does not yield */
+  double stabilisation;                        /* gamma [-]; default 4/3 */
+  bw_pd_state_breaks breaks;                   /* default by stretch */
+  double limit;                                /* of stress [M/(L T^2)] or flow [-] */
+  double friction; /* angle of Mohr-Coulomb and Drucker-Prager [rad]; default 0 */
 } bw_pd_state_correspondence_options;
 
 /* The defaults. Local. */

@@ -32,13 +32,19 @@ void bw_pd_state__resolve_poisson(bw_pd_body_config *config);
  * half with xi.n > 0, n along the lattice [L^4]; of Gamma dV |xi| [L^4]. BW_EMEM. Local. */
 bw_status bw_pd_state__full_sums(const bw_pd_body *pd, double *crossing,
                                  double *moment) BW_MUST_CHECK;
-enum { BW_PD_STATE_KNOTS = 3 };
-/* A factor that strips have given (validation/pd_state/strip_G.c: 24 cells, cracked along the
- * lattice, plane strain) for m = 2 and 3 and Poisson's ratios 0.1, 0.25 and 0.4: by a parabola in
- * nu and a straight line in m, beyond them the nearest. Local. */
-double bw_pd_state__by_strip(const double table[2][BW_PD_STATE_KNOTS], double m, double nu);
 /* Micromodulus of a bond law of the same E, for contact [M/(L^5 T^2)]. */
 double bw_pd_state__micromodulus(const bw_pd_body *pd, int group);
+
+/* pd_state_crack.c: what a crack costs, beside the simplest sum. Local. */
+
+/* Poisson's ratio that a body in plane strain with the same moduli in the plane has; in space its
+ * own. */
+double bw_pd_state__strain_poisson(bw_pd_geometry geometry, double nu);
+/* Ordinary law: energy to drive a long crack over that of a flat cut all of whose bonds are at
+ * their limit; Poisson's ratio as of plane strain. */
+double bw_pd_state__ordinary_crack(const bw_pd_body_config *c, bool inverse, double nu);
+/* Correspondence: that energy over E s0^2 horizon, E and Poisson's ratio as of plane strain. */
+double bw_pd_state__correspondence_crack(const bw_pd_body_config *c, bool uniform, double nu);
 
 /* pd_state_lanczos.c */
 

@@ -51,20 +51,3 @@ double bw_pd_state__micromodulus(const bw_pd_body *pd, int group)
                       48 * E / (5 * PI * t * d * d * d)};
   return c[pd->config.geometry];
 }
-
-/* What cannot be summed over a family: how bonds share a crack's work. */
-double bw_pd_state__by_strip(const double table[2][BW_PD_STATE_KNOTS], double m, double nu)
-{
-  static const double knot[BW_PD_STATE_KNOTS] = {0.1, 0.25, 0.4};
-  const double share = fmax(0, fmin(1, m - 2)), at = fmax(knot[0], fmin(knot[2], nu));
-  double row[2] = {0};
-  /* The parabola through the three knots (Lagrange's form). */
-  for (int k = 0; k < BW_PD_STATE_KNOTS; k++) {
-    double weight = 1;
-    for (int j = 0; j < BW_PD_STATE_KNOTS; j++)
-      if (j != k) weight *= (at - knot[j]) / (knot[k] - knot[j]);
-    for (int q = 0; q < 2; q++)
-      row[q] += weight * table[q][k];
-  }
-  return row[0] + share * (row[1] - row[0]);
-}

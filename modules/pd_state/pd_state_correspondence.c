@@ -2,6 +2,8 @@
 #include "pd_state_correspondence.h"
 #include "bw_memory.h"
 
+#include <string.h>
+
 bw_pd_state_correspondence_options bw_pd_state_correspondence_options_default(void)
 {
   bw_pd_state_correspondence_options o = {.weight = BW_PD_STATE_CUBIC,
@@ -37,7 +39,7 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   BW_TRY(bw_pd_state__check_poisson(c));
   BW_REQUIRE((unsigned)o.weight <= BW_PD_STATE_UNIFORM &&
                  (unsigned)o.elastic <= BW_PD_MATERIAL_HENCKY &&
-                 (unsigned)o.breaks <= BW_PD_STATE_BREAKS_BY_FLOW,
+                 (unsigned)o.breaks <= BW_PD_STATE_BREAKS_BY_CONE,
              BW_EINPUT, "solid: weight = %d, elastic = %d or breaks = %d is unknown", (int)o.weight,
              (int)o.elastic, (int)o.breaks);
   BW_REQUIRE(o.stabilisation >= 0 && isfinite(o.stabilisation), BW_EINPUT,
@@ -85,6 +87,10 @@ static bw_status fields(bw_pd_body *pd)
     BW_TRY(bw_pd_body_add_field(pd, 0, false, &o->measure));
   for (int q = 0; q < 6; q++)
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &o->inverse[q]));
+  if (o->remembers) {
+    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &o->whole));
+    BW_TRY(bw_pd_body_add_field(pd, -1, true, &o->lately));
+  }
   for (int q = 0; q < BW_PD_REMEMBERED && o->remembers; q++) {
     BW_TRY(bw_pd_body_add_field(pd, -1, true, &o->accepted[q]));
     BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &o->trial[q]));
@@ -129,17 +135,18 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   return check_families(pd);
 }
 
-/* s0 of a joint from its G0: G over E s0^2 horizon of strips (ERRATA-ULPH 47-48). Uniform weights
- * need 1.25 times as much (the same at nu = 0.25 and 0.3, m = 3). */
+/* s0 of a joint from its G0. */
 static double stretch(const bw_pd_body *pd, int g, int h)
 {
-  static const double cubic[2][BW_PD_STATE_KNOTS] = {{1.079, 1.295, 2.522}, {0.837, 0.942, 1.317}};
   const bw_pd_body_config *c = &pd->config;
   const bool uniform = bw_pd_correspondence_of(pd)->options.weight == BW_PD_STATE_UNIFORM;
   const double nu = 0.5 * (c->material[g].nu + c->material[h].nu);
-  const double G = (uniform ? 1.25 : 1) * bw_pd_state__by_strip(cubic, c->horizon_ratio, nu);
   const double a = c->material[g].E, b = c->material[h].E, E = 2 * a * b / (a + b);
-  return sqrt(bw_pd_state__joint_G0(c, g, h) / (G * E * pd->level->horizon));
+  /* In plane stress the body in plane strain that has the same mu and the same lam in the plane. */
+  const double strain = bw_pd_state__strain_poisson(c->geometry, nu);
+  const double factor =
+      bw_pd_state__correspondence_crack(c, uniform, strain) * E * (1 + strain) / (1 + nu);
+  return sqrt(bw_pd_state__joint_G0(c, g, h) / (factor * pd->level->horizon));
 }
 
 static void row_constants(bw_pd_body *pd, int g, int h, bw_real row[])
@@ -169,6 +176,8 @@ static void constants(bw_pd_body *pd)
     const bw_pd_material *m = &c->material[g];
     o->material[g] = bw_pd_material_elastic_point(plane, o->options.elastic, m->E, m->nu);
     o->material[g].yield = o->options.yield[g];
+    o->material[g].own = o->options.own;
+    memcpy(o->material[g].parameter, o->options.parameter, sizeof o->options.parameter);
     o->small[g] = bw_pd_material_elastic_point(plane, BW_PD_MATERIAL_LINEAR, m->E, m->nu);
     o->spring[g] = 2 * dilation[c->geometry] * m->E / moment;
     for (int h = 0; h < c->n_group; h++) {
@@ -226,6 +235,7 @@ static void destroy(bw_pd_body *pd)
     bw_pd_body_release_storage_array(&o->inverse[q]);
   for (int q = 0; q < BW_PD_REMEMBERED; q++)
     bw_pd_body_release_storage_array(&o->trial[q]);
+  bw_pd_body_release_storage_array(&o->whole);
   bw_release(&o->cut);
   bw_release(&pd->state);
 }
@@ -240,8 +250,13 @@ static const bw_pd_law_key keys[] = {
      "cubic"},
     {"elastic", "", "energy: linear, saint_venant, neo_hookean or hencky; default neo_hookean"},
     {"stabilisation", "", "beta kappa/mu, 0 or more; default 4/3"},
-    {"breaks", "", "bonds break by stretch (of fracture_energy), stress or flow; default stretch"},
-    {"limit", "Pa or 1", "largest principal stress, or factor of plastic flow, that a pair bears"},
+    {"breaks", "",
+     "bonds break by stretch (of fracture_energy), stress, flow, energy, mises, "
+     "mohr_coulomb or drucker_prager; default stretch"},
+    {"limit", "Pa or 1",
+     "stress, of Mohr-Coulomb and Drucker-Prager cohesion, or factor of plastic flow, that a pair "
+     "bears"},
+    {"friction_angle", "deg", "of breaks: mohr_coulomb and drucker_prager"},
     {NULL, NULL, NULL}};
 
 const bw_pd_law bw_pd_state_correspondence_law = {

@@ -14,6 +14,8 @@ typedef struct {
   bool breakable, remembers;
   bw_real *inverse[6]; /* storage: K^-1, xx yy zz yz xz xy */
   bw_real *beta;       /* storage: beta; of a particle on springs minus their c */
+  bw_real *whole;      /* storage: beta before anything flowed; NULL where nothing yields */
+  bw_real *lately;     /* storage: what z held, over beta, when it last flowed; saved */
   bw_real *B[9];       /* storage: P K^-1 - beta H; copies after the first pass */
   bw_real *measure;    /* storage: part of the limit of stress or flow; copies too; or NULL */
   bool *cut;           /* (n_block) K is not that of all bonds of the start */
@@ -34,6 +36,25 @@ static inline double bw_pd_correspondence_weight(const bw_pd_body *pd, double r0
   return bw_pd_correspondence_of(pd)->options.weight == BW_PD_STATE_UNIFORM
              ? 1
              : (1 - q) * (1 - q) * (1 + 2 * q);
+}
+
+/* What is left of mu as the secant of shear stress over shear strain, once a factor p of flow has
+ * come to it: beta goes with it, or what keeps modes without energy away would hold the narrow
+ * bands in which a material yields. */
+static inline double bw_pd_correspondence_secant(const bw_pd_body *pd, int32_t h, double flow)
+{
+  const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
+  const bw_pd_material_point *m = &o->material[bw_pd_body_group_at(pd, h)];
+  return isfinite(m->yield.k) ? 1 / (1 + m->mu * flow / m->yield.k) : 1;
+}
+
+/* beta of a particle with this family. */
+static inline double bw_pd_correspondence_beta(const bw_pd_body *pd, int32_t h, double kappa)
+{
+  const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
+  const double beta = o->options.stabilisation * o->small[bw_pd_body_group_at(pd, h)].mu / kappa;
+  return o->remembers ? beta * bw_pd_correspondence_secant(pd, h, (double)o->accepted[15][h])
+                      : beta;
 }
 
 /* pd_state_shape.c */
@@ -69,8 +90,12 @@ bw_pd_material_state bw_pd_state__remembered(const bw_pd_body *pd, int32_t place
 /* How much of the limit of stress or flow the owners have used, to `measure`. */
 void bw_pd_state__measure(const bw_pd_body *pd, const bw_pd_block *block,
                           const bw_pd_material_lanes H[9], const bw_pd_material_lanes P[9]);
-void bw_pd_state__accept(bw_pd_body *pd);
+/* beta of a block's owners, with what has flowed at the last evaluation. */
+void bw_pd_state__soften(const bw_pd_body *pd, const bw_pd_block *block);
 double bw_pd_state__dissipated(const bw_pd_body *pd);
+
+/* pd_state_accept.c */
+void bw_pd_state__accept(bw_pd_body *pd);
 
 /* pd_state_energy.c: members of the law, and displacement gradient of a lane by its family. */
 void bw_pd_state__gradient(const bw_pd_body *pd, const bw_pd_block *block, int lane,

@@ -114,6 +114,7 @@ INLINE void block_deform(const passes *s, const bw_pd_block *block, int dimensio
       wide[q][lane] = H[q][lane];
   }
   bw_pd_state__stress(pd, block, small, wide, P);
+  if (!small) bw_pd_state__soften(pd, block);
   if (!small && s->law->measure != NULL) bw_pd_state__measure(pd, block, wide, P);
   for (int q = 0; q < 6; q++)
     inverse[q] = vec_load(s->law->inverse[q] + block->first);

@@ -66,7 +66,7 @@ static double bonds_energy(const bw_pd_body *pd, const bw_pd_block *block, int l
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   const int g = bw_pd_body_group_at(pd, block->first + lane);
-  const double beta = f->spans ? o->options.stabilisation * o->small[g].mu / f->kappa : 0;
+  const double beta = f->spans ? bw_pd_correspondence_beta(pd, block->first + lane, f->kappa) : 0;
   double sum = 0, y[3];
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;

@@ -1,4 +1,5 @@
 /* Materials of a block's particles, and what those that yield remember. */
+#include "bw_pd_material_criterion.h"
 #include "pd_state_correspondence.h"
 
 #include <string.h>
@@ -72,10 +73,10 @@ void bw_pd_state__stress(const bw_pd_body *pd, const bw_pd_block *block, bool sm
   }
 }
 
-/* The largest principal value of sigma = P F^T/J. */
-static double tension(const double H[9], const double P[9])
+/* sigma = P F^T/J, xx yy zz yz xz xy. */
+static void cauchy(const double H[9], const double P[9], double s[6])
 {
-  double F[9], s[6];
+  double F[9];
   for (int q = 0; q < 9; q++)
     F[q] = H[q] + (q % 4 == 0);
   const double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
@@ -86,35 +87,56 @@ static double tension(const double H[9], const double P[9])
     for (int k = 0; k < 3; k++)
       s[q] += P[3 * i + k] * F[3 * j + k] / J;
   }
-  /* The largest of s is minus the least of -s. */
-  for (int q = 0; q < 6; q++)
-    s[q] = -s[q];
-  return -bw_pd_state__least(s, 3);
+}
+
+/* The criterion of a rule that breaks by the stress. */
+static bw_pd_material_criterion_kind criterion(bw_pd_state_breaks breaks)
+{
+  switch (breaks) {
+  case BW_PD_STATE_BREAKS_BY_ENERGY:
+    return BW_PD_MATERIAL_ENERGY;
+  case BW_PD_STATE_BREAKS_BY_MISES:
+    return BW_PD_MATERIAL_MISES;
+  case BW_PD_STATE_BREAKS_BY_MOHR_COULOMB:
+    return BW_PD_MATERIAL_MOHR_COULOMB;
+  case BW_PD_STATE_BREAKS_BY_CONE:
+    return BW_PD_MATERIAL_CONE;
+  default:
+    return BW_PD_MATERIAL_RANKINE;
+  }
 }
 
 void bw_pd_state__measure(const bw_pd_body *pd, const bw_pd_block *block,
                           const bw_pd_material_lanes H[9], const bw_pd_material_lanes P[9])
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
+  const bw_pd_material_criterion c = {criterion(o->options.breaks), o->options.limit,
+                                      o->options.friction};
   for (int lane = 0; lane < BW_PD_LANES; lane++) {
     if (!(block->mask >> lane & 1)) continue;
     const int32_t h = block->first + lane;
-    double h9[9], p9[9];
+    if (o->options.breaks == BW_PD_STATE_BREAKS_BY_FLOW) {
+      o->measure[h] = (bw_real)(o->remembers ? (double)o->trial[15][h] / o->options.limit : 0);
+      continue;
+    }
+    double h9[9], p9[9], s[6];
     for (int q = 0; q < 9; q++)
       h9[q] = H[q][lane], p9[q] = P[q][lane];
-    const double used = o->options.breaks == BW_PD_STATE_BREAKS_BY_STRESS ? tension(h9, p9)
-                        : o->remembers                                    ? (double)o->trial[15][h]
-                                                                          : 0;
-    o->measure[h] = (bw_real)(used / o->options.limit);
+    cauchy(h9, p9, s);
+    const bw_pd_material_point *m = &o->material[bw_pd_body_group_at(pd, h)];
+    o->measure[h] = (bw_real)bw_pd_material_used(&c, m->lam, m->mu, s);
   }
 }
 
-void bw_pd_state__accept(bw_pd_body *pd)
+void bw_pd_state__soften(const bw_pd_body *pd, const bw_pd_block *block)
 {
-  bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
-  if (!o->remembers) return;
-  for (int q = 0; q < BW_PD_REMEMBERED; q++)
-    memcpy(o->accepted[q], o->trial[q], pd->points.n_storage * sizeof(bw_real));
+  const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
+  for (int lane = 0; lane < BW_PD_LANES && o->whole != NULL; lane++) {
+    const int32_t h = block->first + lane;
+    if (!(block->mask >> lane & 1) || !(o->whole[h] > 0)) continue;
+    const double left = bw_pd_correspondence_secant(pd, h, (double)o->trial[15][h]);
+    o->beta[h] = (bw_real)(left * (double)o->whole[h]);
+  }
 }
 
 double bw_pd_state__dissipated(const bw_pd_body *pd)

@@ -62,12 +62,13 @@ static void row_constants(bw_pd_body *pd, int g, int h, bw_real row[])
   const bw_pd_stencil *s = &pd->level->stencil;
   const bool cloud = pd->config.disorder > 0;
   /* With all bonds across a flat cut at w_c their sum is G0 (ERRATA-ADAPT 24). A crack breaks them
-   * one by one and needs more, by what strips have shown. */
-  static const double strip[2][BW_PD_STATE_KNOTS] = {{1.610, 1.851, 2.672}, {1.275, 1.429, 2.019}};
+   * one by one and needs more. */
   const bw_pd_body_config *c = &pd->config;
-  const double nu = 0.5 * (c->material[g].nu + c->material[h].nu);
+  const double nu =
+      bw_pd_state__strain_poisson(c->geometry, 0.5 * (c->material[g].nu + c->material[h].nu));
   const double held = bw_pd_state__joint_G0(c, g, h) /
-                      (o->crossing * bw_pd_state__by_strip(strip, c->horizon_ratio, nu));
+                      (o->crossing * bw_pd_state__ordinary_crack(
+                                         c, o->options.influence == BW_PD_STATE_INVERSE, nu));
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double w = cloud ? 1 : bw_pd_ordinary_influence(o, s->r0[q]);
     row[BW_PD_STIFFNESS] = (bw_real)(w * (cloud ? 1 : s->fraction[q]) * pd->level->dv);

@@ -67,7 +67,9 @@ static void block_shapes(const bw_pd_body *pd, const bw_pd_block *block)
     for (int c = 0; c < 6; c++)
       o->inverse[c][h] = (bw_real)f.inverse[c];
     /* kappa of what is left, so that z keeps its weight against H. */
-    o->beta[h] =
+    o->beta[h] = (bw_real)(f.spans ? bw_pd_correspondence_beta(pd, h, f.kappa) : -o->spring[g]);
+    if (o->whole == NULL) continue;
+    o->whole[h] =
         (bw_real)(f.spans ? o->options.stabilisation * o->small[g].mu / f.kappa : -o->spring[g]);
   }
 }

@@ -32,12 +32,13 @@ typedef struct {
   int elastic;           /* correspondence: bw_pd_material_elastic    default neo-Hookean */
   double stabilisation;  /* correspondence: beta kappa/mu [-]                 default 4/3 */
   int breaks;            /* correspondence: bw_pd_state_breaks         default by stretch */
-  double limit;          /* of breaks by stress [M/(L T^2)] or flow [-]       default NaN */
+  double limit;          /* of breaks by a stress [M/(L T^2)] or flow [-]     default NaN */
   int plastic;           /* correspondence: bw_solid_plastic              default elastic */
   double yield_stress;   /* J2: uniaxial [M/(L T^2)]                          default NaN */
   double hardening;      /* J2: its slope [M/(L T^2)]                         default NaN: 0 */
   double cohesion;       /* Drucker-Prager [M/(L T^2)]                        default NaN */
-  double friction_angle; /* Drucker-Prager [degrees]                          default NaN */
+  double friction_angle; /* Drucker-Prager, and breaks by it or Mohr-Coulomb [degrees]
+                                                                              default NaN */
   double dilation_angle; /* Drucker-Prager [degrees]                       default NaN: 0 */
   int cone;              /* Drucker-Prager: bw_pd_material_cone   default plane strain,
                             isochoric */

@@ -36,14 +36,14 @@ extern const bw_config_word bw_solid_cone_words[];       /* bw_pd_material_cone 
       BW_SOLID_LAW_WORD_(T, breaks, bw_solid_breaks_words,                                         \
                          "law correspondence: what breaks a bond"),                                \
       BW_SOLID_LAW_VALUE_(T, limit, BW_ABOVE(0), "Pa or 1",                                        \
-                          "largest principal stress, or factor of flow, that a pair bears"),       \
+                          "stress, cohesion or factor of flow that a pair bears"),                 \
       BW_SOLID_LAW_WORD_(T, plastic, bw_solid_plastic_words, "law correspondence: how it yields"), \
       BW_SOLID_LAW_VALUE_(T, yield_stress, BW_ABOVE(0), "Pa", "of J2: uniaxial stress"),           \
       BW_SOLID_LAW_VALUE_(T, hardening, BW_AT_LEAST(0), "Pa",                                      \
                           "of J2: slope of that stress; left out: 0"),                             \
       BW_SOLID_LAW_VALUE_(T, cohesion, BW_ABOVE(0), "Pa", "of Drucker-Prager: cohesion"),          \
       BW_SOLID_LAW_VALUE_(T, friction_angle, BW_FROM_TO(0, 89), "deg",                             \
-                          "of Drucker-Prager: angle of friction"),                                 \
+                          "of Drucker-Prager and Mohr-Coulomb: friction"),                         \
       BW_SOLID_LAW_VALUE_(T, dilation_angle, BW_FROM_TO(0, 89), "deg",                             \
                           "of Drucker-Prager: angle of dilation; left out: 0"),                    \
       BW_SOLID_LAW_WORD_(T, cone, bw_solid_cone_words,                                             \

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+static const double RADIAN = 3.14159265358979323846 / 180;
+
 bw_solid_law_choice bw_solid_law_choice_default(void)
 {
   const bw_pd_state_correspondence_options o = bw_pd_state_correspondence_options_default();
@@ -41,18 +43,27 @@ static bw_status angle(const char *key, double value)
   return BW_OK;
 }
 
+/* Whether bonds break by a criterion that knows friction. */
+static bool breaks_by_friction(const bw_solid_law_choice *c)
+{
+  return c->breaks == BW_PD_STATE_BREAKS_BY_MOHR_COULOMB || c->breaks == BW_PD_STATE_BREAKS_BY_CONE;
+}
+
 static bw_status check_plastic(const bw_solid_law_choice *c)
 {
   const bool j2 = c->plastic == BW_SOLID_J2, cone = c->plastic == BW_SOLID_DRUCKER_PRAGER;
+  const bool friction = cone || breaks_by_friction(c);
   BW_TRY(needed("yield_stress", c->yield_stress, j2, "plastic: j2", true));
   BW_TRY(needed("hardening", c->hardening, j2, "plastic: j2", false));
   BW_TRY(needed("cohesion", c->cohesion, cone, "plastic: drucker_prager", true));
-  BW_TRY(needed("friction_angle", c->friction_angle, cone, "plastic: drucker_prager", false));
+  BW_TRY(needed("friction_angle", c->friction_angle, friction,
+                "plastic: drucker_prager, breaks: mohr_coulomb or drucker_prager", false));
   BW_TRY(needed("dilation_angle", c->dilation_angle, cone, "plastic: drucker_prager", false));
   BW_TRY(angle("friction_angle", c->friction_angle));
   BW_TRY(angle("dilation_angle", c->dilation_angle));
-  BW_REQUIRE(!cone || !isnan(c->friction_angle), BW_EINPUT,
-             "solid: friction_angle must be given with plastic: drucker_prager");
+  BW_REQUIRE(!friction || !isnan(c->friction_angle), BW_EINPUT,
+             "solid: friction_angle must be given with plastic: drucker_prager and with breaks: "
+             "mohr_coulomb or drucker_prager");
   BW_REQUIRE(!(c->dilation_angle > c->friction_angle), BW_EINPUT,
              "solid: dilation_angle = %g is above friction_angle = %g; such a material would give "
              "energy",
@@ -79,7 +90,7 @@ bw_status bw_solid_law_check(const bw_solid_law_choice *c)
   BW_REQUIRE(correspondence || c->breaks == BW_PD_STATE_BREAKS_BY_STRETCH, BW_EINPUT,
              "solid: breaks is read only with law: correspondence");
   BW_TRY(needed("limit", c->limit, c->breaks != BW_PD_STATE_BREAKS_BY_STRETCH,
-                "breaks: stress or flow", true));
+                "breaks: other than stretch", true));
   BW_REQUIRE(c->breaks != BW_PD_STATE_BREAKS_BY_FLOW || c->plastic != BW_SOLID_ELASTIC, BW_EINPUT,
              "solid: breaks: flow, but nothing flows; choose plastic: j2 or drucker_prager");
   return check_plastic(c);
@@ -87,7 +98,6 @@ bw_status bw_solid_law_check(const bw_solid_law_choice *c)
 
 static bw_pd_material_yield yield_of(const bw_solid_law_choice *c)
 {
-  static const double RADIAN = 3.14159265358979323846 / 180;
   if (c->plastic == BW_SOLID_J2)
     return bw_pd_material_j2(c->yield_stress, isnan(c->hardening) ? 0 : c->hardening);
   if (c->plastic == BW_SOLID_DRUCKER_PRAGER)
@@ -116,6 +126,7 @@ const void *bw_solid__law_options(const bw_solid_config *c, const bw_pd_law *law
   store->correspondence.stabilisation = choice->stabilisation;
   store->correspondence.breaks = (bw_pd_state_breaks)choice->breaks;
   if (!isnan(choice->limit)) store->correspondence.limit = choice->limit;
+  if (breaks_by_friction(choice)) store->correspondence.friction = choice->friction_angle * RADIAN;
   /* One body, one way to yield; groups differ in E, nu and G0. */
   for (int g = 0; g < BW_PD_GROUPS; g++)
     store->correspondence.yield[g] = yield_of(choice);

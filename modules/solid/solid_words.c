@@ -42,6 +42,10 @@ const bw_config_word bw_solid_breaks_words[] = {
     {"stretch", BW_PD_STATE_BREAKS_BY_STRETCH, "that of the fracture energy"},
     {"stress", BW_PD_STATE_BREAKS_BY_STRESS, "largest principal stress of its ends"},
     {"flow", BW_PD_STATE_BREAKS_BY_FLOW, "plastic flow of its ends"},
+    {"energy", BW_PD_STATE_BREAKS_BY_ENERGY, "energy of their stress, as of uniaxial tension"},
+    {"mises", BW_PD_STATE_BREAKS_BY_MISES, "von Mises stress of its ends"},
+    {"mohr_coulomb", BW_PD_STATE_BREAKS_BY_MOHR_COULOMB, "their shear and pressure"},
+    {"drucker_prager", BW_PD_STATE_BREAKS_BY_CONE, "their deviator and pressure"},
     {NULL, 0, NULL}};
 const bw_config_word bw_solid_plastic_words[] = {
     {"none", BW_SOLID_ELASTIC, "it does not yield"},

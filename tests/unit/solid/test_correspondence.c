@@ -144,17 +144,21 @@ END_TEST
  * is the same body as by the law's own options. */
 START_TEST(a_choice_of_numbers)
 {
+  enum { WRONG = 10 };
   pd_body body = pd_box(6, 4, 4);
   bw_solid *a = NULL, *b = NULL;
-  bw_solid_config c = pd_soft(BW_PD_3D), wrong[6];
-  static const char *const named[] = {"poisson_ratio",  "plastic",      "yield_stress",
-                                      "dilation_angle", "breaks: flow", "surface_correction"};
+  bw_solid_config c = pd_soft(BW_PD_3D), wrong[WRONG];
+  static const char *const named[WRONG] = {"poisson_ratio",  "plastic",
+                                           "yield_stress",   "dilation_angle",
+                                           "breaks: flow",   "surface_correction",
+                                           "friction_angle", "friction_angle = 10",
+                                           "limit",          "nu = 0.49995"};
   c.horizon_ratio = 2;
-  for (int q = 0; q < 6; q++)
+  for (int q = 0; q < WRONG; q++)
     wrong[q] = c;
   wrong[0].choice.poisson_ratio = 0.4;
   wrong[1].choice.plastic = BW_SOLID_J2;
-  for (int q = 2; q < 6; q++)
+  for (int q = 2; q < WRONG; q++)
     wrong[q].choice.law = BW_SOLID_CORRESPONDENCE;
   wrong[2].choice.plastic = BW_SOLID_J2;
   wrong[3].choice.plastic = BW_SOLID_DRUCKER_PRAGER;
@@ -162,7 +166,11 @@ START_TEST(a_choice_of_numbers)
   wrong[3].choice.dilation_angle = 20;
   wrong[4].choice.breaks = BW_PD_STATE_BREAKS_BY_FLOW, wrong[4].choice.limit = 1;
   wrong[5].surface_correction = BW_PD_SURFACE_TENSOR;
-  for (int q = 0; q < 6; q++) {
+  wrong[6].choice.breaks = BW_PD_STATE_BREAKS_BY_MOHR_COULOMB, wrong[6].choice.limit = 1;
+  wrong[7].choice.friction_angle = 10;
+  wrong[8].choice.breaks = BW_PD_STATE_BREAKS_BY_MISES;
+  wrong[9].choice.poisson_ratio = 0.49995;
+  for (int q = 0; q < WRONG; q++) {
     bw_check_status(bw_solid_create_same(bw_check_world(), &wrong[q], body.n, body.site, NULL, &a),
                     BW_EINPUT);
     ck_assert_ptr_nonnull(strstr(bw_last_message(), named[q]));

@@ -26,9 +26,9 @@ typedef enum {
 
 /* A criterion. */
 typedef struct {
-  bw_pd_material_criterion_kind kind;
-  double limit;    /* [M/(L T^2)] */
-  double friction; /* angle phi of the last two [rad] */
+  bw_pd_material_criterion_kind kind; /* which of the five */
+  double limit;                       /* [M/(L T^2)] */
+  double friction;                    /* angle phi of the last two [rad] */
 } bw_pd_material_criterion;
 
 /* What a Cauchy stress (6: xx yy zz yz xz xy) [M/(L T^2)] uses of it; lam and mu [M/(L T^2)], of

@@ -102,11 +102,12 @@ typedef struct {
   double tension;                         /* by the difference form */
   double shifting;             /* by the shifts, with the changes of rho and v that go with them */
   double ghosts;               /* what extrapolated wall particles give beyond a mirror image */
+  double bodies;               /* work of bodies (bw_ulph_body.h) */
   double gap;                  /* what no line explains */
   double mass;                 /* [M] */
   double momentum[3], spin[3]; /* now, and about the origin [M L/T], [M L^2/T] */
-  double push[4][3];           /* momentum given by gravity, walls, difference form, shifting */
-  double turn[4][3];           /* angular momentum given by the same */
+  double push[5][3]; /* momentum given by gravity, walls, difference form, shifting, bodies */
+  double turn[5][3]; /* angular momentum given by the same */
 } bw_ulph_ledger;
 
 /* The defaults above. Local. */
@@ -202,7 +203,7 @@ void bw_ulph_wall_force(const bw_ulph *u, double force[3]);
 int64_t bw_ulph_outside(const bw_ulph *u, const double lower[3], const double upper[3]);
 
 /* Numbers of a particle, and of the whole, that go into a checkpoint. */
-enum { BW_ULPH_ROW = 17, BW_ULPH_NUMBERS = 67 };
+enum { BW_ULPH_ROW = 17, BW_ULPH_NUMBERS = 81 };
 
 /* rows (count, BW_ULPH_ROW) in the order of bw_ulph_ids, numbers (BW_ULPH_NUMBERS); what state_set
  * needs to go on to the last bit. Collective. */

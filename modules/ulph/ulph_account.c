@@ -56,7 +56,7 @@ bw_ulph_ledger bw_ulph_account(const bw_ulph *u)
   l.walls = book.line[LINE_WALLS], l.viscous = book.line[LINE_VISCOUS];
   l.artificial = book.line[LINE_ARTIFICIAL], l.diffusion = book.line[LINE_DIFFUSION];
   l.tension = book.line[LINE_TENSION], l.shifting = book.line[LINE_SHIFTING];
-  l.ghosts = book.line[LINE_GHOSTS];
+  l.ghosts = book.line[LINE_GHOSTS], l.bodies = book.line[LINE_BODIES];
   l.gap = e[0] + e[1] + e[2] - l.first;
   for (int k = 0; k < BW_ULPH__LINES; k++)
     l.gap -= book.line[k];

@@ -66,11 +66,11 @@ static bw_status check_places(const bw_ulph *u, int n_walls, const bw_ulph_wall 
 static bw_status check_pairs(const bw_ulph *u)
 {
   const double least = OVERLAP * u->config.dx;
-  for (size_t c = 0; c < u->n_clusters; c++)
-    for (int l = 0; l < u->cluster[c].lanes; l++) {
-      const int32_t me = u->fluid.slot_own[u->cluster[c].first + (size_t)l];
+  for (size_t c = 0; c < u->clusters.n; c++)
+    for (int l = 0; l < u->clusters.of[c].lanes; l++) {
+      const int32_t me = u->fluid.slot_own[u->clusters.of[c].first + (size_t)l];
       const double *x = u->near[me].x;
-      for (size_t e = u->cluster[c].begin; e < u->cluster[c].walls; e++) {
+      for (size_t e = u->clusters.of[c].begin; e < u->clusters.of[c].walls; e++) {
         const double *y = u->near[u->list[e]].x;
         const double d[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
         BW_REQUIRE(u->list[e] == me || bw_ulph__dot(d, d) >= least * least, BW_EINPUT,
@@ -104,14 +104,16 @@ static void settle_constants(bw_ulph *u)
   u->skin = SKIN * c->dx;
   u->h = SMOOTHING * c->dx;
   u->m2 = bw_ulph__lattice_moment(c->dimensions, c->dx, u->R);
+  for (int k = 0; k < 4; k++)
+    u->half_space[k] = bw_ulph__half_space(c->dimensions, c->dx, u->R, k);
   u->mu_t = c->mu + c->rho0 * bw_ulph_artificial_nu(u);
   u->mu_wall = c->alpha_wall * c->rho0 * u->h * c->c0 / (2 * (c->dimensions + 2));
 }
 
 static bw_status copy_flags(bw_ulph *u, int n_walls, const bw_ulph_wall wall[])
 {
-  BW_TRY(BW_ALLOCATE(&u->no_slip, (size_t)n_walls));
-  BW_TRY(BW_ALLOCATE(&u->moves, (size_t)n_walls));
+  BW_TRY(BW_ALLOCATE(&u->no_slip, (size_t)n_walls + 1));
+  BW_TRY(BW_ALLOCATE(&u->moves, (size_t)n_walls + 1));
   for (int w = 0; w < n_walls; w++) {
     u->no_slip[w] = wall[w].no_slip;
     u->moves[w] = wall[w].moves;
@@ -165,6 +167,9 @@ void bw_ulph_destroy(bw_ulph **u)
   bw_release(&(*u)->own);
   bw_release(&(*u)->no_slip);
   bw_release(&(*u)->moves);
+  bw_release(&(*u)->body.volume);
+  bw_release(&(*u)->body.x);
+  bw_release(&(*u)->body.v);
   bw_release(u);
 }
 
@@ -197,8 +202,7 @@ bw_status bw_ulph_start(bw_ulph *u, bw_ulph_start_fn *start, void *context)
   u->steps = 0;
   bw_ulph__move_walls(u, 0);
   /* Places may have moved since the lists were made. */
-  for (size_t i = 0; i < u->fluid.own; i++)
-    memcpy(u->own[i].at, u->own[i].x, sizeof u->own[i].at);
+  bw_ulph__mark_places(u);
   BW_TRY(bw_ulph__rebuild(u));
   bw_ulph__move_walls(u, 0);
   bw_ulph__evaluate(u, 0);

@@ -27,15 +27,19 @@ static owners load(const bw_ulph *u, const bw_ulph__cluster *c)
   return o;
 }
 
-/* One neighbour, all lanes. */
-BW_ULPH_PIECE void add(sums *t, const owners *o, const bw_ulph__near *q, double inverse_R2, int d)
+/* One neighbour, all lanes; of a face (else NULL) those that are in front of it. */
+BW_ULPH_PIECE void add(sums *t, const owners *o, const bw_ulph__near *q,
+                       const bw_ulph__front *front, double inverse_R2, int d)
 {
-  vec x[3], r2 = {0};
+  vec x[3], r2 = {0}, before = {0};
   for (int k = 0; k < d; k++) {
     x[k] = q->x[k] - o->x[k];
     r2 += x[k] * x[k];
+    if (front != NULL) before -= front->normal[k] * x[k];
   }
-  const vec wV = vec_weight(r2, inverse_R2) * q->V, drho = q->rho - o->rho;
+  vec wV = vec_weight(r2, inverse_R2) * q->V;
+  const vec drho = q->rho - o->rho;
+  if (front != NULL) wV = vec_where(before > front->least, wV);
   for (int a = 0; a < d; a++) {
     const vec wx = wV * x[a];
     t->s[a] += wx;
@@ -47,24 +51,32 @@ BW_ULPH_PIECE void add(sums *t, const owners *o, const bw_ulph__near *q, double 
   }
 }
 
-BW_ULPH_PIECE void pairs(const bw_ulph *u, size_t begin, size_t end, const owners *o, sums *into,
-                         int d)
+/* Walls and faces are added to what the fluid alone gives, which the book needs. */
+BW_ULPH_PIECE void pairs(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o, sums *fluid,
+                         sums *all, int d)
 {
   const double inverse_R2 = 1 / (u->R * u->R);
-  sums t = *into;
-  for (size_t e = begin; e < end; e++)
-    add(&t, o, u->near + u->list[e], inverse_R2, d);
-  *into = t;
+  sums t = {0};
+  for (size_t e = c->begin; e < c->walls; e++)
+    add(&t, o, u->near + u->list[e], NULL, inverse_R2, d);
+  *fluid = t;
+  for (size_t e = c->walls; e < c->faces; e++)
+    add(&t, o, u->near + u->list[e], NULL, inverse_R2, d);
+  for (size_t e = c->faces; e < c->end; e++)
+    add(&t, o, u->near + u->list[e], u->front + u->list[e], inverse_R2, d);
+  *all = t;
 }
 
-static void pairs_2d(const bw_ulph *u, size_t begin, size_t end, const owners *o, sums *into)
+static void pairs_2d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o, sums *fluid,
+                     sums *all)
 {
-  pairs(u, begin, end, o, into, 2);
+  pairs(u, c, o, fluid, all, 2);
 }
 
-static void pairs_3d(const bw_ulph *u, size_t begin, size_t end, const owners *o, sums *into)
+static void pairs_3d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o, sums *fluid,
+                     sums *all)
 {
-  pairs(u, begin, end, o, into, 3);
+  pairs(u, c, o, fluid, all, 3);
 }
 
 /* tr(G Minv), with L = G Minv where it is wanted. */
@@ -154,20 +166,14 @@ static void close_cluster(bw_ulph *u, const bw_ulph__cluster *c, const sums *flu
 
 void bw_ulph__first(bw_ulph *u, double dt)
 {
-  for (size_t q = 0; q < u->n_clusters; q++) {
-    const bw_ulph__cluster *c = u->cluster + q;
+  for (size_t q = 0; q < u->clusters.n; q++) {
+    const bw_ulph__cluster *c = u->clusters.of + q;
     const owners o = load(u, c);
-    sums fluid = {0};
-    /* Walls are added to what the fluid alone gives, which the book needs. */
+    sums fluid, all;
     if (u->config.dimensions == 2)
-      pairs_2d(u, c->begin, c->walls, &o, &fluid);
+      pairs_2d(u, c, &o, &fluid, &all);
     else
-      pairs_3d(u, c->begin, c->walls, &o, &fluid);
-    sums all = fluid;
-    if (u->config.dimensions == 2)
-      pairs_2d(u, c->walls, c->end, &o, &all);
-    else
-      pairs_3d(u, c->walls, c->end, &o, &all);
+      pairs_3d(u, c, &o, &fluid, &all);
     close_cluster(u, c, &fluid, &all, dt);
   }
 }

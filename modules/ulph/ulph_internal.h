@@ -1,12 +1,13 @@
 /* ulph_internal.h -- what the sources of ulph share.
  *
- * Own particles are rows of one array, fluid before walls, each part in the order of (cell, part of
- * the cell, identity). Slots are own particles and copies of others' together, in the same order:
- * lists name slots, so that sums do not depend on who owns what. */
+ * Own particles are rows of one array: fluid, walls, faces of bodies (bw_ulph_body.h), each part in
+ * the order of (cell, part of the cell, identity). Slots are own particles and copies of others'
+ * together, in the same order: lists name slots, so that sums do not depend on who owns what. */
 #pragma once
 #include "bw_particles_copies.h"
 #include "bw_particles_migrate.h"
 #include "bw_ulph.h"
+#include "bw_ulph_body.h"
 #include "ulph_vector.h"
 #include <math.h>
 #include <string.h>
@@ -14,18 +15,18 @@
 /* A particle, as it lies in memory and travels between ranks. */
 typedef struct {
   int64_t id;       /* fluid and walls are numbered apart */
-  int32_t wall;     /* -1: fluid */
+  int32_t wall;     /* -1: fluid; n_walls: a face of a body */
   int32_t lone;     /* fluid: M was singular in the last evaluation */
   double m;         /* mass */
   double x[3];      /* place */
   double v[3];      /* velocity; of walls: extrapolated */
-  double a[3];      /* acceleration without gravity */
+  double a[3];      /* acceleration without gravity; of faces: force by the pressure */
   double rho, p;    /* density and pressure */
   double at[3];     /* fluid: where it was when lists were made; walls: where it was built */
-  double normal[3]; /* walls: out of the wall */
+  double normal[3]; /* walls, faces: out of the wall */
   double depth;     /* walls: below the surface */
   double surface;   /* fluid: 1 at the surface, else 0 */
-  double shift[3];  /* fluid: by which it was shifted since the last evaluation */
+  double shift[3];  /* fluid: by which it was shifted since the last evaluation; of faces: drag */
 } bw_ulph__particle;
 
 /* Of a slot, for the first sweep. */
@@ -57,6 +58,7 @@ typedef struct {
 /* Of an own wall particle: sums over the fluid near it. */
 typedef struct {
   double weight, hydrostatic; /* sum w; (g - a).sum rho x w */
+  double flat;                /* of faces: 1 on a flat surface, 0 on an edge */
 } bw_ulph__shade;
 
 /* One kind of slots: fluid, or walls. */
@@ -71,12 +73,32 @@ typedef struct {
 
 /* Neighbours of BW_ULPH_LANES own particles that are near each other. */
 typedef struct {
-  size_t first;             /* own particle of lane 0 */
-  int lanes;                /* that are used */
-  size_t begin, walls, end; /* list: fluid from begin to walls, walls from there to end */
+  size_t first;                    /* own particle of lane 0, of its kind */
+  int lanes;                       /* that are used */
+  size_t begin, walls, faces, end; /* list: fluid from begin to walls, walls from there to faces */
 } bw_ulph__cluster;
 
-enum { BW_ULPH__LINES = 7, BW_ULPH__PUSHES = 4 };
+/* Clusters of one kind. */
+typedef struct {
+  size_t n;
+  bw_ulph__cluster *of; /* (n) */
+} bw_ulph__clusters;
+
+/* Which fluid the face of a body sees: normal.x > least, x from the face to the fluid. The two
+ * faces of a particle share all of it; of a thick body the first sees all. */
+typedef struct {
+  double normal[3], least;
+} bw_ulph__front;
+
+/* The particles of the solids in the fluid, all of them on every rank. */
+typedef struct {
+  int64_t n;
+  double *volume; /* (n) 0: not seen */
+  double *x, *v;  /* (n,3) places now, and mean velocities of the step that leads there */
+  bool no_slip;
+} bw_ulph__body;
+
+enum { BW_ULPH__LINES = 8, BW_ULPH__PUSHES = 5 };
 /* Lines of the book. */
 enum {
   LINE_WALLS,
@@ -85,10 +107,11 @@ enum {
   LINE_DIFFUSION,
   LINE_TENSION,
   LINE_SHIFTING,
-  LINE_GHOSTS
+  LINE_GHOSTS,
+  LINE_BODIES
 };
 /* Who pushes. */
-enum { PUSH_GRAVITY, PUSH_WALLS, PUSH_TENSION, PUSH_SHIFTING };
+enum { PUSH_GRAVITY, PUSH_WALLS, PUSH_TENSION, PUSH_SHIFTING, PUSH_BODIES };
 
 /* What terms have given to the fluid, or give per time. */
 typedef struct {
@@ -100,7 +123,9 @@ struct bw_ulph {
   const bw_comm *comm;
   bw_ulph_config config;
   int n_walls;
-  bool *no_slip, *moves; /* (n_walls) */
+  bool *no_slip, *moves; /* (n_walls + 1), the last of bodies */
+  bw_ulph__body body;
+  double half_space[4];  /* |sum w V x| half a layer below a flat surface, and 1, 2, 3 deeper */
   double R, skin, h, m2; /* reach, skin of the lists, length of the viscosity; m2 of a lattice */
   double mu_t, mu_wall;  /* physical and artificial viscosity; artificial one of walls */
   double time, time_built;
@@ -111,16 +136,16 @@ struct bw_ulph {
   double wall_force[3];                   /* of this rank's fluid on walls */
   bw_particles_space *space;
   double balance; /* inequality that the last division left */
-  size_t n;       /* own: fluid and walls */
+  size_t n;       /* own: fluid, walls, faces */
   bw_ulph__particle *own;
-  bw_ulph__kind fluid, wall;
+  bw_ulph__kind fluid, wall, face;
   size_t slots;
-  bw_ulph__near *near;         /* (slots) */
-  bw_ulph__far *far;           /* (slots) */
-  bw_ulph__between *between;   /* (fluid.own) */
-  bw_ulph__shade *shade;       /* (wall.own) */
-  size_t n_clusters, n_shades; /* clusters of fluid, of walls */
-  bw_ulph__cluster *cluster, *shading;
+  bw_ulph__near *near;                         /* (slots) */
+  bw_ulph__far *far;                           /* (slots) */
+  bw_ulph__between *between;                   /* (fluid.own) */
+  bw_ulph__shade *shade;                       /* (wall.own + face.own) */
+  bw_ulph__front *front;                       /* (slots) of faces */
+  bw_ulph__clusters clusters, shading, facing; /* of fluid, walls, faces */
   size_t list_room;
   int32_t *list;       /* slots */
   double first_energy; /* of all ranks, at the start */
@@ -149,11 +174,19 @@ static inline double bw_ulph__dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* The particle of a body that a face belongs to: two faces each, numbered one after the other. */
+static inline size_t bw_ulph__body_particle(const bw_ulph__particle *face)
+{
+  return (size_t)(face->id & ((INT64_C(1) << 40) - 1)) / 2;
+}
+
 /* ulph_moment.c: M^-1, or where M is singular (then true) that of the central form. */
 bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6]);
 /* Is A - shift the unit matrix positive definite, in d dimensions? Its inverse. */
 bool bw_ulph__above(int d, const double A[6], double shift);
 void bw_ulph__inverse(int d, const double A[6], double out[6]);
+/* The same of a half-space, sum w x dx^d, k + 1/2 layers below its surface. */
+double bw_ulph__half_space(int d, double dx, double R, int k);
 /* sum w x^2 dx^d of a whole neighbourhood on a lattice, per direction. */
 double bw_ulph__lattice_moment(int d, double dx, double R);
 
@@ -162,11 +195,12 @@ bw_status bw_ulph__check(const bw_ulph_config *c) BW_MUST_CHECK;
 bw_status bw_ulph__check_sound(const bw_comm *comm, bw_ulph_config *c, size_t n,
                                const double x[]) BW_MUST_CHECK;
 
-/* ulph_wall.c: particles of all walls are added to own. Collective. */
+/* ulph_wall.c: particles of all walls are added to own; faces go with their body. Collective. */
 bw_status bw_ulph__build_walls(bw_ulph *u, int n_walls, const bw_ulph_wall wall[]) BW_MUST_CHECK;
 void bw_ulph__move_walls(bw_ulph *u, double t);
-/* Velocity and density of wall particles from the fluid in `near`; their pressure from that in
- * `far`. Both end with the exchange. Collective. */
+
+/* ulph_shade.c: velocity and density of walls and faces from the fluid in `near`; their pressure
+ * from that in `far`. Both end with the exchange. Collective. */
 void bw_ulph__shade_velocity(bw_ulph *u);
 void bw_ulph__shade_pressure(bw_ulph *u);
 
@@ -175,6 +209,12 @@ bw_status bw_ulph__migrate(bw_ulph *u) BW_MUST_CHECK; /* own to the owners of `a
 bw_status bw_ulph__slots(bw_ulph *u) BW_MUST_CHECK;   /* copies, slots */
 void bw_ulph__send(bw_ulph__kind *kind, size_t bytes, void *slots);
 void bw_ulph__where(const bw_ulph *u, const bw_ulph__particle *p, double x[3]); /* for lists */
+
+/* ulph_face.c: which way faces look, from the lists; forces on them. */
+void bw_ulph__turn_faces(bw_ulph *u);
+void bw_ulph__load_faces(bw_ulph *u);
+/* Work on bodies in half a step, at the velocities of that step, joins the jumps of the book. */
+void bw_ulph__book_bodies(bw_ulph *u, double half);
 
 /* ulph_lists.c */
 uint64_t bw_ulph__key(const bw_ulph *u, const double x[3]); /* cell and part of it */
@@ -188,7 +228,8 @@ void bw_ulph__second(bw_ulph *u, double dt);
 
 /* ulph_step.c: all sweeps with the present places; forces of the end of a step dt. Collective. */
 void bw_ulph__evaluate(bw_ulph *u, double dt);
-void bw_ulph__join_books(bw_ulph *u); /* rate and jump of all ranks. Collective. */
+void bw_ulph__mark_places(bw_ulph *u); /* lists will be made from here. Local. */
+void bw_ulph__join_books(bw_ulph *u);  /* rate and jump of all ranks. Collective. */
 
 /* ulph_account.c */
 double bw_ulph__energy(const bw_ulph *u); /* of all ranks. Collective. */

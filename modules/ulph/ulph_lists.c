@@ -107,15 +107,15 @@ static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, s
   return BW_OK;
 }
 
-/* Clusters of own particles of a kind, with fluid and walls around them. */
-static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluster **cluster,
-                          size_t *count, size_t *used)
+/* Clusters of own particles of a kind, with fluid, walls and faces around them. */
+static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__clusters *to,
+                          size_t *used)
 {
-  *count = (kind->own + BW_ULPH_LANES - 1) / BW_ULPH_LANES;
-  bw_release(cluster);
-  BW_TRY(BW_ALLOCATE(cluster, *count));
-  for (size_t c = 0; c < *count; c++) {
-    bw_ulph__cluster *q = *cluster + c;
+  to->n = (kind->own + BW_ULPH_LANES - 1) / BW_ULPH_LANES;
+  bw_release(&to->of);
+  BW_TRY(BW_ALLOCATE(&to->of, to->n));
+  for (size_t c = 0; c < to->n; c++) {
+    bw_ulph__cluster *q = to->of + c;
     q->first = c * BW_ULPH_LANES;
     q->lanes = kind->own - q->first < BW_ULPH_LANES ? (int)(kind->own - q->first) : BW_ULPH_LANES;
     const ball b = ball_of(u, kind, q->first, q->lanes);
@@ -123,7 +123,10 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
     BW_TRY(collect(u, &u->fluid, &b, used));
     q->walls = *used;
     /* A wall without fluid in reach shows nothing. */
-    if (kind == &u->fluid || q->walls > q->begin) BW_TRY(collect(u, &u->wall, &b, used));
+    const bool shows = kind == &u->fluid || q->walls > q->begin;
+    if (shows) BW_TRY(collect(u, &u->wall, &b, used));
+    q->faces = *used;
+    if (shows) BW_TRY(collect(u, &u->face, &b, used));
     q->end = *used;
   }
   return BW_OK;
@@ -132,14 +135,20 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
 bw_status bw_ulph__lists(bw_ulph *u)
 {
   size_t used = 0;
-  BW_TRY(clusters(u, &u->fluid, &u->cluster, &u->n_clusters, &used));
-  return clusters(u, &u->wall, &u->shading, &u->n_shades, &used);
+  BW_TRY(clusters(u, &u->fluid, &u->clusters, &used));
+  BW_TRY(clusters(u, &u->wall, &u->shading, &used));
+  return clusters(u, &u->face, &u->facing, &used);
 }
 
 static void place_slots(bw_ulph *u, bw_ulph__kind *kind)
 {
-  for (size_t i = 0; i < kind->own; i++)
-    bw_ulph__where(u, u->own + kind->first + i, u->near[kind->slot_own[i]].x);
+  for (size_t i = 0; i < kind->own; i++) {
+    const bw_ulph__particle *p = u->own + kind->first + i;
+    bw_ulph__near *n = u->near + kind->slot_own[i];
+    bw_ulph__where(u, p, n->x);
+    /* The whole volume, for those who ask where a body ends; of a face half a particle. */
+    n->V = (p->wall == u->n_walls ? 0.5 : 1) * p->m / u->config.rho0;
+  }
   bw_ulph__send(kind, sizeof *u->near, u->near);
 }
 
@@ -150,7 +159,9 @@ bw_status bw_ulph__rebuild(bw_ulph *u)
   BW_TRY(bw_ulph__slots(u));
   place_slots(u, &u->fluid);
   place_slots(u, &u->wall);
+  place_slots(u, &u->face);
   BW_TRY(bw_comm_agree(u->comm, bw_ulph__lists(u)));
+  bw_ulph__turn_faces(u);
   u->listed = true;
   u->rebuilds++;
   return BW_OK;
@@ -158,8 +169,8 @@ bw_status bw_ulph__rebuild(bw_ulph *u)
 
 void bw_ulph__release_lists(bw_ulph *u)
 {
-  bw_ulph__kind *kinds[] = {&u->fluid, &u->wall};
-  for (int k = 0; k < 2; k++) {
+  bw_ulph__kind *kinds[] = {&u->fluid, &u->wall, &u->face};
+  for (int k = 0; k < 3; k++) {
     bw_particles_copies_destroy(&kinds[k]->copies);
     bw_release(&kinds[k]->slot_own);
     bw_release(&kinds[k]->slot_copy);
@@ -169,8 +180,10 @@ void bw_ulph__release_lists(bw_ulph *u)
   bw_release(&u->far);
   bw_release(&u->between);
   bw_release(&u->shade);
-  bw_release(&u->cluster);
-  bw_release(&u->shading);
+  bw_release(&u->front);
+  bw_release(&u->clusters.of);
+  bw_release(&u->shading.of);
+  bw_release(&u->facing.of);
   bw_release(&u->list);
   u->list_room = 0;
 }

@@ -49,15 +49,26 @@ bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6])
   return singular;
 }
 
-double bw_ulph__lattice_moment(int d, double dx, double R)
+/* sum w x^power dx^d over the sites with x >= least dx. */
+static double lattice_sum(int d, double dx, double R, int least, int power)
 {
   const int n = (int)ceil(R / dx);
   double sum = 0;
   for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); k++)
     for (int j = -n; j <= n; j++)
-      for (int i = -n; i <= n; i++) {
+      for (int i = least; i <= n; i++) {
         const double q = sqrt(i * i + j * j + k * k) * dx / R;
-        if (q < 1) sum += pow(1 - q, 4) * (1 + 4 * q) * i * i * dx * dx;
+        if (q < 1) sum += pow(1 - q, 4) * (1 + 4 * q) * pow(i * dx, power);
       }
   return sum * pow(dx, d);
+}
+
+double bw_ulph__lattice_moment(int d, double dx, double R)
+{
+  return lattice_sum(d, dx, R, -(int)ceil(R / dx), 2);
+}
+
+double bw_ulph__half_space(int d, double dx, double R, int k)
+{
+  return lattice_sum(d, dx, R, k + 1, 1);
 }

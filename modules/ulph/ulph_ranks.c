@@ -51,30 +51,36 @@ static bw_status divide(bw_ulph *u)
   return st;
 }
 
-/* Own particles sorted: fluid before walls, by cell, part of the cell and identity. */
+/* Own particles sorted: fluid, walls, faces, by cell, part of the cell and identity. */
 static bw_status sort_own(bw_ulph *u)
 {
-  const uint64_t behind = UINT64_C(1) << 63;
+  /* Keys have 57 bits. */
+  const uint64_t behind = UINT64_C(1) << 60;
   ordered *order = NULL;
   bw_ulph__particle *sorted = NULL;
   bw_status st = BW_ALLOCATE(&order, u->n);
   BW_THEN(st, BW_ALLOCATE(&sorted, u->n));
   if (st == BW_OK) {
-    u->fluid.own = 0;
+    u->fluid.own = u->wall.own = 0;
     for (size_t i = 0; i < u->n; i++) {
       double x[3];
       bw_ulph__where(u, u->own + i, x);
-      const bool fluid = u->own[i].wall < 0;
+      const bool fluid = u->own[i].wall < 0, face = u->own[i].wall == u->n_walls;
       u->fluid.own += fluid;
-      order[i] = (ordered){bw_ulph__key(u, x) | (fluid ? 0 : behind), u->own[i].id, (int32_t)i};
+      u->wall.own += !fluid && !face;
+      order[i] = (ordered){bw_ulph__key(u, x) + (fluid  ? 0
+                                                 : face ? 2 * behind
+                                                        : behind),
+                           u->own[i].id, (int32_t)i};
     }
     qsort(order, u->n, sizeof *order, compare);
     for (size_t i = 0; i < u->n; i++)
       sorted[i] = u->own[order[i].from];
     bw_release(&u->own);
     u->own = sorted, sorted = NULL;
-    u->wall.own = u->n - u->fluid.own;
     u->wall.first = u->fluid.own;
+    u->face.first = u->wall.first + u->wall.own;
+    u->face.own = u->n - u->face.first;
   }
   bw_release(&order);
   bw_release(&sorted);
@@ -215,22 +221,27 @@ static bw_status number_all(bw_ulph *u)
   BW_TRY(number_slots(u, &u->fluid));
   u->wall.base = u->fluid.n;
   BW_TRY(number_slots(u, &u->wall));
-  u->slots = u->fluid.n + u->wall.n;
+  u->face.base = u->wall.base + u->wall.n;
+  BW_TRY(number_slots(u, &u->face));
+  u->slots = u->fluid.n + u->wall.n + u->face.n;
   /* Arrays of slots and of own particles are as long as there are. */
   bw_release(&u->near);
   bw_release(&u->far);
   bw_release(&u->between);
   bw_release(&u->shade);
+  bw_release(&u->front);
+  BW_TRY(BW_ALLOCATE(&u->front, u->slots));
   BW_TRY(BW_ALLOCATE(&u->near, u->slots));
   BW_TRY(BW_ALLOCATE(&u->far, u->slots));
   BW_TRY(BW_ALLOCATE(&u->between, u->fluid.own));
-  return BW_ALLOCATE(&u->shade, u->wall.own);
+  return BW_ALLOCATE(&u->shade, u->wall.own + u->face.own);
 }
 
 bw_status bw_ulph__slots(bw_ulph *u)
 {
   BW_TRY(offer(u, &u->fluid));
   BW_TRY(offer(u, &u->wall));
+  BW_TRY(offer(u, &u->face));
   return bw_comm_agree(u->comm, number_all(u));
 }
 

@@ -4,7 +4,7 @@
 /* Of the shifting: the longest shift per step over dx. */
 static const double LONGEST = 0.05;
 
-/* Sums of the lanes of a cluster over fluid, and over walls, all and those that move. */
+/* Sums of the lanes of a cluster over fluid, and over what stands in it. */
 typedef struct {
   vec A[3], B[3], F[3], D, surface; /* w V P x; w V p x; viscous; diffusion; any surface */
 } fluid_sums;
@@ -12,6 +12,9 @@ typedef struct {
   vec s[3], A[3], B[3]; /* w V x; w V P x; w V p x */
   vec F[3], Q[3];       /* viscous: physical, artificial */
 } wall_sums;
+
+/* What stands in the fluid: all walls, those of them that move, bodies. */
+enum { WALLS, MOVING, BODIES, STANDING };
 
 typedef struct {
   vec x[3], v[3], g[3], rho, m2;
@@ -72,45 +75,59 @@ BW_ULPH_PIECE void add_fluid(fluid_sums *t, const owners *o, const bw_ulph__near
   t->surface += wV * f->surface;
 }
 
+/* Of a face (front, else NULL) the lanes in front of it; of a wall those that move (else NULL). */
 BW_ULPH_PIECE void add_wall(wall_sums *t, wall_sums *moving, const owners *o,
-                            const bw_ulph__near *n, const bw_ulph__far *f, const double R2[2],
-                            int d)
+                            const bw_ulph__near *n, const bw_ulph__far *f,
+                            const bw_ulph__front *front, const double R2[2], int d)
 {
-  vec x[3], vx;
+  vec x[3], vx, before = {0};
   const vec r2 = distance(o, n, x, &vx, d);
-  const vec wV = vec_weight(r2, R2[0]) * n->V, wVp = wV * f->p;
+  vec wV = vec_weight(r2, R2[0]) * n->V;
+  for (int k = 0; k < d && front != NULL; k++)
+    before -= front->normal[k] * x[k];
+  if (front != NULL) wV = vec_where(before > front->least, wV);
+  const vec wVp = wV * f->p;
   const vec over = wV * vx / (2 * o->m2 * (r2 + R2[1]));
   const double moves = f->g[1];
   for (int a = 0; a < d; a++) {
     const vec A = wV * times(f->P, x, a, d);
-    t->s[a] += wV * x[a], moving->s[a] += moves * wV * x[a];
-    t->A[a] += A, moving->A[a] += moves * A;
+    t->s[a] += wV * x[a];
+    t->A[a] += A;
     t->B[a] += wVp * x[a];
-    t->F[a] += f->g[0] * over * x[a], moving->F[a] += moves * f->g[0] * over * x[a];
-    t->Q[a] += f->g[2] * over * x[a], moving->Q[a] += moves * f->g[2] * over * x[a];
+    t->F[a] += f->g[0] * over * x[a];
+    t->Q[a] += f->g[2] * over * x[a];
+    if (moving == NULL) continue;
+    moving->s[a] += moves * wV * x[a];
+    moving->A[a] += moves * A;
+    moving->F[a] += moves * f->g[0] * over * x[a];
+    moving->Q[a] += moves * f->g[2] * over * x[a];
   }
 }
 
 BW_ULPH_PIECE void pairs(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                         fluid_sums *fluid, wall_sums wall[2], int d)
+                         fluid_sums *fluid, wall_sums wall[STANDING], int d)
 {
   const double R2[2] = {1 / (u->R * u->R), 1e-6 * u->R * u->R};
   fluid_sums t = {0};
   for (size_t e = c->begin; e < c->walls; e++)
     add_fluid(&t, o, u->near + u->list[e], u->far + u->list[e], R2, d);
   *fluid = t;
-  for (size_t e = c->walls; e < c->end; e++)
-    add_wall(&wall[0], &wall[1], o, u->near + u->list[e], u->far + u->list[e], R2, d);
+  for (size_t e = c->walls; e < c->faces; e++)
+    add_wall(&wall[WALLS], &wall[MOVING], o, u->near + u->list[e], u->far + u->list[e], NULL, R2,
+             d);
+  for (size_t e = c->faces; e < c->end; e++)
+    add_wall(&wall[BODIES], NULL, o, u->near + u->list[e], u->far + u->list[e],
+             u->front + u->list[e], R2, d);
 }
 
 static void pairs_2d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                     fluid_sums *fluid, wall_sums wall[2])
+                     fluid_sums *fluid, wall_sums wall[STANDING])
 {
   pairs(u, c, o, fluid, wall, 2);
 }
 
 static void pairs_3d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                     fluid_sums *fluid, wall_sums wall[2])
+                     fluid_sums *fluid, wall_sums wall[STANDING])
 {
   pairs(u, c, o, fluid, wall, 3);
 }
@@ -118,21 +135,19 @@ static void pairs_3d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *
 /* The sums of one lane, as numbers. */
 typedef struct {
   double A[3], B[3], F[3], D, surface;
-  double s_wall[2][3], A_wall[2][3], B_wall[2][3], F_wall[2][3],
-      Q_wall[2][3]; /* of all walls, of those that move */
+  struct {
+    double s[3], A[3], B[3], F[3], Q[3];
+  } by[STANDING];
 } lane;
 
-static lane lane_of(const fluid_sums *t, const wall_sums w[2], int l)
+static lane lane_of(const fluid_sums *t, const wall_sums w[STANDING], int l)
 {
   lane q = {.D = t->D[l], .surface = t->surface[l]};
   for (int k = 0; k < 3; k++) {
     q.A[k] = t->A[k][l], q.B[k] = t->B[k][l], q.F[k] = t->F[k][l];
-    for (int m = 0; m < 2; m++) {
-      q.s_wall[m][k] = w[m].s[k][l];
-      q.A_wall[m][k] = w[m].A[k][l];
-      q.B_wall[m][k] = w[m].B[k][l];
-      q.F_wall[m][k] = w[m].F[k][l];
-      q.Q_wall[m][k] = w[m].Q[k][l];
+    for (int m = 0; m < STANDING; m++) {
+      q.by[m].s[k] = w[m].s[k][l], q.by[m].A[k] = w[m].A[k][l], q.by[m].B[k] = w[m].B[k][l];
+      q.by[m].F[k] = w[m].F[k][l], q.by[m].Q[k] = w[m].Q[k][l];
     }
   }
   return q;
@@ -140,10 +155,10 @@ static lane lane_of(const fluid_sums *t, const wall_sums w[2], int l)
 
 /* Forces on one particle. */
 typedef struct {
-  double fluid[3], wall[3], moving[3]; /* pressure: of fluid, of all walls, of those that move */
-  double physical[3], artificial[3];   /* viscosity, with that of walls */
-  double drag[3], drag_moving[3];      /* viscosity of walls, of those that move */
-  double cure[3];                      /* difference form less pair form */
+  double fluid[3], by[STANDING][3];  /* pressure */
+  double physical[3], artificial[3]; /* viscosity, of all */
+  double drag[STANDING][3];          /* the part of it of what stands in the fluid */
+  double cure[3];                    /* difference form less pair form */
 } forces;
 
 /* -V (p M^-1 s + A) */
@@ -164,25 +179,26 @@ static forces forces_of(const bw_ulph *u, const bw_ulph__particle *p, const bw_u
   forces f = {0};
   double rest[3];
   for (int k = 0; k < 3; k++)
-    rest[k] = b->s[k] - q->s_wall[0][k];
+    rest[k] = b->s[k] - q->by[WALLS].s[k] - q->by[BODIES].s[k];
   pair_force(b, p->p, rest, q->A, f.fluid);
-  pair_force(b, p->p, q->s_wall[0], q->A_wall[0], f.wall);
-  pair_force(b, p->p, q->s_wall[1], q->A_wall[1], f.moving);
+  for (int m = 0; m < STANDING; m++)
+    pair_force(b, p->p, q->by[m].s, q->by[m].A, f.by[m]);
   for (int k = 0; k < 3; k++) {
-    f.physical[k] = twice * (u->config.mu * q->F[k] + q->F_wall[0][k]);
-    f.artificial[k] = twice * ((u->mu_t - u->config.mu) * q->F[k] + q->Q_wall[0][k]);
-    f.drag[k] = twice * (q->F_wall[0][k] + q->Q_wall[0][k]);
-    f.drag_moving[k] = twice * (q->F_wall[1][k] + q->Q_wall[1][k]);
+    f.physical[k] = twice * (u->config.mu * q->F[k] + q->by[WALLS].F[k] + q->by[BODIES].F[k]);
+    f.artificial[k] =
+        twice * ((u->mu_t - u->config.mu) * q->F[k] + q->by[WALLS].Q[k] + q->by[BODIES].Q[k]);
+    for (int m = 0; m < STANDING; m++)
+      f.drag[m][k] = twice * (q->by[m].F[k] + q->by[m].Q[k]);
   }
   /* Under tension away from a surface: the gradient itself, which does not pull neighbours
    * together. */
   if (u->config.tension_cure && p->p < 0 && q->surface == 0 && !p->lone) {
     double sum[3], gradient[3];
     for (int k = 0; k < 3; k++)
-      sum[k] = q->B[k] + q->B_wall[0][k] - p->p * b->s[k];
+      sum[k] = q->B[k] + q->by[WALLS].B[k] + q->by[BODIES].B[k] - p->p * b->s[k];
     bw_ulph__times(b->Minv, sum, gradient);
     for (int k = 0; k < 3; k++)
-      f.cure[k] = -b->V * gradient[k] - f.fluid[k] - f.wall[k];
+      f.cure[k] = -b->V * gradient[k] - f.fluid[k] - f.by[WALLS][k] - f.by[BODIES][k];
   }
   return f;
 }
@@ -220,22 +236,25 @@ static void push(bw_ulph *u, int who, const bw_ulph__particle *p, const double F
  * first of the next: the particle has the velocity between the two. */
 static void book(bw_ulph *u, const bw_ulph__particle *p, const bw_ulph__between *b, const forces *f)
 {
-  double *line = u->rate.line, walls[3], weight[3];
-  double moved = 0;
+  double *line = u->rate.line, walls[3], bodies[3], weight[3];
   for (int k = 0; k < 3; k++) {
-    walls[k] = f->wall[k] + f->drag[k];
+    walls[k] = f->by[WALLS][k] + f->drag[WALLS][k];
+    bodies[k] = f->by[BODIES][k] + f->drag[BODIES][k];
     weight[k] = p->m * u->config.gravity[k];
-    moved += f->drag_moving[k] * u->wall_v[k];
   }
-  const double work = bw_ulph__dot(f->moving, u->wall_v);
+  /* The work of bodies is booked over the step (ulph_face.c). */
+  const double moved = bw_ulph__dot(f->drag[MOVING], u->wall_v);
+  const double work = bw_ulph__dot(f->by[MOVING], u->wall_v);
   line[LINE_WALLS] += work + moved;
   line[LINE_VISCOUS] += bw_ulph__dot(f->physical, p->v);
   line[LINE_ARTIFICIAL] += bw_ulph__dot(f->artificial, p->v) - moved;
   line[LINE_TENSION] += bw_ulph__dot(f->cure, p->v);
   /* A mirror image would take as much from the fluid as its compression returns. */
-  line[LINE_GHOSTS] += bw_ulph__dot(f->wall, p->v) - b->V * b->p_mean * b->div_wall - work;
+  line[LINE_GHOSTS] += bw_ulph__dot(f->by[WALLS], p->v) + bw_ulph__dot(f->by[BODIES], p->v) -
+                       b->V * b->p_mean * b->div_wall - work;
   push(u, PUSH_GRAVITY, p, weight);
   push(u, PUSH_WALLS, p, walls);
+  push(u, PUSH_BODIES, p, bodies);
   for (int k = 0; k < 3; k++)
     u->rate.turn[PUSH_WALLS][k] += b->couple[k];
   push(u, PUSH_TENSION, p, f->cure);
@@ -245,9 +264,11 @@ static void book(bw_ulph *u, const bw_ulph__particle *p, const bw_ulph__between 
 static void kick(bw_ulph *u, bw_ulph__particle *p, const forces *f, double dt)
 {
   for (int k = 0; k < 3; k++) {
-    p->a[k] = (f->fluid[k] + f->wall[k] + f->physical[k] + f->artificial[k] + f->cure[k]) / p->m;
+    p->a[k] = (f->fluid[k] + f->by[WALLS][k] + f->by[BODIES][k] + f->physical[k] +
+               f->artificial[k] + f->cure[k]) /
+              p->m;
     p->v[k] += 0.5 * dt * (p->a[k] + u->config.gravity[k]);
-    u->wall_force[k] -= f->wall[k] + f->drag[k];
+    u->wall_force[k] -= f->by[WALLS][k] + f->drag[WALLS][k];
   }
 }
 
@@ -256,11 +277,11 @@ void bw_ulph__second(bw_ulph *u, double dt)
   const int d = u->config.dimensions;
   memset(u->wall_force, 0, sizeof u->wall_force);
   memset(&u->rate, 0, sizeof u->rate);
-  for (size_t c = 0; c < u->n_clusters; c++) {
-    const bw_ulph__cluster *cluster = u->cluster + c;
+  for (size_t c = 0; c < u->clusters.n; c++) {
+    const bw_ulph__cluster *cluster = u->clusters.of + c;
     const owners o = load(u, cluster);
     fluid_sums fluid;
-    wall_sums wall[2];
+    wall_sums wall[STANDING];
     memset(wall, 0, sizeof wall);
     if (d == 2)
       pairs_2d(u, cluster, &o, &fluid, wall);

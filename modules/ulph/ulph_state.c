@@ -43,14 +43,16 @@ static void take_row(const bw_ulph *u, int64_t id, const double row[], bw_ulph__
 static bw_status replace(bw_ulph *u, size_t n, const int64_t id[], const double rows[])
 {
   bw_ulph__particle *own = NULL;
-  BW_TRY(BW_ALLOCATE(&own, n + u->wall.own));
+  BW_TRY(BW_ALLOCATE(&own, n + u->wall.own + u->face.own));
   for (size_t i = 0; i < n; i++)
     take_row(u, id[i], rows + BW_ULPH_ROW * i, own + i);
-  if (u->wall.own > 0) memcpy(own + n, u->own + u->wall.first, u->wall.own * sizeof *own);
+  const size_t others = u->wall.own + u->face.own;
+  if (others > 0) memcpy(own + n, u->own + u->wall.first, others * sizeof *own);
   bw_release(&u->own);
   u->own = own;
-  u->n = n + u->wall.own;
+  u->n = n + others;
   u->fluid.own = u->wall.first = n;
+  u->face.first = n + u->wall.own;
   return BW_OK;
 }
 

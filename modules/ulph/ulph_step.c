@@ -28,6 +28,7 @@ void bw_ulph__evaluate(bw_ulph *u, double dt)
   /* ... and then the pressure of the fluid's new density: an older one would feed sound. */
   bw_ulph__shade_pressure(u);
   bw_ulph__second(u, dt);
+  bw_ulph__load_faces(u);
 }
 
 /* to += dt book */
@@ -70,6 +71,22 @@ static void kick_and_drift(bw_ulph *u, double dt)
   }
 }
 
+void bw_ulph__mark_places(bw_ulph *u)
+{
+  const bw_ulph__kind *kinds[] = {&u->fluid, &u->face};
+  for (int k = 0; k < 2; k++)
+    for (size_t i = kinds[k]->first; i < kinds[k]->first + kinds[k]->own; i++)
+      memcpy(u->own[i].at, u->own[i].x, sizeof u->own[i].at);
+}
+
+static double moved(const bw_ulph__particle *p)
+{
+  double far = 0;
+  for (int k = 0; k < 3; k++)
+    far += (p->x[k] - p->at[k]) * (p->x[k] - p->at[k]);
+  return far;
+}
+
 /* Largest move since the lists were made [L^2]; 1 where something has become no number or faster
  * than sound. */
 static void look(const bw_ulph *u, double found[2])
@@ -78,12 +95,11 @@ static void look(const bw_ulph *u, double found[2])
   found[0] = found[1] = 0;
   for (size_t i = 0; i < u->fluid.own; i++) {
     const bw_ulph__particle *p = u->own + i;
-    double moved = 0;
-    for (int k = 0; k < 3; k++)
-      moved += (p->x[k] - p->at[k]) * (p->x[k] - p->at[k]);
-    found[0] = fmax(found[0], moved);
+    found[0] = fmax(found[0], moved(p));
     if (!(bw_ulph__dot(p->v, p->v) < c2 && p->rho > 0)) found[1] = 1;
   }
+  for (size_t i = u->face.first; i < u->face.first + u->face.own; i++)
+    found[0] = fmax(found[0], moved(u->own + i));
   bw_comm_max(u->comm, 2, found);
 }
 
@@ -102,8 +118,7 @@ static bw_status keep_lists(bw_ulph *u)
     walls += (u->wall_x[k] - built[k]) * (u->wall_x[k] - built[k]);
   const double most = 0.25 * u->skin * u->skin;
   if (found[0] < most && walls < most) return BW_OK;
-  for (size_t i = 0; i < u->fluid.own; i++)
-    memcpy(u->own[i].at, u->own[i].x, sizeof u->own[i].at);
+  bw_ulph__mark_places(u);
   u->time_built = u->time;
   BW_TRY(bw_ulph__rebuild(u));
   bw_ulph__move_walls(u, u->time);
@@ -175,12 +190,14 @@ bw_status bw_ulph_step(bw_ulph *u, double dt)
              LONGEST * u->config.dx / u->config.c0);
   add(&u->book, 0.5 * dt, &u->rate);
   memset(&u->jump, 0, sizeof u->jump);
+  bw_ulph__book_bodies(u, 0.5 * dt);
   kick_and_drift(u, dt);
   u->time += dt;
   bw_ulph__move_walls(u, u->time);
   /* Velocities belong to the middle of the step now, places to its end. */
   BW_TRY(keep_lists(u));
   bw_ulph__evaluate(u, dt);
+  bw_ulph__book_bodies(u, 0.5 * dt);
   settle(u, dt);
   /* All of the book is the same on every rank from here on, so that a restart has the same bits. */
   bw_ulph__join_books(u);

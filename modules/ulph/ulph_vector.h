@@ -19,6 +19,17 @@ typedef int64_t vec_bits __attribute__((vector_size(8 * BW_ULPH_LANES)));
 /* A function that is a piece of a loop: its number of dimensions is a constant there. */
 #define BW_ULPH_PIECE static inline __attribute__((always_inline))
 
+/* x where the comparison says so, else 0. */
+BW_ULPH_PIECE vec vec_where(vec_bits so, vec x)
+{
+  return (vec)((vec_bits)x & so);
+}
+
+BW_ULPH_PIECE vec vec_dot(const vec a[3], const vec b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* x where it is above 0, else 0. */
 BW_ULPH_PIECE vec vec_above_0(vec x)
 {

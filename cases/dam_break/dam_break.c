@@ -1,9 +1,10 @@
-/* Water in a tank, of particles: dam breaks, sloshing, water at rest, with blocks and gauges.
+/* Water in a tank, of particles: dam breaks, sloshing, water at rest, with blocks, gauges, and a
+ * solid that bends, breaks or floats.
  *
  * Goes on after an interruption with --restart OUT/checkpoint.h5, to the last bit, on any number of
  * ranks.
  * Run:   mpirun -n 2 build/bin/dam_break cases/dam_break/dam_break.yaml --out out/dam_break
- * BUILD modules=ulph,vtk,checkpoint */
+ * BUILD modules=coupler_particles,solid,ulph,vtk,checkpoint,shape */
 #include "bw_checkpoint.h"
 #include "bw_number.h"
 #include "bw_stop.h"
@@ -95,7 +96,7 @@ static bw_status simulate(const bw_comm *comm, void *config, bw_case *run)
 int main(int argc, char **argv)
 {
   dam_config config = dam_config_default();
-  const bw_case_about about = {"dam_break", "water of particles in a tank", dam_fields,
-                               sizeof config, bw_checkpoint_read_case};
+  const bw_case_about about = {"dam_break", "water of particles in a tank, and a solid in it",
+                               dam_fields, sizeof config, bw_checkpoint_read_case};
   return bw_case_main(argc, argv, &about, &config, simulate);
 }

@@ -1,12 +1,15 @@
-/* dam_case.h -- water in a tank: what the sources of the case share.
+/* dam_case.h -- water in a tank, and a solid in it: what the sources of the case share.
  *
  * Any consistent units. The tank is 0 .. size with walls on all sides but the top; y is up. Time
  * advances in equal intervals (between samples); the steps within one follow from the state alone,
  * so that what follows a checkpoint does not depend on whether it was read. */
 #pragma once
 #include "bw_case.h"
+#include "bw_coupler_particles.h"
 #include "bw_history.h"
+#include "bw_shape.h"
 #include "bw_ulph.h"
+#include "bw_vtk.h"
 
 enum { DAM_BOXES = 16, DAM_GAUGES = 16, DAM_NAME = 32 };
 
@@ -28,13 +31,35 @@ typedef struct {
 typedef struct {
   double amplitude[3], period; /* x = amplitude (cos(2 pi t/period) - 1) [L], [T] */
 } dam_motion;
-typedef enum { DAM_DEPTH, DAM_PRESSURE, DAM_FRONT, DAM_HEIGHT } dam_gauge_kind;
+typedef enum {
+  DAM_DEPTH,
+  DAM_PRESSURE,
+  DAM_FRONT,
+  DAM_HEIGHT,
+  DAM_ASIDE, /* of the solid, along x */
+  DAM_UP     /* along y */
+} dam_gauge_kind;
 typedef struct {
   char name[DAM_NAME];
   int kind;
   double at[3], width;       /* depth: of the column; it goes with the tank [L] */
-  double lower[3], upper[3]; /* pressure, front, height: looked at in this box [L] */
+  double lower[3], upper[3]; /* pressure, front, height: looked at in this box; aside, up: where the
+                                particles were at the start [L] */
 } dam_gauge;
+typedef struct {
+  double lower[3], upper[3]; /* corners [L] */
+  bool held; /* does not move                                            default false */
+} dam_part;
+typedef struct {
+  double spacing, density, young; /* [L], [M/L3], [M/(L T2)] */
+  double fracture_energy;         /* [M/T2]                                default INFINITY */
+  double horizon_ratio;           /* NaN: 1.5 for correspondence that does not break, else 2 */
+  double damping_pair;            /* [M/(L6 T)]                                  default 0 */
+  bool contact;                   /* pieces push each other and the tank         default false */
+  bw_solid_law_choice choice;
+  int n_parts;
+  dam_part parts[DAM_BOXES];
+} dam_solid;
 typedef struct {
   double end;        /* of the run [T] */
   double step_share; /* acoustic step over dx/(c0 + U) [-]                     default 1 */
@@ -51,6 +76,8 @@ typedef struct {
   bool hydrostatic; /* start with the pressure of water at rest            default true */
   bool has_motion;
   dam_motion motion;
+  bool has_solid;
+  dam_solid solid;
   dam_time time;
   dam_output output;
 } dam_config;
@@ -67,6 +94,8 @@ typedef struct {
   bw_case *run;             /* borrowed */
   const bw_comm *comm;      /* borrowed */
   bw_ulph *fluid;
+  bw_solid *solid;            /* NULL: there is none */
+  bw_coupler_particles *both; /* NULL: the same */
   bw_history *history;
   int64_t intervals, rows; /* done; of history.csv, when the checkpoint was written */
   double dt;               /* the last step */
@@ -83,6 +112,17 @@ bw_status dam_advance(dam_run *d) BW_MUST_CHECK; /* one interval, or less when s
 bw_status dam_restart(dam_run *d, const char *path) BW_MUST_CHECK;
 bw_status dam_checkpoint(dam_run *d) BW_MUST_CHECK; /* checkpoint.h5 */
 void dam_where(const dam_run *d, double x[3]);      /* place of the tank now */
+double dam_dt_max(dam_run *d);                      /* the step that is recommended now */
+void dam_box_shape(const double lower[3], const double upper[3], bw_shape *shape); /* Local. */
+
+/* dam_solid.c: nothing but the first is called without a solid. All collective. */
+enum { DAM_SOLID_COLUMNS = 6 };
+extern const char *const dam_solid_columns[DAM_SOLID_COLUMNS];
+bw_status dam_solid_create(dam_run *d, const bw_ulph_config *fluid, int n_walls,
+                           const bw_ulph_wall wall[]) BW_MUST_CHECK;
+bw_status dam_solid_row(dam_run *d, double unit, double row[DAM_SOLID_COLUMNS]) BW_MUST_CHECK;
+bw_status dam_solid_picture(dam_run *d) BW_MUST_CHECK; /* solid.pvd */
+double dam_moved(const dam_run *d, const dam_gauge *g, int axis);
 
 /* dam_plan.c: before anything is built, what cannot run is refused, as the run would; sizes, step
  * and memory to the log. A small tank is built for that, the case's own where that is small: time
@@ -95,4 +135,7 @@ void dam_describe(const dam_run *d, const bw_ulph_config *fluid, bw_ulph *sample
                   double walls, double bytes);
 bw_status dam_open_history(dam_run *d) BW_MUST_CHECK;
 bw_status dam_sample(dam_run *d) BW_MUST_CHECK;  /* a row of it */
-bw_status dam_picture(dam_run *d) BW_MUST_CHECK; /* water.pvd, walls.pvd */
+bw_status dam_picture(dam_run *d) BW_MUST_CHECK; /* water.pvd, walls.pvd, solid.pvd */
+/* NAME-STEP.vtp of points with their data, joined to NAME.pvd. */
+bw_status dam_write_points(dam_run *d, const char *name, size_t n, const double x[], int count,
+                           const bw_vtk_array array[]) BW_MUST_CHECK;

@@ -2,6 +2,7 @@
 #include "dam_case.h"
 
 #include "bw_number.h"
+#include "bw_solid_words.h"
 
 #include <limits.h>
 #include <math.h>
@@ -39,6 +40,8 @@ static const bw_config_word gauge_words[] = {
     {"pressure", DAM_PRESSURE, "on the wall between lower and upper, mean since the last row"},
     {"front", DAM_FRONT, "largest x of the water between lower and upper"},
     {"height", DAM_HEIGHT, "largest y of the water between lower and upper"},
+    {"aside", DAM_ASIDE, "of the solid that was between lower and upper: mean move along x"},
+    {"up", DAM_UP, "of the same: mean move along y"},
     {NULL, 0, NULL}};
 static const bw_config_field gauge_fields[] = {
     V(dam_gauge, name, BW_REQUIRED, BW_ANY, "", "of the column in history.csv"),
@@ -47,6 +50,25 @@ static const bw_config_field gauge_fields[] = {
     V(dam_gauge, width, BW_OPTIONAL, BW_AT_LEAST(0), "L", "half-width of a column; 0: 2 spacings"),
     V(dam_gauge, lower, BW_OPTIONAL, BW_ANY, "L", "lower corner of where is looked"),
     V(dam_gauge, upper, BW_OPTIONAL, BW_ANY, "L", "upper corner of where is looked"),
+    BW_CONFIG_END};
+static const bw_config_field part_fields[] = {
+    V(dam_part, lower, BW_REQUIRED, BW_ANY, "L", "lower corner"),
+    V(dam_part, upper, BW_REQUIRED, BW_ANY, "L", "upper corner"),
+    V(dam_part, held, BW_OPTIONAL, BW_ANY, "", "does not move"), BW_CONFIG_END};
+static const bw_config_field solid_fields[] = {
+    V(dam_solid, spacing, BW_REQUIRED, BW_ABOVE(0), "L",
+      "of its particles: that of the fluid, or a whole number of times less"),
+    V(dam_solid, density, BW_REQUIRED, BW_ABOVE(0), "M/L3", "density"),
+    V(dam_solid, young, BW_REQUIRED, BW_ABOVE(0), "M/(L T2)", "Young's modulus"),
+    V(dam_solid, fracture_energy, BW_OPTIONAL, BW_ABOVE(0), "M/T2", "left out: it does not break"),
+    V(dam_solid, horizon_ratio, BW_OPTIONAL, BW_FROM_TO(1.5, 10), "",
+      "horizon over spacing; left out: 1.5 for correspondence that does not break, else 2"),
+    BW_SOLID_LAW_KEYS(dam_solid),
+    V(dam_solid, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L6 T)",
+      "between particles that bonds join"),
+    V(dam_solid, contact, BW_OPTIONAL, BW_ANY, "", "pieces push each other and the tank's walls"),
+    BW_CONFIG_LIST(dam_solid, parts, n_parts, BW_REQUIRED, part_fields,
+                   "boxes; the last one that holds a place says whether it is held there"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
     V(dam_time, end, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "T", "end of the run"),
@@ -69,6 +91,7 @@ const bw_config_field dam_fields[] = {
     V(dam_config, hydrostatic, BW_OPTIONAL, BW_ANY, "",
       "start with the pressure below the top of each box of water; false: without pressure"),
     BW_CONFIG_MAP_IF(dam_config, motion, has_motion, motion_fields, "of the tank"),
+    BW_CONFIG_MAP_IF(dam_config, solid, has_solid, solid_fields, "in the water or beside it"),
     BW_CONFIG_LIST(dam_config, gauges, n_gauges, BW_OPTIONAL, gauge_fields,
                    "more columns of history.csv"),
     BW_CONFIG_MAP(dam_config, time, time_fields, "how long the run is, in which steps"),
@@ -94,6 +117,13 @@ dam_config dam_config_default(void)
                       .obstacles = {box},
                       .hydrostatic = true,
                       .motion = {.amplitude = {NAN, NAN, NAN}, .period = NAN},
+                      .solid = {.spacing = NAN,
+                                .density = NAN,
+                                .young = NAN,
+                                .fracture_energy = INFINITY,
+                                .horizon_ratio = NAN,
+                                .choice = bw_solid_law_choice_default(),
+                                .parts = {{{NAN, NAN, NAN}, {NAN, NAN, NAN}, false}}},
                       .gauges = {{.kind = INT_MIN}},
                       .time = {.end = NAN, .step_share = u.step_share},
                       .output = {.sample_every = NAN}};
@@ -116,6 +146,15 @@ static bw_status box_check(const dam_config *c, const char *list, int number, co
   return BW_OK;
 }
 
+static bw_status part_check(const dam_config *c, int number)
+{
+  const dam_part *p = &c->solid.parts[number];
+  const dam_box box = {{p->lower[0], p->lower[1], p->lower[2]},
+                       {p->upper[0], p->upper[1], p->upper[2]}};
+  /* What holds it may go into the walls. */
+  return box_check(c, "solid.parts", number, &box, 100 * c->fluid.spacing);
+}
+
 static bw_status gauge_check(const dam_config *c, int number)
 {
   const dam_gauge *g = &c->gauges[number];
@@ -124,6 +163,9 @@ static bw_status gauge_check(const dam_config *c, int number)
   BW_REQUIRE(g->name[strcspn(g->name, ",[]\"")] == 0, BW_EINPUT,
              "gauges.%d.name: '%s' has a comma, a quote or a bracket; leave it out", number,
              g->name);
+  BW_REQUIRE((g->kind != DAM_ASIDE && g->kind != DAM_UP) || c->has_solid, BW_EINPUT,
+             "gauges.%d.kind: it tells how the solid moves, but there is none: give `solid`",
+             number);
   if (g->kind != DAM_DEPTH) return box_check(c, "gauges", number, &box, 4 * c->fluid.spacing);
   for (int k = 0; k < 3; k += 2)
     BW_REQUIRE(g->at[k] >= 0 && g->at[k] <= c->tank.size[k], BW_EINPUT,
@@ -171,6 +213,10 @@ bw_status dam_resolve(const dam_config *c, bw_ulph_config *fluid)
     BW_TRY(box_check(c, "obstacles", q, &c->obstacles[q], 100 * c->fluid.spacing));
   for (int q = 0; q < c->n_gauges; q++)
     BW_TRY(gauge_check(c, q));
+  for (int q = 0; q < (c->has_solid ? c->solid.n_parts : 0); q++)
+    BW_TRY(part_check(c, q));
+  BW_REQUIRE(!c->has_solid || !c->has_motion, BW_EINPUT,
+             "motion: a tank that moves does not move the solid with it; leave one of the two out");
   BW_TRY(times_divide("time.end", c->time.end, "output.sample_every", o->sample_every));
   BW_TRY(times_divide("output.picture_every", o->picture_every, "output.sample_every",
                       o->sample_every));

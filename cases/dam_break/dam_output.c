@@ -12,7 +12,9 @@ void dam_describe(const dam_run *d, const bw_ulph_config *fluid, bw_ulph *sample
                   double walls, double bytes)
 {
   bw_log *log = bw_case_log(d->run);
-  const double steps = d->config->time.end / bw_ulph_dt_max(sample), c0 = bw_ulph_c0(sample);
+  const double share = d->config->has_solid ? bw_coupler_particles_config_default().step_share : 1;
+  const double steps = d->config->time.end / (share * bw_ulph_dt_max(sample));
+  const double c0 = bw_ulph_c0(sample);
   bw_log_info(log, "%d dimensions, %.0f particles of water, %.0f of walls, %g apart",
               fluid->dimensions, water, walls, fluid->dx);
   bw_log_info(log, "sound %g, 1/%.3g of it is the largest speed expected, %g", c0,
@@ -43,7 +45,11 @@ static const char *const fixed[] = {"time[T]",
                                     "front[L]",
                                     "height[L]",
                                     "dt[T]"};
-enum { FIXED = sizeof fixed / sizeof *fixed, COLUMNS = FIXED + DAM_GAUGES, WIDE = DAM_NAME + 16 };
+enum {
+  FIXED = sizeof fixed / sizeof *fixed,
+  COLUMNS = FIXED + DAM_GAUGES + DAM_SOLID_COLUMNS,
+  WIDE = DAM_NAME + 16
+};
 
 static const char *unit_of(int kind)
 {
@@ -61,8 +67,10 @@ bw_status dam_open_history(dam_run *d)
     snprintf(text[q], WIDE, "%s[%s]", g->name, unit_of(g->kind));
     names[FIXED + q] = text[q];
   }
-  return bw_case_history(d->run, FIXED + d->config->n_gauges, names, bw_ulph_time(d->fluid),
-                         d->rows, &d->history);
+  int n = FIXED + d->config->n_gauges;
+  for (int q = 0; q < DAM_SOLID_COLUMNS && d->both != NULL; q++)
+    names[n++] = dam_solid_columns[q];
+  return bw_case_history(d->run, n, names, bw_ulph_time(d->fluid), d->rows, &d->history);
 }
 
 /* -INFINITY, where there is no water, is an empty cell. */
@@ -81,6 +89,7 @@ static double gauge(const dam_run *d, int number, const double at[3])
     lower[k] = g->lower[k] + at[k], upper[k] = g->upper[k] + at[k];
   }
   const double width = g->width > 0 ? g->width : 2 * d->config->fluid.spacing;
+  if (g->kind == DAM_ASIDE || g->kind == DAM_UP) return dam_moved(d, g, g->kind == DAM_UP);
   if (g->kind == DAM_DEPTH) return bw_ulph_depth(d->fluid, x, width);
   /* The start has no interval to average over. */
   if (g->kind == DAM_PRESSURE && d->covered > 0) return d->pressure[number] / d->covered;
@@ -118,6 +127,7 @@ bw_status dam_sample(dam_run *d)
                          d->dt};
   for (int q = 0; q < d->config->n_gauges; q++)
     row[FIXED + q] = gauge(d, q, at);
+  if (d->both != NULL) BW_TRY(dam_solid_row(d, unit, row + FIXED + d->config->n_gauges));
   bw_history_append(d->history, row);
   memset(d->pressure, 0, sizeof d->pressure);
   d->covered = 0;
@@ -129,6 +139,21 @@ bw_status dam_sample(dam_run *d)
 }
 
 /* ---- pictures ---- */
+bw_status dam_write_points(dam_run *d, const char *name, size_t n, const double x[], int count,
+                           const bw_vtk_array array[])
+{
+  char file[64], pvd[64], *path = NULL, *series = NULL;
+  snprintf(file, sizeof file, "%s-%08lld.vtp", name, (long long)bw_ulph_steps(d->fluid));
+  snprintf(pvd, sizeof pvd, "%s.pvd", name);
+  bw_status st = bw_case_path(d->run, file, &path);
+  BW_THEN(st, bw_case_path(d->run, pvd, &series));
+  BW_THEN(st, bw_vtk_write_points(d->comm, path, bw_ulph_time(d->fluid), n, x, count, array));
+  BW_THEN(st, bw_vtk_series_add(d->comm, series, bw_ulph_time(d->fluid), file));
+  bw_release(&path);
+  bw_release(&series);
+  return st;
+}
+
 typedef void reader(const bw_ulph *u, bw_ulph_field field, double out[]);
 
 /* Points with velocity, pressure and, for water, density and surface, as NAME.pvd. */
@@ -139,7 +164,6 @@ static bw_status picture(dam_run *d, const char *name, size_t n, reader *read, i
   static const char *const words[] = {"velocity", "pressure", "density", "surface"};
   double *x = NULL, *data[4] = {NULL};
   bw_vtk_array array[4];
-  char file[64], pvd[64], *path = NULL, *series = NULL;
   bw_status st = BW_ALLOCATE(&x, 3 * n);
   for (int q = 0; q < count; q++) {
     BW_THEN(st, BW_ALLOCATE(&data[q], (q == 0 ? 3 : 1) * n));
@@ -148,22 +172,15 @@ static bw_status picture(dam_run *d, const char *name, size_t n, reader *read, i
   }
   if (st == BW_OK) read(d->fluid, BW_ULPH_POSITION, x);
   st = bw_comm_agree(d->comm, st);
-  snprintf(file, sizeof file, "%s-%08lld.vtp", name, (long long)bw_ulph_steps(d->fluid));
-  snprintf(pvd, sizeof pvd, "%s.pvd", name);
-  BW_THEN(st, bw_case_path(d->run, file, &path));
-  BW_THEN(st, bw_case_path(d->run, pvd, &series));
-  BW_THEN(st, bw_vtk_write_points(d->comm, path, bw_ulph_time(d->fluid), n, x, count, array));
-  BW_THEN(st, bw_vtk_series_add(d->comm, series, bw_ulph_time(d->fluid), file));
+  BW_THEN(st, dam_write_points(d, name, n, x, count, array));
   bw_release(&x);
   for (int q = 0; q < count; q++)
     bw_release(&data[q]);
-  bw_release(&path);
-  bw_release(&series);
   return st;
 }
-
 bw_status dam_picture(dam_run *d)
 {
   BW_TRY(picture(d, "water", bw_ulph_count(d->fluid), bw_ulph_read, 4));
-  return picture(d, "walls", bw_ulph_wall_count(d->fluid), bw_ulph_read_wall, 2);
+  BW_TRY(picture(d, "walls", bw_ulph_wall_count(d->fluid), bw_ulph_read_wall, 2));
+  return d->both != NULL ? dam_solid_picture(d) : BW_OK;
 }

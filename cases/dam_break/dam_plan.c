@@ -93,6 +93,7 @@ static void make_small(const dam_config *c, dam_config *small)
   const int edge = axes_of(c) == 3 ? 16 : 60; /* spacings */
   *small = *c;
   small->n_water = 1, small->n_obstacles = small->n_gauges = 0;
+  small->has_solid = false; /* small beside so much water */
   small->water[0] = (dam_box){{0, 0, 0}, {0, 0, 0}};
   for (int k = 0; k < axes_of(c); k++) {
     small->tank.size[k] = fmin(c->tank.size[k], edge * c->fluid.spacing);

@@ -30,11 +30,16 @@ void dam_where(const dam_run *d, double x[3])
   if (d->config->has_motion) shake(bw_ulph_time(d->fluid), &m, x, v, a);
 }
 
-static void box_shape(const dam_box *b, bw_shape *shape)
+double dam_dt_max(dam_run *d)
+{
+  return d->both != NULL ? bw_coupler_particles_dt_max(d->both) : bw_ulph_dt_max(d->fluid);
+}
+
+void dam_box_shape(const double lower[3], const double upper[3], bw_shape *shape)
 {
   *shape = (bw_shape){.kind = BW_SHAPE_BOX};
-  memcpy(shape->lower, b->lower, sizeof shape->lower);
-  memcpy(shape->upper, b->upper, sizeof shape->upper);
+  memcpy(shape->lower, lower, sizeof shape->lower);
+  memcpy(shape->upper, upper, sizeof shape->upper);
 }
 
 /* Water at rest below the top of its box. */
@@ -55,14 +60,20 @@ bw_status dam_create(dam_run *d, const bw_ulph_config *fluid)
 {
   const dam_config *c = d->config;
   const double t = THICK * fluid->dx, *size = c->tank.size, origin[3] = {0};
-  bw_shape water[DAM_BOXES], blocks[DAM_BOXES];
+  bw_shape water[2 * DAM_BOXES], blocks[DAM_BOXES];
+  int n_water = c->n_water;
   const bw_shape tank[2] = {
       {.lower = {-t, -t, -t}, .upper = {size[0] + t, size[1] + t, size[2] + t}},
       {.upper = {size[0], size[1] + 2 * t, size[2]}, .remove = true}};
   for (int q = 0; q < c->n_water; q++)
-    box_shape(&c->water[q], &water[q]);
+    dam_box_shape(c->water[q].lower, c->water[q].upper, &water[q]);
+  /* No water where the solid is. */
+  for (int q = 0; q < (c->has_solid ? c->solid.n_parts : 0); q++) {
+    dam_box_shape(c->solid.parts[q].lower, c->solid.parts[q].upper, &water[n_water]);
+    water[n_water++].remove = true;
+  }
   for (int q = 0; q < c->n_obstacles; q++)
-    box_shape(&c->obstacles[q], &blocks[q]);
+    dam_box_shape(c->obstacles[q].lower, c->obstacles[q].upper, &blocks[q]);
   /* Blocks that reach into the tank's walls are left to these there. */
   const bw_ulph_wall walls[2] = {
       {.count = 2, .shape = tank, .no_slip = c->tank.no_slip, .moves = c->has_motion},
@@ -75,8 +86,10 @@ bw_status dam_create(dam_run *d, const bw_ulph_config *fluid)
   double *x = NULL;
   size_t n = 0;
   if (c->has_motion) with.motion = shake, with.motion_context = (void *)&c->motion;
-  bw_status st = bw_ulph_fill(d->comm, &with, origin, c->n_water, water, &n, &x);
-  BW_THEN(st, bw_ulph_create(d->comm, &with, n, x, c->n_obstacles > 0 ? 2 : 1, walls, &d->fluid));
+  bw_status st = bw_ulph_fill(d->comm, &with, origin, n_water, water, &n, &x);
+  const int n_walls = c->n_obstacles > 0 ? 2 : 1;
+  BW_THEN(st, bw_ulph_create(d->comm, &with, n, x, n_walls, walls, &d->fluid));
+  if (c->has_solid) BW_THEN(st, dam_solid_create(d, &with, n_walls, walls));
   BW_THEN(st, bw_ulph_start(d->fluid, c->hydrostatic ? hydrostatic : NULL, &copy));
   bw_release(&x);
   return st;
@@ -84,7 +97,9 @@ bw_status dam_create(dam_run *d, const bw_ulph_config *fluid)
 
 void dam_destroy(dam_run *d)
 {
+  bw_coupler_particles_destroy(&d->both);
   bw_ulph_destroy(&d->fluid);
+  bw_solid_destroy(&d->solid);
 }
 
 int64_t dam_intervals(const dam_config *c)
@@ -116,9 +131,10 @@ bw_status dam_advance(dam_run *d)
   const double end = (double)(d->intervals + 1) * d->config->output.sample_every;
   for (double left = 2; left > 1;) {
     const double span = end - bw_ulph_time(d->fluid);
-    left = fmax(1, ceil(span / bw_ulph_dt_max(d->fluid) * (1 - 1e-12)));
+    left = fmax(1, ceil(span / dam_dt_max(d) * (1 - 1e-12)));
     d->dt = span / left;
-    BW_TRY(bw_ulph_step(d->fluid, d->dt));
+    BW_TRY(d->both != NULL ? bw_coupler_particles_step(d->both, d->dt)
+                           : bw_ulph_step(d->fluid, d->dt));
     integrate(d);
     /* What is left follows from the state, so that a checkpoint may be written here. */
     d->stopped = left > 1 && bw_case_stopping(d->run);
@@ -163,6 +179,7 @@ static bw_status put(dam_run *d, bw_checkpoint *ck, table *t)
   BW_TRY(bw_checkpoint_put_case(ck, d->run));
   BW_TRY(bw_checkpoint_put_numbers(ck, "case/progress", PROGRESS, progress));
   BW_TRY(bw_checkpoint_put_numbers(ck, "case/pressure", DAM_GAUGES, d->pressure));
+  if (d->both != NULL) return bw_coupler_particles_save(d->both, ck);
   BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
   return bw_checkpoint_put_table(ck, "fluid/rows", bw_ulph_total(d->fluid), n, t->id, BW_ULPH_ROW,
                                  BW_CK_DOUBLE, t->rows);
@@ -190,12 +207,13 @@ static bw_status get(dam_run *d, bw_checkpoint *ck, size_t n, table *t, const ch
   double progress[PROGRESS], numbers[BW_ULPH_NUMBERS];
   BW_TRY(bw_checkpoint_get_numbers(ck, "case/progress", PROGRESS, progress));
   BW_TRY(bw_checkpoint_get_numbers(ck, "case/pressure", DAM_GAUGES, d->pressure));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
-  BW_TRY(bw_checkpoint_get_table(ck, "fluid/rows", bw_ulph_total(d->fluid), n, t->id, BW_ULPH_ROW,
-                                 BW_CK_DOUBLE, t->rows));
   BW_REQUIRE(bw_to_int64(progress[0], &d->intervals) && bw_to_int64(progress[3], &d->rows),
              BW_EINPUT, "%s: 'case/progress' holds numbers that no run has", path);
   d->dt = progress[1], d->covered = progress[2];
+  if (d->both != NULL) return bw_coupler_particles_restore(d->both, ck);
+  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
+  BW_TRY(bw_checkpoint_get_table(ck, "fluid/rows", bw_ulph_total(d->fluid), n, t->id, BW_ULPH_ROW,
+                                 BW_CK_DOUBLE, t->rows));
   return bw_ulph_state_set(d->fluid, n, t->id, t->rows, numbers);
 }
 

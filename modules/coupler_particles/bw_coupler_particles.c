@@ -12,7 +12,7 @@ static const double BACK = 0.1;
 
 bw_coupler_particles_config bw_coupler_particles_config_default(void)
 {
-  return (bw_coupler_particles_config){.solid_safety = 0.8, .virtual_mass = 0.5, .step_share = 0.6};
+  return (bw_coupler_particles_config){.solid_safety = 0.8, .virtual_mass = 0.5, .step_share = 0.4};
 }
 
 /* ---- creating ---- */

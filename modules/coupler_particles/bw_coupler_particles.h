@@ -50,7 +50,7 @@ typedef struct {
   double gravity[3];   /* on the solid [L/T^2]; that of the fluid's                   default 0 */
   double solid_safety; /* sub-step of the solid over its limit, in (0, 1]            default 0.8 */
   double virtual_mass; /* of wetted particles over rho0 dx area, 0 .. 10             default 0.5 */
-  double step_share;   /* of the step that the fluid would take alone, (0, 1]        default 0.6 */
+  double step_share;   /* of the step that the fluid would take alone, (0, 1]        default 0.4 */
   bool no_slip;        /* the fluid sticks to the solid                            default false */
 } bw_coupler_particles_config;
 
@@ -73,7 +73,7 @@ void bw_coupler_particles_hold(bw_coupler_particles *c, bool held);
 int bw_coupler_particles_substeps(const bw_coupler_particles *c, double dt);
 
 /* The step that is recommended now [T]: step_share of the fluid's: jets along a
- * plate that gives way were not stable at 0.8 and more. Collective. */
+ * plate that gives way were not stable at 0.6 and more. Collective. */
 double bw_coupler_particles_dt_max(bw_coupler_particles *c);
 
 /* Advance both by dt [T]. BW_ECFL, BW_EDIVERGED of either; BW_EMEM. Collective. */

@@ -21,6 +21,7 @@ same dam 2 dam_break 0.1 0.04 --set fluid.spacing=0.0321 --set tank.size='[1.605
   --set output.picture_every=0
 same sloshing 1 sloshing 0.2 0.1 --set fluid.spacing=0.075 --set tank.size='[1.725, 0.975, 0]' \
   --set output.picture_every=0
+same gate 1 gate 0.01 0.005 --set output.picture_every=0
 
 # Another number of ranks: the step, the front, the depth and the pressure are the same numbers.
 mpirun -n 3 "$build/bin/dam_break" "$source/cases/dam_break/dam_break.yaml" --quiet --out "$out/three" \

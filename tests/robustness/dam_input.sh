@@ -41,6 +41,18 @@ with gauge_outside "gauges.0.at: 3 in direction 0 is not in the tank" \
   --set 'gauges=[{name: a, kind: depth, at: [3, 0, 0]}]'
 with gauge_name "has a comma" --set 'gauges=[{name: "a,b", kind: depth, at: [1, 0, 0]}]'
 with unknown_gauge "kind" --set 'gauges=[{name: a, kind: deepth, at: [1, 0, 0]}]'
+with no_solid "gauges.0.kind: it tells how the solid moves, but there is none" \
+  --set 'gauges=[{name: a, kind: aside, lower: [0, 0, 0], upper: [1, 0.1, 0]}]'
+case=$source/cases/dam_break/gate.yaml
+with coarse_solid "apart and the fluid's 0.002; the solid has to be as fine or finer by a whole" \
+  --set solid.spacing=0.0015
+with shaken_solid "motion: a tank that moves does not move the solid" \
+  --set 'motion={amplitude: [0.01, 0, 0], period: 1}'
+with solid_outside "solid.parts.0: from 0.3 to 0.9 in direction 0" \
+  --set 'solid.parts=[{lower: [0.3, 0, 0], upper: [0.9, 0.1, 0]}]'
+with no_young "solid.young" --set solid.young=-1
+with soft_bonds "poisson_ratio" --set solid.law=bond
+case=$source/cases/dam_break/dam_break.yaml
 with long_steps "time.step_share" --set time.step_share=3
 with strong_diffusion "fluid.delta" --set fluid.delta=0.5
 exit $failed

@@ -66,7 +66,7 @@ static bw_status floats(bw_validation *v)
                                      .tolerance = 0.5,
                                      .kind = BW_ANALYTIC,
                                      .source = "symmetry"});
-    wet_book(v, &w);
+    wet_book(v, &w, 1e-3);
   }
   wet_free(&w);
   return st;
@@ -105,7 +105,7 @@ static bw_status sinks(bw_validation *v)
                                      .tolerance = 0.05,
                                      .kind = BW_ANALYTIC,
                                      .source = "potential flow"});
-    wet_book(v, &w);
+    wet_book(v, &w, 1e-3);
   }
   wet_free(&w);
   return st;

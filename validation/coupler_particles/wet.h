@@ -143,9 +143,10 @@ static inline void wet_moved(wet *w, const double lower[2], const double upper[2
   u[0] = sum[0] / sum[2], u[1] = sum[1] / sum[2];
 }
 
-/* Rows of every claim: the exchange, which has to be exact; how late loads came; the fluid's book.
+/* Rows of every claim: the exchange, which has to be exact; how late loads came; the fluid's
+ * book, to `gap`.
  */
-static inline void wet_book(bw_validation *v, const wet *w)
+static inline void wet_book(bw_validation *v, const wet *w, double gap)
 {
   const bw_coupler_particles_report r = bw_coupler_particles_measure(w->coupler);
   const bw_ulph_ledger l = bw_ulph_account(w->fluid);
@@ -161,7 +162,7 @@ static inline void wet_book(bw_validation *v, const wet *w)
   } row[] = {{"momentum_between", momentum / size, 1e-11},
              {"work_between", (r.given + r.late - r.received) / all, 1e-11},
              {"late_work", r.late / all, INFINITY},
-             {"book_gap_of_the_fluid", l.gap / l.first, 1e-3}};
+             {"book_gap_of_the_fluid", l.gap / l.first, gap}};
   for (size_t q = 0; q < sizeof row / sizeof *row; q++)
     bw_validation_row(v, &(bw_claim){.claim = "what the fluid loses the solid gets",
                                      .quantity = row[q].quantity,

@@ -45,8 +45,7 @@ static inline splash splash_make_safe(const bw_comm *comm, int d, int fine, doub
   int32_t *site = NULL;
   double *x = NULL;
   size_t count = 0;
-  /* The water is not at rest where it begins: its book closes to 1e-3 with shorter steps. */
-  q.solid_safety = safety, q.step_share = 0.5;
+  q.solid_safety = safety;
   c.dimensions = d, c.dx = 1, c.rho0 = 1, c.speed = 1;
   bw_check_ok(BW_ALLOCATE(&site, 3 * (size_t)(n * n * deep)));
   for (int k = 0; k < n * n * deep; k++)

@@ -83,7 +83,7 @@ bw_status bw_coupler_particles_create(const bw_coupler_particles_config *config,
   BW_TRY(check(config, fluid_config, solid));
   BW_TRY(bw_comm_agree(comm, BW_ALLOCATE(&c, 1)));
   c->config = *config, c->fluid = fluid, c->solid = solid;
-  c->rho0 = fluid_config->rho0, c->dx = fluid_config->dx;
+  c->rho0 = fluid_config->rho0;
   c->thickness = fluid_config->dimensions == 2 ? bw_solid_settings(solid)->thickness : 1;
   c->n = bw_solid_count(solid), c->total = (size_t)bw_solid_total(solid);
   bw_status st = bw_comm_agree(comm, make_arrays(c));
@@ -146,7 +146,7 @@ static void set_load(bw_coupler_particles *c, double dt)
 static bw_status resist(bw_coupler_particles *c, double dt)
 {
   const int64_t *id = bw_solid_id(c->solid);
-  const double mass = c->config.virtual_mass * c->rho0 * c->dx * c->thickness;
+  const double mass = c->config.virtual_mass * c->rho0 * bw_ulph_c0(c->fluid) * dt * c->thickness;
   double *towards = c->density; /* the force has been set */
   size_t n = 0;
   bw_solid_get_velocity(c->solid, c->X);

@@ -25,11 +25,11 @@
  * and a load that answers to that feeds it (bw_coupler.h, where it is derived). A virtual mass
  * stops it: through the sub-steps each wetted particle feels -(m_v/dt) (V - V_n), V_n its velocity
  * at t_n, which takes (m_v/2m) (1 - sin theta/theta), theta = omega dt, from every mode; m_v =
- * virtual_mass rho0 dx times the wetted area of the particle, as in a step of dx/c0 the answer to a
- * motion of the surface has come dx far. What it takes is kept and comes back, a tenth with each of
- * the next loads: nothing is lost of a load that lasts for some tens of steps. (All of it with the
- * next load, as between a solid and a fluid on a grid, where the load is relaxed besides, was not
- * stable.)
+ * virtual_mass rho0 c0 dt times the wetted area of the particle, as in a step the answer to a
+ * motion of the surface has come c0 dt far. What it takes is kept and comes back, a tenth with each
+ * of the next loads: nothing is lost of a load that lasts for some tens of steps. (All of it with
+ * the next load, as between a solid and a fluid on a grid, where the load is relaxed besides, was
+ * not stable.)
  *
  * Units    as of fluid and solid, which agree; a solid of two dimensions may have a thickness.
  * Life     solid, bw_ulph_create -> create -> bw_ulph_start -> { step }* -> destroy -> the two.
@@ -49,7 +49,7 @@ typedef struct bw_coupler_particles bw_coupler_particles;
 typedef struct {
   double gravity[3];   /* on the solid [L/T^2]; that of the fluid's                   default 0 */
   double solid_safety; /* sub-step of the solid over its limit, in (0, 1]            default 0.8 */
-  double virtual_mass; /* of wetted particles over rho0 dx area, 0 .. 10             default 0.5 */
+  double virtual_mass; /* of wetted particles over rho0 c0 dt area, 0 .. 10          default 0.5 */
   double step_share;   /* of the step that the fluid would take alone, (0, 1]        default 0.4 */
   bool no_slip;        /* the fluid sticks to the solid                            default false */
 } bw_coupler_particles_config;

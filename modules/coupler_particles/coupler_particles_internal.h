@@ -7,7 +7,7 @@ struct bw_coupler_particles {
   bw_coupler_particles_config config;
   bw_ulph *fluid;   /* borrowed */
   bw_solid *solid;  /* borrowed */
-  double rho0, dx;  /* of the fluid */
+  double rho0;      /* of the fluid */
   double thickness; /* of a solid in two dimensions, else 1 */
   bool held, known; /* the solid stays; F is that of the last evaluation */
   size_t n, total;  /* particles of this rank, of all */

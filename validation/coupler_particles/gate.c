@@ -7,7 +7,8 @@
  * Measured   Water 0.1 x 0.14 m; gate 0.079 x 0.005 m, clamped at the top, five layers of 1 mm;
  *            fluid at 2 (1) mm. Mean displacement of the last 2 mm of the gate every 5 ms.
  * Tolerance  Farthest aside: 10 % beyond the band from 39 to 46.4 mm. When: within 0.115 to 0.16 s
- *            and a sample. At 2 mm both are reported.
+ *            and a sample. At 2 mm both are reported, and the gap of the fluid's
+ *            book (1e-3 of the first energy at 1 mm).
  * BUILD modules=shape,solid
  * TEST  ranks=1 */
 #include "wet.h"
@@ -55,7 +56,7 @@ static bw_status run(bw_validation *v)
                                        .tolerance = row[q].tolerance,
                                        .kind = BW_PUBLISHED,
                                        .source = "Antoci et al. 2007 and three computations"});
-    wet_book(v, &w, 1e-3);
+    wet_book(v, &w, full ? 1e-3 : INFINITY);
   }
   wet_free(&w);
   return st;

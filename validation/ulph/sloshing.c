@@ -6,7 +6,8 @@
  *            rest (ULPH 4.3); elevation 0.05 m from the left wall.
  * Measured   dx = 25 (5) mm, depth of the column (a hat of 0.05 m), every 0.02 s to 4.5 s.
  * Tolerance  3 mm, the largest difference, at 5 mm; at 25 mm the differences are reported (43 mm at
- *            the steepest troughs, 14 mm on average; at 12.5 mm 9.0 and 2.9 mm: order 2). Book: 1e-3 of the first energy.
+ *            the steepest troughs, 14 mm on average; at 12.5 mm 9.0 and 2.9 mm: order 2). Book:
+ *            1e-3 of the first energy.
  * BUILD modules=shape
  * TEST  ranks=1 */
 #include "tank.h"

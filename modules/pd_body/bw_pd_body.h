@@ -68,6 +68,13 @@ typedef struct {
                                 the third is not read */
 } bw_pd_box;
 
+/* The boxes of a body, and how bonds between two spacings are. */
+typedef struct {
+  int n;                      /* boxes; 0: one level                          default 0 */
+  bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet */
+  bw_pd_jump jump;            /* bonds between levels                  default balanced */
+} bw_pd_finer;
+
 /* What the particles of one group are made of. */
 typedef struct {
   double rho; /* density [M/L^3] */
@@ -93,14 +100,12 @@ typedef struct {
   bw_pd_material material[BW_PD_GROUPS];       /* of each group */
   double joint_G0[BW_PD_GROUPS][BW_PD_GROUPS]; /* of bonds between two groups, symmetric [M/T^2];
                                                    NaN: the smaller of the two */
-  int n_box;                                   /* boxes of finer particles; 0: one level */
-  bw_pd_box box[BW_PD_BOXES];                  /* where they are, several may meet */
-  bw_pd_jump jump;                             /* bonds between levels */
+  bw_pd_finer finer;                           /* levels of finer particles */
 } bw_pd_body_config;
 
 /* What one rank gives to a body that is made: its part of the sites, any division will do. The
  * global id of a particle is its row in the lists of all ranks joined in rank order, after cells
- * that lie in a box have been split (bw_pd_body_config.box). */
+ * that lie in a box have been split (bw_pd_body_config.finer). */
 typedef struct {
   int64_t n;            /* sites that this rank gives; 0 is fine */
   const int32_t *site;  /* (n,3) */

@@ -101,6 +101,8 @@ typedef struct {
   int32_t *place;    /* storage place */
   size_t n_storage;  /* places */
   int32_t *occupant; /* (n_storage) extended index, -1: hole */
+  bw_real *shift[3]; /* storage: reference place from its site [L]; NULL: a lattice */
+  bw_real *weight;   /* (n) mass over that of the first group's on level 0 [-]; NULL: all 1 */
 } bw_pd_points;
 
 /* Copies of what others own, and images. */
@@ -170,9 +172,7 @@ struct bw_pd_body {
   bw_pd_bonds bonds;        /* who is bonded to whom */
   bw_real *u[3],
       *vs[3];           /* storage: displacement [L]; velocity of own and copies, on demand [L/T] */
-  bw_real *shift[3];    /* storage: reference place from its site [L]; NULL: a lattice */
   bw_real *v[3], *a[3]; /* own: velocity [L/T], internal force / rho [L/T^2] */
-  bw_real *weight;      /* (n) mass over that of the first group's on level 0 [-]; NULL: all 1 */
   bw_pd_forces load;    /* what acts besides the bonds */
   bw_pd_held held;      /* who moves as told */
   bw_pd_dampings damping;
@@ -219,7 +219,7 @@ bw_status bw_pd_body_fraction_volume(double m, const double offset[3],
 
 /* pd_cloud.c: reference places off their sites */
 
-/* pd->shift of all places, once they are numbered. BW_EMEM. Local. */
+/* pd->points.shift of all places, once they are numbered. BW_EMEM. Local. */
 bw_status bw_pd_body_scatter(bw_pd_body *pd) BW_MUST_CHECK;
 /* The bond in a direction of the stencil whose ends are off their sites by h and l [L]; or whose
  * ends are at the storage places h and l. Local. */
@@ -380,7 +380,7 @@ static inline void bw_pd_body_reference(const bw_pd_body *pd, size_t e, double X
     for (int d = 0; d < pd->dimension; d++)
       X0[k] += pd->finest > 0 ? c->axes[d][k] * site[d] * pd->level->stencil.unit
                               : c->axes[d][k] * (site[d] + 0.5) * c->ds;
-    if (pd->shift[k] != NULL) X0[k] += (double)pd->shift[k][pd->points.place[e]];
+    if (pd->points.shift[k] != NULL) X0[k] += (double)pd->points.shift[k][pd->points.place[e]];
   }
 }
 

@@ -222,7 +222,7 @@ static bw_status scatter_tile(bw_pd_body *pd, const tiling *t, int32_t number)
     const double *y = f.y + 3 * row_at(&f, pd->points.site + 3 * (size_t)e);
     /* Laid out like displacements, so that a sweep loads both alike. */
     for (int k = 0; k < 3; k++)
-      pd->shift[k][pd->points.place[e]] =
+      pd->points.shift[k][pd->points.place[e]] =
           (bw_real)(c->ds * (c->axes[0][k] * y[0] + c->axes[1][k] * y[1] + c->axes[2][k] * y[2]));
   }
   release_field(&f);
@@ -233,7 +233,7 @@ bw_status bw_pd_body_scatter(bw_pd_body *pd)
 {
   tiling t = {.n = 0};
   for (int k = 0; k < 3; k++)
-    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->shift[k]));
+    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &pd->points.shift[k]));
   /* Tile by tile: no field of all sites is ever held. */
   bw_status st = make_tiles(pd, &t);
   for (int32_t q = 0; q < t.n && st == BW_OK; q++)
@@ -270,7 +270,7 @@ bw_pd_rest bw_pd_body_rest_of_cloud(const bw_pd_body *pd, int direction, int32_t
 {
   double a[3], b[3];
   for (int k = 0; k < 3; k++)
-    a[k] = (double)pd->shift[k][h], b[k] = (double)pd->shift[k][l];
+    a[k] = (double)pd->points.shift[k][h], b[k] = (double)pd->points.shift[k][l];
   return bw_pd_body_apart(pd, direction, a, b);
 }
 

@@ -124,12 +124,12 @@ static bw_status check_fraction(const bw_pd_body_config *c)
 static bw_status check_boxes(const bw_pd_body_config *c)
 {
   const int axes = c->geometry == BW_PD_3D ? 3 : 2;
-  BW_REQUIRE(c->n_box >= 0 && c->n_box <= BW_PD_BOXES, BW_EINPUT,
-             "solid: %d boxes of levels; 0 to %d can be given", c->n_box, (int)BW_PD_BOXES);
-  BW_REQUIRE((unsigned)c->jump <= BW_PD_JUMP_ONE_SIDED, BW_EINPUT, "solid: jump = %d is unknown",
-             (int)c->jump);
-  for (int b = 0; b < c->n_box; b++) {
-    const bw_pd_box *box = &c->box[b];
+  BW_REQUIRE(c->finer.n >= 0 && c->finer.n <= BW_PD_BOXES, BW_EINPUT,
+             "solid: %d boxes of levels; 0 to %d can be given", c->finer.n, (int)BW_PD_BOXES);
+  BW_REQUIRE((unsigned)c->finer.jump <= BW_PD_JUMP_ONE_SIDED, BW_EINPUT,
+             "solid: jump = %d is unknown", (int)c->finer.jump);
+  for (int b = 0; b < c->finer.n; b++) {
+    const bw_pd_box *box = &c->finer.box[b];
     BW_REQUIRE(box->level >= 1 && box->level <= BW_PD_FINEST, BW_EINPUT,
                "solid: levels[%d].level = %d must be from 1 (half the spacing) to %d", b,
                box->level, (int)BW_PD_FINEST);
@@ -139,7 +139,7 @@ static bw_status check_boxes(const bw_pd_body_config *c)
                  "upper",
                  b, box->lower[k], box->upper[k], k);
   }
-  BW_REQUIRE(c->n_box == 0 || c->disorder == 0, BW_EINPUT,
+  BW_REQUIRE(c->finer.n == 0 || c->disorder == 0, BW_EINPUT,
              "solid: disorder = %g with levels: a cloud has one level; leave one of them out",
              c->disorder);
   return BW_OK;

@@ -41,11 +41,11 @@ static bw_status weights(bw_pd_body *pd)
 {
   /* Without weights a ledger multiplies once by the mass of all. */
   if (pd->config.n_group == 1 && pd->finest == 0) return BW_OK;
-  BW_TRY(BW_ALLOCATE(&pd->weight, pd->n));
+  BW_TRY(BW_ALLOCATE(&pd->points.weight, pd->n));
   /* Work is booked by the mass of the first group; a weight says how much heavier this one is. */
   for (size_t i = 0; i < pd->n; i++)
-    pd->weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho *
-                              (bw_pd_body_level(pd, i)->dv / pd->level->dv));
+    pd->points.weight[i] = (bw_real)(bw_pd_body_material(pd, i)->rho / pd->config.material[0].rho *
+                                     (bw_pd_body_level(pd, i)->dv / pd->level->dv));
   return BW_OK;
 }
 
@@ -69,7 +69,7 @@ static bw_status prescribed_list(bw_pd_body *pd)
 
 static bw_status check_levels(const bw_pd_body_config *c, const bw_pd_law *law)
 {
-  BW_REQUIRE(c->n_box == 0 || law->levels, BW_EINPUT,
+  BW_REQUIRE(c->finer.n == 0 || law->levels, BW_EINPUT,
              "solid: levels with law = %s: bonds between two spacings are known to law = bond "
              "alone; take that law or leave levels out",
              law->name);
@@ -184,7 +184,7 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
   for (int l = 0; pd->level != NULL && l <= pd->finest; l++)
     release_level(&pd->level[l]);
   bw_particles_copies_destroy(&pd->halo.copies);
-  void *plain[] = {&pd->weight,          &pd->level,        &pd->points.site,  &pd->points.id,
+  void *plain[] = {&pd->points.weight,   &pd->level,        &pd->points.site,  &pd->points.id,
                    &pd->points.kind,     &pd->points.group, &pd->points.place, &pd->points.occupant,
                    &pd->halo.extended_X, &pd->bonds.block,  &pd->bonds.slot,   &pd->bonds.run,
                    &pd->bonds.hit,       &pd->bonds.factor, &pd->held.mobile,  &pd->held.particle,
@@ -194,7 +194,7 @@ void bw_pd_body_destroy(bw_pd_body **pd_)
   for (int k = 0; k < 3; k++) {
     bw_pd_body_release_storage_array(&pd->u[k]);
     bw_pd_body_release_storage_array(&pd->vs[k]);
-    bw_pd_body_release_storage_array(&pd->shift[k]);
+    bw_pd_body_release_storage_array(&pd->points.shift[k]);
     void *vector[] = {&pd->v[k], &pd->a[k], &pd->load.f[k], &pd->load.extra[k], &pd->load.damp[k]};
     for (size_t q = 0; q < sizeof vector / sizeof *vector; q++)
       bw_release(vector[q]);

@@ -28,8 +28,8 @@ typedef struct {
 int bw_pd_body_finest(const bw_pd_body_config *c)
 {
   int finest = 0;
-  for (int b = 0; b < c->n_box; b++)
-    finest = c->box[b].level > finest ? c->box[b].level : finest;
+  for (int b = 0; b < c->finer.n; b++)
+    finest = c->finer.box[b].level > finest ? c->finer.box[b].level : finest;
   return finest;
 }
 
@@ -51,8 +51,8 @@ static void make_plan(const bw_pd_body_config *c, plan *p)
   *p = (plan){.config = c, .axes = c->geometry == BW_PD_3D ? 3 : 2, .finest = bw_pd_body_finest(c)};
   for (int k = 0; k < p->axes; k++)
     p->period[k] = llround(c->period[k] / c->ds);
-  for (int b = 0; b < c->n_box; b++) {
-    const bw_pd_box *box = &c->box[b];
+  for (int b = 0; b < c->finer.n; b++) {
+    const bw_pd_box *box = &c->finer.box[b];
     const double ds = ldexp(c->ds, 1 - box->level);
     for (int k = 0; k < p->axes; k++) {
       double from = 0;
@@ -89,8 +89,8 @@ static bool within(const plan *p, int b, int l, const int32_t cell[3])
 
 static bool is_split(const plan *p, int l, const int32_t cell[3])
 {
-  for (int b = 0; b < p->config->n_box; b++)
-    if (p->config->box[b].level > l && within(p, b, l, cell)) return true;
+  for (int b = 0; b < p->config->finer.n; b++)
+    if (p->config->finer.box[b].level > l && within(p, b, l, cell)) return true;
   return false;
 }
 
@@ -145,7 +145,7 @@ bw_status bw_pd_body_refine(const bw_pd_body_config *c, const bw_pd_sites *given
 {
   plan p;
   *out = (bw_pd_refined){.sites = *given};
-  if (c->n_box == 0) return BW_OK;
+  if (c->finer.n == 0) return BW_OK;
   make_plan(c, &p);
   /* Sites become places: products of 2^(finest + 1) have to fit. */
   for (int64_t q = 0; q < 3 * given->n; q++)

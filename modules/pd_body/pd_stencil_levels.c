@@ -68,7 +68,9 @@ static bw_status bond_of(const pair *x, const int o[3], double *fraction, double
   BW_TRY(gamma_of(x, a, b, o, &ab));
   BW_TRY(gamma_of(x, b, a, o, &ba));
   ba *= level[b].stiff / level[a].stiff;
-  *fraction = x->pd->config.jump != BW_PD_JUMP_ONE_SIDED ? (ab + ba) / 2 : x->l == a ? ab : ba;
+  *fraction = x->pd->config.finer.jump != BW_PD_JUMP_ONE_SIDED ? (ab + ba) / 2
+              : x->l == a                                      ? ab
+                                                               : ba;
   /* By energy: the finer half bears more. */
   const double s2 = pow(level[b].stretch / level[a].stretch, 2);
   if (ab + ba > 0) *tough = (ab + ba * s2) / (ab + ba);

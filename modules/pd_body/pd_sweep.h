@@ -28,7 +28,7 @@ INLINE sweep sweep_of(const bw_pd_body *pd)
                  .slot = pd->bonds.slot,
                  .level = pd->level,
                  .u = {pd->u[0], pd->u[1], pd->u[2]},
-                 .shift = {pd->shift[0], pd->shift[1], pd->shift[2]},
+                 .shift = {pd->points.shift[0], pd->points.shift[1], pd->points.shift[2]},
                  .v = {pd->vs[0], pd->vs[1], pd->vs[2]},
                  .a = {pd->a[0], pd->a[1], pd->a[2]},
                  .damp = {pd->load.damp[0], pd->load.damp[1], pd->load.damp[2]},

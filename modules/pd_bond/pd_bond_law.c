@@ -22,7 +22,7 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
              "solid: surface_correction = tensor is of lattices; with disorder = %g use energy",
              c->disorder);
-  BW_REQUIRE(c->n_box == 0 || o->surface_correction == BW_PD_SURFACE_NONE ||
+  BW_REQUIRE(c->finer.n == 0 || o->surface_correction == BW_PD_SURFACE_NONE ||
                  o->surface_correction == BW_PD_SURFACE_TENSOR,
              BW_EINPUT,
              "solid: surface_correction = %s with levels: a factor per particle knows one level; "
@@ -122,7 +122,8 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   BW_TRY(bw_pd_bond__surface_factors(pd));
   if (state->options.surface_correction == BW_PD_SURFACE_TENSOR) BW_TRY(bw_pd_bond__tensor(pd));
   /* Last: the factors of bonds near jumps change those that a surface gave them. */
-  return pd->finest > 0 && pd->config.jump == BW_PD_JUMP_BALANCED ? bw_pd_bond__levels(pd) : BW_OK;
+  return pd->finest > 0 && pd->config.finer.jump == BW_PD_JUMP_BALANCED ? bw_pd_bond__levels(pd)
+                                                                        : BW_OK;
 }
 
 static void destroy(bw_pd_body *pd)

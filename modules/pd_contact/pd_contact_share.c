@@ -76,9 +76,9 @@ static bw_status share_shifts(const bw_pd_body *pd, bw_pd_contact *c)
   st = bw_comm_agree(pd->comm, st);
   for (size_t k = 0; k < 3 && st == BW_OK; k++) {
     for (size_t q = 0; q < c->found.n_mine; q++)
-      c->found.shift[3 * q + k] = (double)pd->shift[k][pd->points.place[c->found.mine[q]]];
+      c->found.shift[3 * q + k] = (double)pd->points.shift[k][pd->points.place[c->found.mine[q]]];
     for (size_t q = 0; q < c->found.n_sent; q++)
-      sent[3 * q + k] = (double)pd->shift[k][pd->points.place[c->found.sent[q]]];
+      sent[3 * q + k] = (double)pd->points.shift[k][pd->points.place[c->found.sent[q]]];
   }
   if (st == BW_OK) share_rows(c, 3 * sizeof *sent, sent, c->found.shift);
   bw_release(&sent);

@@ -227,11 +227,11 @@ static bw_status levels_of(const bw_scene *s, const bw_scene__solid *q, bw_solid
   for (int k = 0; k < q->n_bodies; k++) {
     const bw_scene_body *b = &s->config.bodies[q->body[k]];
     for (int r = 0; r < b->n_levels; r++) {
-      BW_REQUIRE(c->n_box < BW_PD_BOXES, BW_EINPUT,
+      BW_REQUIRE(c->finer.n < BW_PD_BOXES, BW_EINPUT,
                  "bodies.%s.levels: bodies that hold each other have more than %d boxes together; "
                  "join some",
                  b->name, (int)BW_PD_BOXES);
-      bw_pd_box *box = &c->box[c->n_box++];
+      bw_pd_box *box = &c->finer.box[c->finer.n++];
       box->level = b->levels[r].level;
       for (int d = 0; d < (s->planar ? 2 : 3); d++)
         box->lower[d] = b->levels[r].from[d], box->upper[d] = b->levels[r].to[d];

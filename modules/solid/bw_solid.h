@@ -84,11 +84,10 @@ typedef struct {
                                   (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
   double origin[3];               /* of the lattice [L]                   default 0 */
   double axes[3][3];              /* rows: lattice directions             default identity */
-  int n_box;                      /* boxes of finer particles                default 0: one level */
-  bw_pd_box box[BW_PD_BOXES];     /* where they are (bw_pd_body.h); cracks run on the finest level
-                                 alone: a bond beyond its limit elsewhere ends the run */
-  bw_pd_jump jump;                /* of bonds between two spacings            default balanced */
-  double period[3]; /* periodic length per direction [L], 0: not periodic. Must be a whole
+  bw_pd_finer finer; /* boxes of finer particles (bw_pd_body.h); cracks run on the finest
+                                 level alone: a bond beyond its limit elsewhere ends the run
+                                                          default one level */
+  double period[3];  /* periodic length per direction [L], 0: not periodic. Must be a whole
                        number of ds along that axis         default 0 */
 } bw_solid_config;
 

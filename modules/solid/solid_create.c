@@ -47,12 +47,12 @@ static bw_status check_config(const bw_solid_config *c)
              "solid: surface_correction = %d is of bonds; families at faces are whole in a "
              "state-based law, leave it out",
              (int)c->surface_correction);
-  BW_REQUIRE(c->n_box == 0 || !c->contact, BW_EINPUT,
+  BW_REQUIRE(c->finer.n == 0 || !c->contact, BW_EINPUT,
              "solid: contact with levels: contact knows one spacing; leave one of them out");
   BW_REQUIRE(
-      c->n_box == 0 || (c->damping.pair == 0 && c->damping.mean == 0), BW_EINPUT,
-      "solid: damping_pair = %g, damping_mean = %g with levels: between neighbours they damp "
-      "each level differently; use damping_absolute",
+      c->finer.n == 0 || (c->damping.pair == 0 && c->damping.mean == 0), BW_EINPUT,
+      "solid: damping.pair = %g, damping.mean = %g with levels: between neighbours they damp "
+      "each level differently; use damping.absolute",
       c->damping.pair, c->damping.mean);
   /* A particle may meet another one and its image, but not itself. */
   for (int a = 0; a < 3; a++)
@@ -73,9 +73,7 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
                          .disorder_seed = c->disorder_seed,
                          .n_group = 1 + c->more.n,
                          .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
-  b.n_box = c->n_box;
-  b.jump = c->jump;
-  memcpy(b.box, c->box, sizeof b.box);
+  b.finer = c->finer;
   /* Two ways to say it: the number beside E, or that of the choice. */
   if (isnan(c->nu)) b.material[0].nu = c->choice.poisson_ratio;
   /* Group 0 is the configuration's own material; `more` follow it. */

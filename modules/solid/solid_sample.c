@@ -62,9 +62,9 @@ bw_status bw_solid_try(const bw_comm *comm, const bw_solid_config *config, bw_so
   for (int d = 0; d < 3; d++)
     c.period[d] = 0.0;
   /* The step is that of the finest particles, wherever they are. */
-  for (int b = 0; b < config->n_box; b++)
-    c.ds = fmin(c.ds, ldexp(config->ds, -config->box[b].level));
-  c.n_box = 0;
+  for (int b = 0; b < config->finer.n; b++)
+    c.ds = fmin(c.ds, ldexp(config->ds, -config->finer.box[b].level));
+  c.finer.n = 0;
   bw_status st = bw_comm_self(&self);
   BW_THEN(st, measure(self, &c, out));
   bw_comm_destroy(&self);

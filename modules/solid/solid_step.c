@@ -13,7 +13,7 @@
 /* Mass of an own particle over that of the first group's on level 0. */
 static double weight_of(const bw_pd_body *pd, size_t i)
 {
-  return pd->weight == NULL ? 1 : (double)pd->weight[i];
+  return pd->points.weight == NULL ? 1 : (double)pd->points.weight[i];
 }
 
 /* Prescribed particles have their velocity; the book takes the energy of the jump. */
@@ -141,7 +141,7 @@ static void prescribed_work(bw_solid *s, double dt)
 static inline __attribute__((always_inline)) void kick_all(bw_pd_body *pd, bw_real h, bool loaded,
                                                            bool one_group, double work[2])
 {
-  const bw_real *mobile = pd->held.mobile, *weight = pd->weight;
+  const bw_real *mobile = pd->held.mobile, *weight = pd->points.weight;
   double external = 0, damping = 0;
   /* One pass moves and books; sums are in double whatever the precision of the motion. */
   for (int k = 0; k < pd->dimension; k++) {
@@ -168,7 +168,7 @@ static void kick(bw_solid *s, double h)
   bw_pd_body *pd = s->body;
   /* Three loops from one source: arrays that hold nothing are not read. */
   double work[2], on_walls[3];
-  if (pd->weight != NULL)
+  if (pd->points.weight != NULL)
     kick_all(pd, (bw_real)h, true, false, work);
   else if (s->loaded)
     kick_all(pd, (bw_real)h, true, true, work);

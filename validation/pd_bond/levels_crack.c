@@ -50,9 +50,9 @@ static bw_status plate(const bw_comm *comm, int levels, bool everywhere, bw_soli
   c.surface_correction = BW_PD_SURFACE_TENSOR;
   c.calibration = BW_PD_CALIBRATION_LATTICE;
   if (!everywhere) {
-    c.n_box = 2;
-    c.box[0] = (bw_pd_box){levels, {0.042, 0.012}, {0.072, 0.028}};
-    c.box[1] = (bw_pd_box){levels, {0.068, 0.003}, {0.11, 0.037}}; /* where it has forked */
+    c.finer.n = 2;
+    c.finer.box[0] = (bw_pd_box){levels, {0.042, 0.012}, {0.072, 0.028}};
+    c.finer.box[1] = (bw_pd_box){levels, {0.068, 0.003}, {0.11, 0.037}}; /* where it has forked */
   }
   int32_t *site = NULL;
   uint8_t *kind = NULL;

@@ -49,10 +49,10 @@ static bw_status make(const bw_comm *comm, const shape *s, bw_pd_jump jump, bw_s
   c.E = E;
   c.surface_correction = BW_PD_SURFACE_NONE;
   c.calibration = BW_PD_CALIBRATION_LATTICE;
-  c.jump = jump;
-  c.n_box = s->n_box;
+  c.finer.jump = jump;
+  c.finer.n = s->n_box;
   for (int b = 0; b < s->n_box; b++)
-    c.box[b] = s->box[b];
+    c.finer.box[b] = s->box[b];
   const int64_t n = (int64_t)s->size[0] * s->size[1] * s->size[2];
   int32_t *site = NULL;
   BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)n));

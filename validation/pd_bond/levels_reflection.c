@@ -76,11 +76,11 @@ static bw_status make(const bw_comm *comm, int levels, bw_pd_jump jump, bw_solid
   c.rho = c.E = 1;
   c.surface_correction = BW_PD_SURFACE_NONE;
   c.calibration = BW_PD_CALIBRATION_LATTICE;
-  c.jump = jump;
+  c.finer.jump = jump;
   c.period[1] = 1;
-  c.n_box = 1;
+  c.finer.n = 1;
   /* With two jumps the belt of one coarse horizon begins at x = 0. */
-  c.box[0] = (bw_pd_box){levels, {levels == 1 ? 0 : M, -1}, {1e9, 2}};
+  c.finer.box[0] = (bw_pd_box){levels, {levels == 1 ? 0 : M, -1}, {1e9, 2}};
   int32_t *site = NULL;
   BW_TRY(BW_ALLOCATE(&site, 3 * (size_t)n));
   for (int q = 0; q < n; q++)

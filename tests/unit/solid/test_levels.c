@@ -11,9 +11,9 @@ static bw_solid_config nested(bw_pd_geometry geometry, int level, bw_pd_jump jum
 {
   bw_solid_config c = pd_soft(geometry);
   c.surface_correction = BW_PD_SURFACE_NONE;
-  c.jump = jump;
-  c.n_box = 1;
-  c.box[0] = (bw_pd_box){level, {1.5, 1, 0.5}, {3.5, 2.5, 2}};
+  c.finer.jump = jump;
+  c.finer.n = 1;
+  c.finer.box[0] = (bw_pd_box){level, {1.5, 1, 0.5}, {3.5, 2.5, 2}};
   return c;
 }
 
@@ -103,7 +103,7 @@ static void check_forces(const bw_solid_config *c, const crowd *q)
       const double r = distance(q->X + 3 * i, q->X + 3 * j);
       const double mine = pull(c, q->level[3 * i], q->level[3 * j], r0);
       const double theirs = pull(c, q->level[3 * j], q->level[3 * i], r0);
-      const double k = c->jump == BW_PD_JUMP_ONE_SIDED ? mine : (mine + theirs) / 2;
+      const double k = c->finer.jump == BW_PD_JUMP_ONE_SIDED ? mine : (mine + theirs) / 2;
       for (int d = 0; d < 3; d++)
         a[d] += k * (r / r0 - 1) * volume(c, q->level[3 * j]) / c->rho *
                 (q->X[3 * j + (size_t)d] - q->X[3 * i + (size_t)d]) / r;
@@ -187,7 +187,7 @@ START_TEST(factors_stay_bounded)
                                     {2, {3, 2, -9}, {3.5, 2.5, 99}}};
   for (int way = 0; way < 16; way++) {
     bw_solid_config c = nested(way < 8 ? BW_PD_PLANE_STRESS : BW_PD_3D, 1, BW_PD_JUMP_BALANCED);
-    c.box[0] = boxes[way % 4];
+    c.finer.box[0] = boxes[way % 4];
     c.surface_correction = way / 4 % 2 == 0 ? BW_PD_SURFACE_NONE : BW_PD_SURFACE_TENSOR;
     pd_body body = way < 8 ? pd_box(13, 9, 1) : pd_box(11, 7, 5);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
@@ -245,7 +245,7 @@ static void blow(const double X0[3], double v[3])
 static bw_solid_config breaking(int way)
 {
   bw_solid_config c = nested(BW_PD_PLANE_STRESS, 1 + way % 2, BW_PD_JUMP_BALANCED);
-  c.box[0] = (bw_pd_box){1 + way % 2, {2.5, 2.2, 0}, {6, 5.4, 1}};
+  c.finer.box[0] = (bw_pd_box){1 + way % 2, {2.5, 2.2, 0}, {6, 5.4, 1}};
   c.G0 = 0.003;
   c.surface_correction = way < 2 ? BW_PD_SURFACE_NONE : BW_PD_SURFACE_TENSOR;
   return c;
@@ -329,8 +329,8 @@ START_TEST(a_box_that_meets_nothing_changes_nothing)
 {
   pd_body body = pd_box(13, 11, 1);
   bw_solid_config c = nested(BW_PD_PLANE_STRESS, 1, BW_PD_JUMP_BALANCED), none = c;
-  c.box[0] = (bw_pd_box){1, {100, 100, 0}, {101, 101, 1}};
-  none.n_box = 0;
+  c.finer.box[0] = (bw_pd_box){1, {100, 100, 0}, {101, 101, 1}};
+  none.finer.n = 0;
   bw_solid *a = pd_make(bw_check_world(), &c, &body), *b = pd_make(bw_check_world(), &none, &body);
   bw_check_near(bw_solid_dt_max(a), bw_solid_dt_max(b), 1e2 * BW_REAL_EPSILON);
   pd_set(a, NULL, shake);
@@ -366,12 +366,12 @@ START_TEST(what_levels_do_not_go_with_is_refused)
   c = good, c.disorder = 0.2;
   refused(&c, "disorder");
   c = good, c.damping.pair = 1;
-  refused(&c, "damping_absolute");
-  c = good, c.box[0].level = 0;
+  refused(&c, "damping.absolute");
+  c = good, c.finer.box[0].level = 0;
   refused(&c, "levels[0].level");
-  c = good, c.box[0].upper[2] = c.box[0].lower[2];
+  c = good, c.finer.box[0].upper[2] = c.finer.box[0].lower[2];
   refused(&c, "lower");
-  c = good, c.n_box = 99;
+  c = good, c.finer.n = 99;
   refused(&c, "99 boxes");
   c = good, c.choice.law = BW_SOLID_ORDINARY, c.surface_correction = BW_PD_SURFACE_VOLUME;
   refused(&c, "law = ordinary");

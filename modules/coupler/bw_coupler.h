@@ -193,7 +193,7 @@ typedef struct {
                                      became another */
   int iterations;           /* of the last step; 1: explicit */
   double residual;          /* with which it ended [-]; 0 when explicit */
-  int64_t unconverged;      /* steps so far that used up their iterations */
+  int64_t unconverged;      /* steps so far whose iterations did not reach coupling_residual */
   int64_t markers;          /* of all ranks */
   int64_t markers_outside;  /* of them, outside the box: they force nothing */
   int64_t probes_shortened; /* shortened or crowded by something in their way */

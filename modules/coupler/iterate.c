@@ -243,11 +243,16 @@ static double improve(bw_coupler *c)
   return fmax(sqrt(squared), 1e-300);
 }
 
+/* Tries without a smaller residual than before them, after which there will be none: what is left is
+ * rounding, and differences of rounding teach nothing but steps without bound. */
+enum { STALLED = 8 };
+
 bw_status bw_coupler__iterate(bw_coupler *c, double dt)
 {
   bw_coupler__iteration *t = &c->iteration;
   const bw_coupler__work work = c->work;
-  double norm = 0.0, step = 0.0;
+  double norm = 0.0, step = 0.0, least = INFINITY;
+  int best = 0; /* the try that had it */
   /* Every try begins here: fluid and solid at t, markers at the old surface. */
   bw_coupler__state_capture(c, &t->start);
   bw_solid_get_position(c->solid, t->X);
@@ -268,6 +273,8 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
     const double load = load_residual(c, norm, step);
     c->residual = fmax(c->residual, load * load);
     if (c->residual <= c->config.coupling_residual) break;
+    if (c->residual < least) least = c->residual, best = c->iterations;
+    if (c->iterations - best == STALLED) break;
     if (c->iterations == c->config.coupling_iterations) break;
     /* From the second try on there is a difference to learn from. */
     if (c->iterations > 1) learn(c);
@@ -275,7 +282,7 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt)
     /* Back to t for another try; the last one is not undone. */
     BW_TRY(bw_coupler__state_restore(c, &t->start));
   }
-  /* A step that used up its tries is counted, not refused: the report tells. */
+  /* A step that used up its tries, or came no nearer, is counted, not refused: the report tells. */
   c->unconverged += c->residual > c->config.coupling_residual;
   memcpy(c->V_before, t->answer, 3 * c->n * sizeof *c->V_before); /* what the fluid was told */
   return BW_OK;

@@ -18,6 +18,9 @@
 
 enum { GAUGES = BW_SOLID_FAILURE_GAUGES, MOST = 2000 }; /* products of one solve, at most */
 static const double RESIDUAL = 0.02; /* of g: the energy is right to its square */
+/* What touches the crack's plane or edge is cut, within what a principal direction is known to: of
+ * the flaw, well above rounding in the stress and well below a spacing. */
+static const double TOUCH = 4e6 * BW_REAL_EPSILON < 1e-3 ? 4e6 * BW_REAL_EPSILON : 1e-3;
 
 /* A crack to be tried. */
 typedef struct {
@@ -67,11 +70,11 @@ static bool meets(const trial *t, const crack *c, const double p[3], const doubl
     a[k] = p[k] - c->X0[k], b[k] = q[k] - c->X0[k];
   const double da = dot3(c->axis[0], a), db = dot3(c->axis[0], b);
   /* What lies on the crack counts as above it. */
-  const double touch = -1e-9 * t->flaw;
+  const double touch = -TOUCH * t->flaw;
   if ((da > touch) == (db > touch)) return false;
   for (int k = 0; k < 3; k++)
     x[k] = a[k] + da / (da - db) * (b[k] - a[k]);
-  const double half = 0.5 * t->flaw * (1 + 1e-9);
+  const double half = 0.5 * t->flaw * (1 + TOUCH);
   return fabs(dot3(c->axis[1], x)) <= half &&
          (t->pd->dimension == 2 || fabs(dot3(c->axis[2], x)) <= half);
 }

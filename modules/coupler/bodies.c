@@ -81,11 +81,11 @@ static bool is_beyond(const bw_coupler *c, size_t i, const double x[3], bool ope
 
 double bw_coupler__wetted(bw_coupler *c)
 {
-  size_t n = 0;
+  double wet = 0.0;
   bw_solid_get_position(c->solid, c->X);
   for (size_t i = 0; i < c->n; i++)
-    n += !is_beyond(c, i, c->X + 3 * i, false);
-  return (double)n * bw_solid_volume(c->solid);
+    if (!is_beyond(c, i, c->X + 3 * i, false)) wet += bw_solid_volume_of(c->solid, i);
+  return wet;
 }
 
 /* c->gone: particles beyond an outflow. Returns how many on all ranks. */
@@ -148,14 +148,15 @@ bw_status bw_coupler__let_go(bw_coupler *c)
 void bw_coupler__count_mass(bw_coupler *c, double mass[3])
 {
   const uint8_t *kind = bw_solid_kind(c->solid);
-  const double rho = bw_solid_settings(c->solid)->rho, of_one = rho * bw_solid_volume(c->solid);
+  const double of_one = bw_solid_settings(c->solid)->rho * bw_solid_volume(c->solid);
   double count[3] = {0};
   bw_solid_get_position(c->solid, c->X);
-  /* Counted by the density of the first group: with one group the three add up to all particles to
-   * the last bit. */
+  /* Counted by the first group's particles of level 0: with one kind of them the three add up to all
+   * particles to the last bit. */
   for (size_t i = 0; i < c->n; i++) {
     const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, i, c->X + 3 * i, false);
-    count[kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0] += bw_solid_density(c->solid, i) / rho;
+    const int where = kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0;
+    count[where] += bw_solid_density(c->solid, i) * bw_solid_volume_of(c->solid, i) / of_one;
   }
   bw_comm_sum(bw_solid_comm(c->solid), 3, count);
   for (int q = 0; q < 3; q++)

@@ -40,7 +40,6 @@ void bw_coupler__book_open(bw_coupler *c)
 void bw_coupler__book_motion(bw_coupler *c, double dt)
 {
   const bool iterated = c->config.coupling_iterations > 1;
-  const double volume = bw_solid_volume(c->solid);
   double *X = c->X, *V = c->accel; /* scratch */
   c->book.missed = c->book.received = 0.0;
   if (!c->config.check_book && !c->config.count_work) return;
@@ -51,7 +50,7 @@ void bw_coupler__book_motion(bw_coupler *c, double dt)
   const double *told = iterated ? V : c->V_before;
   const double share = iterated ? 1.0 - BW_COUPLER__THETA : 1.0;
   for (size_t i = 0; i < 3 * c->n; i++) {
-    const double F = volume * c->F[i], moved = X[i] - c->book.X[i];
+    const double F = bw_solid_volume_of(c->solid, i / 3) * c->F[i], moved = X[i] - c->book.X[i];
     c->book.missed += share * F * (told[i] * dt - moved);
     c->book.received += F * moved;
   }
@@ -60,11 +59,10 @@ void bw_coupler__book_motion(bw_coupler *c, double dt)
 /* What the step changed of each particle's velocity, against what the step before did. */
 static void add_motion(bw_coupler *c, double sum[])
 {
-  const double volume = bw_solid_volume(c->solid);
   double *V = c->X, *last = c->book.V, *change = c->book.change; /* scratch */
   bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < c->n; i++) {
-    const double mass = volume * bw_solid_density(c->solid, i);
+    const double mass = bw_solid_volume_of(c->solid, i) * bw_solid_density(c->solid, i);
     for (size_t q = 3 * i; q < 3 * i + 3; q++) {
       const double now = V[q] - last[q];
       sum[CHANGE] += mass * now * now;

@@ -96,7 +96,7 @@ static bw_status open_inside(bw_coupler *c)
   if (c->inside_fluid == NULL) return BW_OK;
   memset(rest, 0, 3 * c->n * sizeof *rest);
   for (size_t i = 0; i < c->n; i++)
-    volume[i] = bw_solid_volume(c->solid);
+    volume[i] = bw_solid_volume_of(c->solid, i);
   BW_TRY(bw_ibm_mdf_set_markers(c->inside_fluid, c->n, t->X, rest, volume, NULL));
   look_inside(c, t->inside);
   return BW_OK;
@@ -104,12 +104,12 @@ static bw_status open_inside(bw_coupler *c)
 
 void bw_coupler__free_inside(bw_coupler *c, double dt)
 {
-  const double mass = c->config.rho * bw_solid_volume(c->solid);
   double *U = c->traction; /* scratch: only probes use it */
   if (c->inside_fluid == NULL) return;
   look_inside(c, U);
   for (size_t i = 0; i < 3 * c->n; i++)
-    c->load[i] += mass / dt * (U[i] - c->iteration.inside[i]);
+    c->load[i] +=
+        c->config.rho * bw_solid_volume_of(c->solid, i / 3) / dt * (U[i] - c->iteration.inside[i]);
 }
 
 /* By how much the load would change, over its own norm, if the surface moved on by the residual:

@@ -332,11 +332,10 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
 /* Power of the load that the particles do not feel in this step, as they move at its beginning. */
 static double power_held_back(bw_coupler *c)
 {
-  const double volume = bw_solid_volume(c->solid);
   double *V = c->X, sum = 0.0; /* scratch */
   bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < 3 * c->n; i++)
-    sum += (c->load[i] - volume * c->F[i]) * V[i];
+    sum += (c->load[i] - bw_solid_volume_of(c->solid, i / 3) * c->F[i]) * V[i];
   return sum;
 }
 
@@ -367,9 +366,8 @@ void bw_coupler__carry_force(bw_coupler *c, bool marker)
  * F is booked. */
 void bw_coupler__relax_load(bw_coupler *c, double dt, double relaxation)
 {
-  const double w = relaxation, volume = bw_solid_volume(c->solid);
   for (size_t i = 0; i < 3 * c->n; i++)
-    c->F[i] += w * c->load[i] / volume;
+    c->F[i] += relaxation * c->load[i] / bw_solid_volume_of(c->solid, i / 3);
   /* c->V: how the surface moves, as the fluid was told. */
   c->book.load = 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)

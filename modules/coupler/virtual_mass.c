@@ -14,7 +14,7 @@ bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation)
   /* m_v/(dt V_h) per volume of a particle, towards the velocity that the fluid was told. */
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
-    k[q] = mass * c->area[q] / (dt * bw_solid_volume(c->solid));
+    k[q] = mass * c->area[q] / (dt * bw_solid_volume_of(c->solid, p));
     memcpy(V + 3 * q, c->V_before + 3 * p, 3 * sizeof *V);
   }
   return bw_solid_set_drag(c->solid, c->n_surface, c->particle, k, V);

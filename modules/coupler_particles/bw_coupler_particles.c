@@ -128,7 +128,6 @@ double bw_coupler_particles_dt_max(bw_coupler_particles *c)
 static void set_load(bw_coupler_particles *c, double dt)
 {
   const int64_t *id = bw_solid_id(c->solid);
-  const double volume = bw_solid_volume(c->solid);
   for (size_t i = 0; i < c->n; i++)
     for (size_t k = 0; k < 3; k++) {
       const size_t at = 3 * i + k;
@@ -137,7 +136,8 @@ static void set_load(bw_coupler_particles *c, double dt)
       c->owed[at] -= dt * c->load[at];
       c->load[at] += back / dt;
       c->kept[at] -= back;
-      c->density[at] = c->load[at] / volume + bw_solid_density(c->solid, i) * c->config.gravity[k];
+      c->density[at] = c->load[at] / bw_solid_volume_of(c->solid, i) +
+                       bw_solid_density(c->solid, i) * c->config.gravity[k];
     }
   bw_solid_set_force(c->solid, c->density);
 }
@@ -153,7 +153,7 @@ static bw_status resist(bw_coupler_particles *c, double dt)
   for (size_t i = 0; i < c->n && mass > 0; i++) {
     const double area = c->area[id[i]];
     if (area <= 0) continue;
-    c->k[n] = mass * area / (dt * bw_solid_volume(c->solid));
+    c->k[n] = mass * area / (dt * bw_solid_volume_of(c->solid, i));
     memcpy(towards + 3 * n, c->X + 3 * i, 3 * sizeof *towards);
     c->wet[n++] = (int32_t)i;
   }
@@ -180,7 +180,7 @@ static bw_status advance_solid(bw_coupler_particles *c, double dt)
     for (size_t k = 0; k < 3; k++) {
       const size_t at = 3 * i + k;
       const double moved = c->X[at] - c->x[3 * (size_t)id[i] + k];
-      const double taken = impulse[at] * bw_solid_volume(c->solid);
+      const double taken = impulse[at] * bw_solid_volume_of(c->solid, i);
       if (moves) c->received += c->load[at] * moved;
       c->impulse[k] += dt * c->load[at] + taken;
       c->kept[at] -= taken;

@@ -307,7 +307,7 @@ static void gather_load(bw_scene *s)
     for (size_t i = 0; i < p->n; i++) {
       const int q = s->rigid_of[bw_scene__body_of(p, i)];
       if (q < 0) continue;
-      const double mass = bw_solid_density(p->solid, i) * bw_solid_volume(p->solid);
+      const double mass = bw_solid_density(p->solid, i) * bw_solid_volume_of(p->solid, i);
       double X[3], r[3], f[3] = {0};
       bw_scene__rigid_place(s, q, &s->rigid_before[q], p->X0 + 3 * i, X);
       for (int d = 0; d < 3; d++)

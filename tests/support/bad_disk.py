@@ -112,6 +112,9 @@ def same_file(name, ranks, a, b):
         return a.stat().st_size == b.stat().st_size
     if ranks > 1 and a.name == "history.csv":
         return rounded(a, b)
+    if a.suffix == ".pvsm":  # it names its series by their full path
+        texts = [p.read_text().replace(str(p.parent.resolve()), "") for p in (a, b)]
+        return texts[0] == texts[1]
     return filecmp.cmp(a, b, shallow=False)
 
 

@@ -151,8 +151,8 @@ void bw_coupler__count_mass(bw_coupler *c, double mass[3])
   const double of_one = bw_solid_settings(c->solid)->rho * bw_solid_volume(c->solid);
   double count[3] = {0};
   bw_solid_get_position(c->solid, c->X);
-  /* Counted by the first group's particles of level 0: with one kind of them the three add up to all
-   * particles to the last bit. */
+  /* Counted by the first group's particles of level 0: with one kind of them the three add up to
+   * all particles to the last bit. */
   for (size_t i = 0; i < c->n; i++) {
     const bool out = !(kind[i] & BW_PD_PRESCRIBED) && is_beyond(c, i, c->X + 3 * i, false);
     const int where = kind[i] & BW_PD_RETIRED ? 2 : out ? 1 : 0;

@@ -243,8 +243,8 @@ static double improve(bw_coupler *c)
   return fmax(sqrt(squared), 1e-300);
 }
 
-/* Tries without a smaller residual than before them, after which there will be none: what is left is
- * rounding, and differences of rounding teach nothing but steps without bound. */
+/* Tries without a smaller residual than before them, after which there will be none: what is left
+ * is rounding, and differences of rounding teach nothing but steps without bound. */
 enum { STALLED = 8 };
 
 bw_status bw_coupler__iterate(bw_coupler *c, double dt)

@@ -108,6 +108,8 @@ def read_picture(path):
     found = {}
     for tag in re.findall(r"<DataArray [^>]*>", data[:start].decode()):
         key = dict(re.findall(r'(\w+)="([^"]*)"', tag))
+        if "offset" not in key:  # the time, written as text
+            continue
         at = base + int(key["offset"])
         bytes_ = struct.unpack_from("<Q", data, at)[0]
         array = numpy.frombuffer(data, TYPES[key["type"]], offset=at + 8,

@@ -238,6 +238,7 @@ double bw_pd_body_family_reach(const bw_pd_body_config *config);
 bw_status bw_pd_body_stencil(bw_pd_body *pd) BW_MUST_CHECK;
 /* Room for n directions of level l. BW_EMEM. Local. */
 bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n) BW_MUST_CHECK;
+void bw_pd_body_stencil_lengths(const bw_pd_body *pd, bw_pd_stencil *s); /* xi, r0 by offset */
 /* Gamma of a cell at an offset in its own spacings, of m of them. BW_EMEM, BW_EDIVERGED. Local. */
 bw_status bw_pd_body_fraction(const bw_pd_body *pd, double m, const double offset[3],
                               double *gamma) BW_MUST_CHECK;

@@ -125,6 +125,20 @@ bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n)
   return BW_OK;
 }
 
+void bw_pd_body_stencil_lengths(const bw_pd_body *pd, bw_pd_stencil *s)
+{
+  for (int q = 0; q < s->n; q++) {
+    const int32_t *o = s->offset + 3 * q;
+    double r2 = 0;
+    for (int d = 0; d < 3; d++) {
+      r2 += (double)o[d] * o[d];
+      for (int k = 0; k < 3; k++)
+        s->xi[3 * q + k] += s->unit * o[d] * pd->config.axes[d][k];
+    }
+    s->r0[q] = s->unit * sqrt(r2);
+  }
+}
+
 bw_status bw_pd_body_stencil(bw_pd_body *pd)
 {
   bw_pd_stencil *s = &pd->level->stencil;
@@ -136,17 +150,10 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
   /* Counted first; the offsets are written once there is room. */
   BW_TRY(bw_pd_body_stencil_room(pd, 0, list_offsets(pd, s)));
   list_offsets(pd, s);
-  /* From steps to vectors in space, along the lattice's axes; and back from an offset to its
-   * number. */
+  bw_pd_body_stencil_lengths(pd, s);
+  /* And back from an offset to its number. */
   for (int q = 0; q < s->n; q++) {
     const int32_t *o = s->offset + 3 * q;
-    double r2 = 0;
-    for (int d = 0; d < 3; d++) {
-      r2 += (double)o[d] * o[d];
-      for (int k = 0; k < 3; k++)
-        s->xi[3 * q + k] += c->ds * o[d] * c->axes[d][k];
-    }
-    s->r0[q] = c->ds * sqrt(r2);
     /* So near that both may be off their sites as they like: no distance has to be looked at. */
     s->sure[q] = in_reach(c, o, -2 * c->disorder);
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =

@@ -125,22 +125,6 @@ static bw_status list_level(bw_pd_body *pd, int l, int *n, int *same)
   return BW_OK;
 }
 
-/* From steps to vectors in space, along the lattice's axes. */
-static void lengths(const bw_pd_body *pd, bw_pd_stencil *s)
-{
-  for (int q = 0; q < s->n; q++) {
-    const int32_t *o = s->offset + 3 * q;
-    double r2 = 0;
-    for (int d = 0; d < 3; d++) {
-      r2 += (double)o[d] * o[d];
-      for (int k = 0; k < 3; k++)
-        s->xi[3 * q + k] += s->unit * o[d] * pd->config.axes[d][k];
-    }
-    s->r0[q] = s->unit * sqrt(r2);
-    s->sure[q] = true;
-  }
-}
-
 bw_status bw_pd_body_stencil_levels(bw_pd_body *pd)
 {
   const double unit = ldexp(pd->config.ds, -pd->finest - 1);
@@ -154,7 +138,10 @@ bw_status bw_pd_body_stencil_levels(bw_pd_body *pd)
     BW_TRY(bw_pd_body_stencil_room(pd, l, n));
     BW_TRY(list_level(pd, l, &n, &same));
     s->same = same;
-    lengths(pd, s);
+    bw_pd_body_stencil_lengths(pd, s);
+    /* No cloud has levels: who is family is sure. */
+    for (int q = 0; q < s->n; q++)
+      s->sure[q] = true;
     for (int q = 0; q < 3 * s->n; q++)
       s->reach = abs(s->offset[q]) > s->reach ? abs(s->offset[q]) : s->reach;
   }

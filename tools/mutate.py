@@ -5,8 +5,8 @@ usage: tools/mutate.py WORK TABLE COUNT [SEED]   draws mutants until TABLE (csv)
        tools/mutate.py WORK TABLE survivors      tries those again that no unit test noticed
 
 WORK is made: a clone of this repository's HEAD, built (release); the tree that you work in stays
-as it is. Every source of modules/ gives one place in turn, and the kinds of changes take turns, so
-that both are sampled evenly. A mutant that does not compile, or whose object is that of the
+as it is. The modules take turns, in each of them its sources, in each of those the kinds of changes,
+so that all three are sampled evenly. A mutant that does not compile, or whose object is that of the
 original to the byte, is put back and another one is drawn. The others meet the unit tests of their
 module on one rank, those first whose names are nearest; survivors then meet them on several, the
 module's quick validations, and the tests of whole runs."""
@@ -191,8 +191,8 @@ def sound(work):
 
 
 def draw(sources, rng):
-    """Sources in a random order, again and again, each with its places that were not drawn yet: the
-    kinds in turn, those of a kind in a random order."""
+    """Sources in a random order, again and again, one of each module in a round, each with its places
+    that were not drawn yet: the kinds in turn, those of a kind in a random order."""
     left = {}
     for p in sources:
         by_kind = {}
@@ -203,11 +203,14 @@ def draw(sources, rng):
         turns = [(q + rng.random(), place) for some in by_kind.values()
                  for q, place in enumerate(some)]
         left[p] = [place for _, place in sorted(turns, reverse=True)]
+    rounds = {}
+    for p in rng.sample(sources, len(sources)):
+        rounds.setdefault(p.parent.name, []).append(p)
     while any(left.values()):
-        order = [p for p in sources if left[p]]
-        rng.shuffle(order)
-        for p in order:
-            yield p, left[p]
+        for some in rng.sample(list(rounds.values()), len(rounds)):
+            some.append(some.pop(0))
+            if left[some[-1]]:
+                yield some[-1], left[some[-1]]
 
 
 def planted(path, place, text, judge):

@@ -81,6 +81,7 @@ static bw_status run_case(bending_run *p, const bw_comm *comm)
   BW_TRY(bending_checkpoint(p));
   if (stopped) return bw_case_unfinished(p->run, "checkpoint-last.h5");
   BW_TRY(bending_picture(p));
+  bw_coupler_warn_end(p->flow.coupler, bw_case_log(p->run));
   return bw_timer_report(bw_coupler_timer(p->flow.coupler), comm, bw_case_log(p->run));
 }
 

@@ -75,6 +75,7 @@ static bw_status end_phase(porous_run *p)
   if (phase == PHASE_FLOW) tell_drop(p);
   /* The state at the end, whatever the interval is; a row that is there is not repeated. */
   BW_TRY(porous_sample(p));
+  bw_coupler_warn_end(p->coupler, bw_case_log(p->run));
   /* The checkpoint before pictures and tables, which may fail: the phase is paid for. It belongs to
    * the beginning of the next phase; the last one to its own end, from which a longer run goes
    * on. */

@@ -212,6 +212,9 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHEC
  * r is the report of bw_coupler_measure. Not in the first hundred steps, in which every flow slips.
  * The same on all ranks. Local. */
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log);
+/* The same of the last report alone, whatever its step: for the end of a run or a phase, so that no
+ * result that leaks is left without a word. Local. */
+void bw_coupler_warn_end(bw_coupler *c, bw_log *log);
 
 /* One warning on `log` where probes load what they do not suit: a solid that nothing holds, which
  * then falls too fast, or a surface on which more than a third of them are shortened, crowded or

@@ -128,10 +128,11 @@ struct bw_coupler {
   int iterations;
   double residual;
   int64_t unconverged;
-  int64_t steps;  /* since create */
-  size_t handed;  /* markers that this rank has handed over */
-  int slip_above; /* reports in a row with much slip; -1: it was said */
-  bool load_told; /* bw_coupler_warn_load has looked */
+  int64_t steps;       /* since create */
+  size_t handed;       /* markers that this rank has handed over */
+  int slip_above;      /* reports in a row with much slip; -1: it was said */
+  double slip_last[2]; /* slip and leak of the last of them */
+  bool load_told;      /* bw_coupler_warn_load has looked */
 };
 
 /* Everything with a row per particle anew, after the set of particles changed. Collective. */

@@ -3,6 +3,7 @@
 #include "coupler_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static void count_probes(const bw_coupler *c, int64_t count[2])
 {
@@ -81,20 +82,38 @@ static double measure_leak(bw_coupler *c, double speed)
   return past > 0.0 ? sum[0] / past : 0.0;
 }
 
-void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
+enum { IN_A_ROW = 5, SETTLED = 100 }; /* a start is no news */
+
+static bool much_slip(const bw_coupler *c)
 {
-  enum { IN_A_ROW = 5, SETTLED = 100 }; /* a start is no news */
-  static const double MUCH = 0.02;      /* 2 % of slip cost some 2 % of the force in narrow gaps */
-  const bool much = r->slip > MUCH || r->leak > MUCH;
-  if (c->slip_above < 0 || c->steps < SETTLED) return;
-  c->slip_above = much ? c->slip_above + 1 : 0;
-  if (c->slip_above < IN_A_ROW) return;
+  static const double MUCH = 0.02; /* 2 % of slip cost some 2 % of the force in narrow gaps */
+  return c->slip_last[0] > MUCH || c->slip_last[1] > MUCH;
+}
+
+static void tell_slip(bw_coupler *c, bw_log *log)
+{
+  char start[64] = "";
+  if (c->steps < SETTLED)
+    snprintf(start, sizeof start, "run longer (%lld steps are a start), ", (long long)c->steps);
   c->slip_above = -1;
   bw_log_warn(log,
               "slip at the markers is %.1f %% of the flow, %.1f %% of it passes through the "
-              "surface: forces come out too low; take smaller steps, give the forcing its memory "
+              "surface: forces come out too low; %stake smaller steps, give the forcing its memory "
               "(coupling.memory: 0.2), or, without it, more iterations",
-              100.0 * r->slip, 100.0 * r->leak);
+              100.0 * c->slip_last[0], 100.0 * c->slip_last[1], start);
+}
+
+void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
+{
+  c->slip_last[0] = r->slip, c->slip_last[1] = r->leak;
+  if (c->slip_above < 0 || c->steps < SETTLED) return;
+  c->slip_above = much_slip(c) ? c->slip_above + 1 : 0;
+  if (c->slip_above == IN_A_ROW) tell_slip(c, log);
+}
+
+void bw_coupler_warn_end(bw_coupler *c, bw_log *log)
+{
+  if (c->slip_above >= 0 && much_slip(c)) tell_slip(c, log);
 }
 
 void bw_coupler_warn_load(bw_coupler *c, const bw_coupler_report *r, bw_log *log)

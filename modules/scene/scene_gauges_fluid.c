@@ -85,6 +85,16 @@ static void point_value(bw_scene *s, const bw_scene_gauge_config *g, bool pressu
     value[k] -= other[k];
 }
 
+bw_status bw_scene__warn_leak(bw_scene *s)
+{
+  bw_coupler_report r;
+  if (s->coupler == NULL) return BW_OK;
+  BW_TRY(bw_coupler_measure(s->coupler, &r));
+  bw_coupler_warn_slip(s->coupler, &r, s->log);
+  bw_coupler_warn_end(s->coupler, s->log);
+  return BW_OK;
+}
+
 /* Forces of the coupler, on all that is in the flow. Collective. */
 static bw_status coupled_force(bw_scene *s, double value[BW_SCENE__COMPONENTS])
 {

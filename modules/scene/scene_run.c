@@ -238,6 +238,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
   BW_TRY(checkpoint(r));
   if (r->stopped) return bw_case_unfinished(r->run, "checkpoint-last.h5");
   BW_TRY(bw_scene_picture(s, r->run));
+  BW_TRY(bw_scene__warn_leak(s));
   return bw_scene__watch_report(s, r->run, log);
 }
 

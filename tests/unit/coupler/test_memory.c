@@ -193,9 +193,42 @@ START_TEST(much_slip_is_said_once)
 }
 END_TEST
 
+/* At the end of a short run, too, of the last report; a run that ends well says nothing. */
+START_TEST(much_slip_at_the_end_is_said)
+{
+  const bw_coupler_report reports[] = {{.slip = 0.01, .leak = 0.01}, {.slip = 0.01, .leak = 0.07}};
+  for (int q = 0; q < 2; q++) {
+    scene s = build(0.3, 1.0);
+    char text[512] = "";
+    bw_log_config config = bw_log_config_default();
+    config.err = tmpfile();
+    ck_assert_ptr_nonnull(config.err);
+    bw_log *log = NULL;
+    bw_check_ok(bw_log_create(bw_check_world(), &config, &log));
+    s.coupler->steps = 7;
+    bw_coupler_warn_slip(s.coupler, &reports[q], log);
+    ck_assert_int_eq(ftell(config.err), 0);
+    bw_coupler_warn_end(s.coupler, log);
+    const long said = ftell(config.err);
+    bw_coupler_warn_end(s.coupler, log);
+    ck_assert_int_eq(ftell(config.err), said);
+    ck_assert((said > 0) == (q == 1 && bw_comm_rank(bw_check_world()) == 0));
+    rewind(config.err);
+    if (said > 0) {
+      ck_assert_ptr_nonnull(fgets(text, sizeof text, config.err));
+      ck_assert_ptr_nonnull(strstr(text, "7.0 % of it passes"));
+      ck_assert_ptr_nonnull(strstr(text, "run longer (7 steps are a start)"));
+    }
+    bw_log_destroy(&log);
+    fclose(config.err);
+    destroy(&s);
+  }
+}
+END_TEST
+
 static const bw_check_test tests[] = {
     BW_TEST(it_is_kept_per_particle),        BW_TEST(blocks_share_it),
     BW_TEST(tries_of_a_step_leave_it_alone), BW_TEST(a_held_solid_has_one_too),
     BW_TEST(broken_particles_have_none),     BW_TEST(slip_and_leak_are_told),
-    BW_TEST(much_slip_is_said_once)};
+    BW_TEST(much_slip_is_said_once),         BW_TEST(much_slip_at_the_end_is_said)};
 BW_CHECK_MAIN("coupler.memory", tests)

@@ -2,6 +2,7 @@
 #include "box_case.h"
 #include "bw_checkpoint.h"
 #include "bw_memory.h"
+#include "bw_number.h"
 #include "bw_vtk.h"
 
 #include <math.h>
@@ -39,6 +40,38 @@ static double first_step(const box_config *c, const bw_grid_view *g, double at_r
   return 1.0 / sqrt(1.0 / (at_rest * at_rest) + rate * rate / (convective * convective));
 }
 
+/* The fastest that sides and start name. */
+static double fastest(const box_config *c)
+{
+  const box_pair *pair[3] = {&c->sides.x, &c->sides.y, &c->sides.z};
+  double most = hypot(hypot(c->start.velocity[0], c->start.velocity[1]), c->start.velocity[2]);
+  for (int d = 0; d < 6; d++) {
+    const box_side *q = d % 2 == 0 ? &pair[d / 2]->lower : &pair[d / 2]->upper;
+    most = fmax(most, hypot(hypot(q->velocity[0], q->velocity[1]), q->velocity[2]));
+    most = fmax(most, isnan(q->bulk_velocity) ? 0.0 : fabs(q->bulk_velocity));
+  }
+  for (int q = 0; q < c->start.n_vortices; q++)
+    most = fmax(most, fabs(c->start.vortices[q].swirl));
+  return most;
+}
+
+/* Numbers that cannot be meant, by what they lead to. */
+static bw_status check_sizes(const box_config *c, const bw_grid_view *g, double dt, double steps)
+{
+  static const double most = 1e12;
+  BW_REQUIRE(steps <= (double)BW_MOST_STEPS, BW_EINPUT,
+             "time.end = %g takes %.3g steps of %.3g, more than the %g that anybody can wait for: "
+             "a speed of sides, forcing or start, or fluid.viscosity, is too large for the cells",
+             c->time.end, steps, dt, (double)BW_MOST_STEPS);
+  const double speed = fastest(c), cell = speed * g->spacing[1] / c->fluid.viscosity;
+  BW_REQUIRE(
+      cell <= most, BW_EINPUT,
+      "fluid.viscosity = %g: with the speed %g that the file names, the cell Reynolds number "
+      "is %.3g; at most %g, beyond which rounding hides the viscosity; check its unit",
+      c->fluid.viscosity, speed, cell, most);
+  return BW_OK;
+}
+
 bw_status box_describe(const box_run *b, const bw_grid *plan, const bw_ns_channel_config *fluid)
 {
   bw_log *log = bw_case_log(b->run);
@@ -57,6 +90,7 @@ bw_status box_describe(const box_run *b, const bw_grid *plan, const bw_ns_channe
   const double every = b->config->output.sample_every;
   const double each = fmax(1.0, ceil(every / longest * (1.0 - 1e-12))), dt = every / each;
   const double steps = each * (double)box_intervals(b->config);
+  BW_TRY(check_sizes(b->config, g, dt, steps));
   const double cells = (double)g->n[0] * g->n[1] * g->n[2];
   const int ranks = bw_comm_size(bw_grid_comm(plan));
   bw_log_info(log, "%d x %d x %d cells of %g x %g x %g, %s", g->n[0], g->n[1], g->n[2],

@@ -23,7 +23,7 @@ static const bw_config_word eddy_words[] = {
     {"wale", BW_EDDY_WALE, "WALE, C = 0.325, for cells too coarse for the eddies"},
     {0}};
 static const bw_config_field fluid_fields[] = {
-    V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE(0), "",
+    V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE_TO(0, 1e9), "",
       "Reynolds number Re_b = U_b h/nu on the full height"),
     V(channel_fluid, perturbation, BW_OPTIONAL, BW_FROM_TO(0, 1), "U_b",
       "size of the rolls, waves and noise on the laminar profile at the start"),

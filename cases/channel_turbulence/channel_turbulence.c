@@ -79,6 +79,18 @@ static bw_status check_times(const channel_case *c)
   return BW_OK;
 }
 
+/* Of the bulk flow: turbulence takes more. */
+static bw_status check_steps(const channel_case *c, double dt)
+{
+  const double total = c->time.spin_up + c->time.statistics;
+  BW_REQUIRE(total / dt <= (double)BW_MOST_STEPS, BW_EINPUT,
+             "time.spin_up + time.statistics = %g takes %.3g steps of %.3g, more than the %g that "
+             "anybody can wait for: fluid.reynolds = %g is too small for an explicit viscous term, "
+             "or the cells are too many",
+             total, total / dt, dt, (double)BW_MOST_STEPS, c->fluid.reynolds);
+  return BW_OK;
+}
+
 /* What will run, and whether it can; no memory for fields. */
 static bw_status describe(const bw_comm *comm, const channel_config *config, const channel_case *c,
                           const bw_case *run)
@@ -88,6 +100,7 @@ static bw_status describe(const bw_comm *comm, const channel_config *config, con
   bw_ns_plan known;
   bw_status st = channel_grid(comm, config, bw_grid_plan, &plan);
   BW_THEN(st, bw_ns_channel_plan(plan, &fluid, &known));
+  BW_THEN(st, check_steps(c, known.dt_max));
   if (st == BW_OK) channel_describe(plan, &known, c, bw_case_log(run));
   bw_grid_destroy(&plan);
   return st;

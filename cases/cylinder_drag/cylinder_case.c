@@ -11,7 +11,8 @@ static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, "three 
                                               {"hat2", BW_KERNEL_HAT2, "two nodes"},
                                               {NULL, 0, NULL}};
 static const bw_config_field cylinder_fields[] = {
-    V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE(0), "-", "Reynolds number Re_d = U_b d/nu"),
+    V(cylinder_config, reynolds, BW_REQUIRED, BW_ABOVE_TO(0, 1e6), "-",
+      "Reynolds number Re_d = U_b d/nu"),
     V(cylinder_config, blockage, BW_OPTIONAL, BW_FROM_TO(0.02, 0.8), "-",
       "diameter over the channel's height"),
     V(cylinder_config, upstream, BW_OPTIONAL, BW_FROM_TO(1.5, 1000), "d",
@@ -36,7 +37,7 @@ static const bw_config_field cylinder_fields[] = {
       "time step over the largest stable one of the flow as it is"),
     BW_CONFIG_END};
 static const bw_config_field until_fields[] = {
-    V(cylinder_until, steady, BW_OPTIONAL, BW_ABOVE(0), "1/(d/U_b)",
+    V(cylinder_until, steady, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "1/(d/U_b)",
       "relative change of the drag per unit of time below which the run ends"),
     V(cylinder_until, latest, BW_OPTIONAL, BW_ABOVE(0), "d/U_b",
       "time at which the run ends at the latest"),

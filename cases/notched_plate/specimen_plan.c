@@ -213,6 +213,38 @@ static bw_status check_loads(const specimen *p)
   return BW_OK;
 }
 
+/* Numbers that cannot be meant: strains of more than tenfold, speeds far above that of sound, loads
+ * that never rise, rows that the plate does not have, a time in which no sound is heard. */
+static bw_status check_sizes(const specimen *p)
+{
+  static const double most = 10.0, longest = 1e6, least = 1e-6;
+  const specimen_config *c = &p->config;
+  const double sound = sqrt(c->solid.young_modulus / c->solid.density);
+  for (int q = 0; q < c->n_loads; q++) {
+    const specimen_load *load = &c->loads[q];
+    const bool traction = load->kind == SPECIMEN_TRACTION;
+    const double size = hypot(load->value[0], load->value[1]);
+    const double whole = traction ? c->solid.young_modulus : sound;
+    BW_REQUIRE(size / whole <= most, BW_EINPUT,
+               "loads.%d.value: %g is %.3g times %s, %g; at most %g times; check its unit", q, size,
+               size / whole, traction ? "solid.young_modulus" : "the speed of sound", whole, most);
+    BW_REQUIRE(load->rise <= longest * c->time.end, BW_EINPUT,
+               "loads.%d.rise = %g is %.3g times time.end = %g: nothing would be loaded", q,
+               load->rise, load->rise / c->time.end, c->time.end);
+    const double across = load->edge == SPECIMEN_LEFT || load->edge == SPECIMEN_RIGHT
+                              ? c->shape.length
+                              : c->shape.height;
+    BW_REQUIRE(load->rows <= across / p->ds, BW_EINPUT,
+               "loads.%d.rows = %d: the plate has %.0f there", q, load->rows, across / p->ds);
+  }
+  BW_REQUIRE(
+      sound * c->time.end / p->ds >= least, BW_EINPUT,
+      "time.end = %g: sound, of %g m/s by solid.young_modulus and solid.density, passes %.3g "
+      "of a particle until then, which rounding hides; at least %g",
+      c->time.end, sound, sound * c->time.end / p->ds, least);
+  return BW_OK;
+}
+
 bw_status specimen_begin(const bw_comm *comm, const specimen_config *config, specimen *p)
 {
   memset(p, 0, sizeof *p);
@@ -223,7 +255,8 @@ bw_status specimen_begin(const bw_comm *comm, const specimen_config *config, spe
   p->ds = config->shape.length / config->shape.particles;
   BW_TRY(check_holes(p));
   BW_TRY(check_notches(p));
-  return check_loads(p);
+  BW_TRY(check_loads(p));
+  return check_sizes(p);
 }
 
 /* Particles in all, but for notches and the edges of holes. */

@@ -132,7 +132,7 @@ static const bw_config_field phase_fields[] = {
     V(porous_phase, time_step, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "s",
       "time step of the fluid; the solid sub-cycles"),
     V(porous_phase, steps, BW_REQUIRED | BW_MAY_CHANGE, BW_AT_LEAST(0), "", "steps at most"),
-    V(porous_phase, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(0), "",
+    V(porous_phase, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_FROM_TO(0, 1), "",
       "relative change of the pressure drop per h/U_b below which the phase ends early; 0: never"),
     V(porous_phase, settling_rate, BW_OPTIONAL, BW_AT_LEAST(0), "1/s",
       "absolute damping of the solid over its density"),

@@ -130,10 +130,19 @@ static void bound_step(const porous_run *small, const porous_config *q, porous_e
 }
 
 /* A step that the stream alone does not bear is not begun with. */
-static bw_status check_steps(const porous_run *p, const porous_run *small, const porous_estimate *e)
+static bw_status check_steps(const porous_run *p, porous_run *small, const porous_estimate *e)
 {
+  static const double most = 1e6; /* rates of damping per step that stiffness bears */
+  const double stable = bw_solid_dt_max(small->solid);
   for (int k = 0; k < PHASE_COUNT; k++) {
     const porous_phase *f = porous_phase_of(p->config, k);
+    BW_REQUIRE(f->settling_rate * stable <= most, BW_EINPUT,
+               "%s.settling_rate = %g 1/s is %.3g per stable step of the solid, %g s: at most %g, "
+               "beyond which nothing moves; take less",
+               porous_phase_name[k], f->settling_rate, f->settling_rate * stable, stable, most);
+    /* Damping of the phase shortens its sub-steps. */
+    small->phase = k;
+    porous_enter_phase(small);
     if (k != PHASE_FLOW) BW_TRY(bw_coupler_check_substeps(small->coupler, f->time_step));
     BW_REQUIRE(f->steps == 0 || f->time_step <= e->fluid_max * (1.0 + 1e-12), BW_EINPUT,
                "%s.time_step = %g s is over the fluid's limit: the stream of fluid.bulk_velocity = "
@@ -141,6 +150,8 @@ static bw_status check_steps(const porous_run *p, const porous_run *small, const
                porous_phase_name[k], f->time_step, p->config->fluid.bulk_velocity, e->porosity,
                e->fluid_max);
   }
+  small->phase = PHASE_FLOW;
+  porous_enter_phase(small);
   return BW_OK;
 }
 

@@ -24,6 +24,18 @@ bw_coupler_config bw_coupler_config_default(void)
                              .check_book = true};
 }
 
+/* Of solids in fluids, in reason: foam in mercury, osmium in a thin gas. */
+static bw_status check_density(double rho, double solid)
+{
+  static const double least = 1e-6, most = 1e9;
+  BW_REQUIRE(
+      solid / rho >= least && solid / rho <= most, BW_EINPUT,
+      "coupler: the solid's density is %g, %.3g times that of the fluid, %g: from %g to %g "
+      "times is possible, beyond which rounding hides what one does to the other; check units",
+      solid, solid / rho, rho, least, most);
+  return BW_OK;
+}
+
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
 {
   /* Required values start as NaN, which fails every comparison. */
@@ -232,6 +244,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   bw_coupler *c = NULL;
   *out = NULL;
   BW_TRY(check_config(config, g));
+  BW_TRY(check_density(config->rho, bw_solid_settings(solid)->rho));
   bw_status st = BW_ALLOCATE(&c, 1);
   st = bw_comm_agree(bw_grid_comm(grid), st);
   if (st != BW_OK) return st;

@@ -41,7 +41,7 @@ const bw_config_field bw_coupler_fields[] = {
       "motions faster than the step from being fed; 0: none"),
     V(OURS, coupling_iterations, BW_OPTIONAL | BW_MAY_CHANGE, BW_FROM_TO(1, 1000), "",
       "repetitions of a step at most; 1: explicit coupling"),
-    V(OURS, coupling_residual, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "",
+    V(OURS, coupling_residual, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "relative change of the surface's velocity that ends the repetitions"),
     V(OURS, solid_safety, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "solid sub-step over its stability limit"),

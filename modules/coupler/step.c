@@ -28,6 +28,15 @@ bw_status bw_coupler_check_substeps(const bw_coupler *c, double dt)
       "a step of %g takes %.3g solid sub-steps of %.3g (solid_safety %g), more than %d: take a "
       "shorter step, a softer or heavier solid, or larger particles",
       dt, n, dt / n, c->config.solid_safety, BW_COUPLER_MOST_SUBSTEPS);
+  /* Written so that what nobody computes alone is met. */
+  static const double most = 1e3;
+  const double *g = c->config.gravity, h = bw_grid_look(bw_ns_channel_grid(c->fluid))->spacing[0];
+  const double fall = hypot(hypot(g[0], g[1]), g[2]) * dt * dt / h;
+  BW_REQUIRE(
+      fall <= most, BW_EINPUT,
+      "coupling.gravity: by [%g, %g, %g] a body falls %.3g cells in a step of %g, at most %g; "
+      "check its unit",
+      g[0], g[1], g[2], fall, dt, most);
   return BW_OK;
 }
 

@@ -33,7 +33,7 @@ static const bw_config_field domain_fields[] = {
 static const bw_config_field contact_fields[] = {
     V(bw_scene_contact, between, BW_OPTIONAL, BW_TEXTS, "",
       "all: any two bodies that move; none: they pass through each other"),
-    V(bw_scene_contact, friction, BW_OPTIONAL, BW_AT_LEAST(0), "", "coefficient of friction"),
+    V(bw_scene_contact, friction, BW_OPTIONAL, BW_FROM_TO(0, 10), "", "coefficient of friction"),
     BW_CONFIG_END};
 
 const bw_config_field bw_scene__output_fields[] = {
@@ -93,7 +93,7 @@ const bw_config_field bw_scene__numerics_fields[] = {
       "pressure per depth between rigid bodies and at walls; left out: so that weight and "
       "velocities "
       "press them half a spacing in"),
-    V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE(0), "",
+    V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "change of the surface's velocity that ends iterations"),
     V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",
       "repetitions of a step at most; 1: explicit"),

@@ -6,7 +6,7 @@ static const bw_config_field until_fields[] = {
     V(bw_scene_until, time, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "T",
       "time of the run at which it ends"),
     V(bw_scene_until, steps, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "", "steps of the phase"),
-    V(bw_scene_until, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE(0), "",
+    V(bw_scene_until, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "solids: kinetic over elastic energy; fluid: relative change of its kinetic energy per "
       "sample; ends below it"),
     BW_CONFIG_END};

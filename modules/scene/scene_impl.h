@@ -215,7 +215,12 @@ bw_status bw_scene__coupled_create(bw_scene *s) BW_MUST_CHECK;
 
 /* scene_step.c */
 bw_status bw_scene__phase_begin(bw_scene *s) BW_MUST_CHECK;
-double bw_scene__limit(bw_scene *s);             /* longest step now, with its share [T] */
+double bw_scene__limit(bw_scene *s); /* longest step now, with its share [T] */
+/* Warns where the state at the end slips or leaks, gauge or not. Collective. */
+bw_status bw_scene__warn_leak(bw_scene *s) BW_MUST_CHECK;
+/* Refuses what no key can tell by itself: steps without end, loads, speeds, damping and viscosity
+ * that are out of all proportion. Called when all is made, or planned. Collective. */
+bw_status bw_scene__check_sizes(bw_scene *s) BW_MUST_CHECK;
 double bw_scene__solid_limit(const bw_scene *s); /* of solids and rigid bodies, whole [T] */
 double bw_scene__end(const bw_scene *s);         /* of the scene [T]; NaN: not known */
 

@@ -295,6 +295,17 @@ static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
   return bw_comm_agree(s->comm, st);
 }
 
+/* What the solid refuses in its own words, with the names that the file has for it. */
+static bw_status named(const bw_scene *s, const bw_scene__solid *q, bw_status st)
+{
+  char words[1024];
+  const bw_scene_body *b = &s->config.bodies[model_of(s, q)];
+  if (st != BW_EINPUT) return st;
+  snprintf(words, sizeof words, "%s", bw_last_message());
+  return BW_FAIL(st, "bodies.%s, materials.%s: %s", b->name,
+                 b->material[0] != '\0' ? b->material : "(none)", words);
+}
+
 /* How many particles, and what its material is like. */
 static bw_status plan_solid(bw_scene *s, bw_scene__solid *q)
 {
@@ -307,7 +318,7 @@ static bw_status plan_solid(bw_scene *s, bw_scene__solid *q)
   bw_status st = bw_comm_agree(s->comm, bw_scene__sites_groups(s, q));
   BW_THEN(st, materials_of(s, q, &c));
   BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
-  BW_THEN(st, bw_solid_try(s->comm, &c, &q->sample));
+  BW_THEN(st, named(s, q, bw_solid_try(s->comm, &c, &q->sample)));
   return st;
 }
 
@@ -324,9 +335,8 @@ static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
   BW_THEN(st, materials_of(s, q, &c));
   BW_THEN(st, levels_of(s, q, &c));
   BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
-  BW_THEN(st,
-          bw_solid_create(s->comm, &c, &(bw_pd_sites){sites.n, sites.site, sites.kind, sites.group},
-                          &q->solid));
+  const bw_pd_sites given = {sites.n, sites.site, sites.kind, sites.group};
+  BW_THEN(st, named(s, q, bw_solid_create(s->comm, &c, &given, &q->solid)));
   bw_scene__sites_release(&sites);
   BW_TRY(st);
   q->n = bw_solid_count(q->solid);

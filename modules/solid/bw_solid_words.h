@@ -31,7 +31,7 @@ extern const bw_config_word bw_solid_cone_words[];       /* bw_pd_material_cone 
       BW_SOLID_LAW_WORD_(T, weight, bw_solid_weight_words,                                         \
                          "law correspondence: how much a neighbour at a distance counts"),         \
       BW_SOLID_LAW_WORD_(T, elastic, bw_solid_elastic_words, "law correspondence: its energy"),    \
-      BW_SOLID_LAW_VALUE_(T, stabilisation, BW_AT_LEAST(0), "",                                    \
+      BW_SOLID_LAW_VALUE_(T, stabilisation, BW_FROM_TO(0, 100), "",                                \
                           "law correspondence: stiffness against modes without energy, over mu"),  \
       BW_SOLID_LAW_WORD_(T, breaks, bw_solid_breaks_words,                                         \
                          "law correspondence: what breaks a bond"),                                \

@@ -41,8 +41,16 @@ with too_soft "0.0001 of the stream's dynamic pressure" --set solid.young_modulu
 with too_stiff "which rounding hides" --check --set solid.young_modulus=1e17 \
   --set solid.density=1e18 --set flow.time_step=1e-3 --set deformation.time_step=1e-3
 with stiffer "1.13e.12 solid sub-steps of .*more than 1000000" --check --set solid.young_modulus=1e30
+with long_memory "coupling.memory = 0.6: must be >= 0 and <= 0.5" --set coupling.memory=0.6
+with retraction "coupling.retraction = 2.5: must be >= -2 and <= 2" --set coupling.retraction=2.5
 with unsafe "solid sub-steps of .*solid_safety 1e-09.*more than 1000000" --check \
   --set coupling.solid_safety=1e-9
+with settling "deformation.settling_rate = 1e\\+45 1/s is .*beyond which nothing moves" --check \
+  --set deformation.settling_rate=1e45
+with settled "flow.settled = 2: must be >= 0 and <= 1" --set flow.settled=2
+with gravity "coupling.gravity: by .* falls .* cells in a step" --check \
+  --set "coupling.gravity=[0, 1e45, 0]"
+with density "density is 1e\\+45, 1e\\+42 times that of the fluid" --check --set solid.density=1e45
 with no_restart "absent.h5" --restart "$out/absent.h5"
 refused too_many_ranks "ranks" mpirun -n 8 "$program" "$case" --out "$out/ranks" --quiet \
   --set "domain.cells=[8, 4, 4]" --set medium.length=0.025 --set medium.pitch=0.1

@@ -97,7 +97,15 @@ with endless "1e\\+30 times time.step.*more than the 1e\\+12 that anybody can wa
 with tiny_interval "more than the 1e\\+12" "$cavity" --set output.sample_every=1e-40
 with too_many_cells "domain.cells.0 = 3000000000: too large; in size at most 2147483647" "$cavity" \
   --set "domain.cells=[3000000000, 16, 1]"
-with far_too_fast "velocities are too large for the cells" "$cavity" \
+with flat_cells "times as long in x as in y .*take more cells in x" "$cavity" --check \
+  --set "domain.length=[1e9, 1, 1]"
+with thick "time.end = 60 takes .* steps .*fluid.viscosity, is too large" "$cavity" --check \
+  --set fluid.viscosity=1e45
+with thin "cell Reynolds number is .*rounding hides the viscosity" "$cavity" --check \
+  --set fluid.viscosity=1e-45
+with fast_start "a speed of sides, forcing or start" "$cavity" --check \
+  --set "start.velocity=[1e45, 0, 0]"
+with far_too_fast "a speed of sides.* is too large for the cells" "$cavity" \
   --set "domain.cells=[16, 16, 1]" --set time.end=2 --set "sides.y.upper.velocity=[1e22, 0, 0]"
 with long_path "has [0-9]+ bytes, 186 at most" "$cavity" --out "$out/$(printf 'a%.0s' $(seq 230))"
 

@@ -33,6 +33,15 @@ with load "loads.0: from 80 to 100 loads no particle of its edge, 0 to 0.1 m" \
   --set "loads=[{edge: top, kind: traction, value: [0, 12e6], from: 80, to: 100}]"
 with backwards "loads.0.from = 0.08 has to be below loads.0.to = 0.02" \
   --set "loads=[{edge: top, kind: traction, value: [0, 12e6], from: 0.08, to: 0.02}]"
+with pulled "loads.0.value: 1e\\+45 is .* times solid.young_modulus" \
+  --set "loads=[{edge: top, kind: traction, value: [0, 1e45]}]"
+with thrown "loads.0.value: 1e\\+09 is .* times the speed of sound" \
+  --set "loads=[{edge: top, kind: velocity, value: [0, 1e9]}]"
+with never "loads.0.rise = 1e\\+45 .*nothing would be loaded" \
+  --set "loads=[{edge: top, kind: traction, value: [0, 12e6], rise: 1e45}]"
+with rows "loads.0.rows = 1000: the plate has" \
+  --set "loads=[{edge: top, kind: traction, value: [0, 12e6], rows: 1000}]"
+with inert "time.end = .*passes .* of a particle until then" --set solid.density=1e45
 with crack "follow.from.0. = 50 is outside the plate" --set "follow.from=[50, 20]"
 with step "time.step = 1e-06 s is over the limit of the material" --set time.step=1e-6
 

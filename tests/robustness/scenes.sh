@@ -61,9 +61,17 @@ refused $beam gauges.tip.of=pressure "the scene has no fluid"
 refused $beam "phases=[{until: {}}]" "phases.0.until: it ends never"
 refused $beam contact.friction=0.3 "contact.friction = 0.3: not in this build"
 refused $beam "bodies.beam.held={by: wall}" "there is no such body that is fixed"
+refused $beam numerics.memory=0.6 "numerics.memory = 0.6: must be >= 0 and <= 0.5"
 refused $beam "watch.top={mean: time}" "watch.top: there is no gauge top"
 refused kalthoff_winkler "bodies.plate.cracks=[{from: [1, 1], to: [2, 1]}]" "it is outside the body"
 refused impact_on_plate "bodies.ball.shape={sphere: {centre: [0.05, 0.012], radius: 0.006}}" "overlap"
+refused $beam materials.polymer.poisson_ratio=0.4 "bodies.beam, materials.polymer: "
+refused $beam phases.0.damp=1e45 "phases.0.damp = 1e+45 over materials.polymer.density is the rate"
+refused $beam loads.0.value=1e45 "loads.0.value: 1e+45 moves particles of beam by"
+refused $beam gravity="[1e45, 0]" "gravity: by 1e+45, beam falls"
+refused $beam bodies.beam.velocity="[1e45, 0]" "bodies.beam.velocity: 1e+45 is"
+refused $flow fluid.viscosity=1e45 "phases.0.until.time = 20 takes"
+refused $flow fluid.viscosity=1e-45 "the cell Reynolds number is 1e+44"
 refused $flow fluid.model=particles "fluid.model = particles: not in this build"
 refused $flow "domain.cells=[120, 61, 1]" "cells are cubes"
 refused $flow fluid.sides.x.lower.mean=-1 "nothing comes in through this inflow"
@@ -77,6 +85,30 @@ refused $flow "numerics.step=1" "the fluid and its sides at the start bear at mo
   complain "a narrow opening: $(tail -1 "$out/log")"
 grep -q "upper wall in y is a gap of about 1.0 cells" "$out/log" || complain "no word of a narrow gap"
 [ ! -e "$out/refused/history.csv" ] || complain "a refused scene has written"
+
+# ---- what is watched, and a slice, once more from the rows that were written ---------------------
+sed -e "s/^gauges:/&\\n  cut: {slice: {axis: z, at: 0}, of: velocity, every: 1}/" \
+  "$source/scenes/$flow/$flow.yaml" >"$out/watched.yaml"
+"$build/bin/breakwater" "$out/watched.yaml" --quiet --out "$out/watched" \
+  --set domain.cells="[60, 30, 1]" --set domain.length="[8, 4, 0.133333333333333]" \
+  --set phases.0.until.time=1 --set output.sample_every=0.1 \
+  --set watch.0.from=0.25 --set watch.1.from=0.25 \
+  >"$out/log" 2>&1 || complain "watched: $(tail -1 "$out/log")"
+[ "$(cat "$out"/watched/cut-*.csv | wc -l)" -eq 1801 ] || complain "a slice is not 60 x 30 cells"
+/usr/bin/python3 - "$out/watched" <<'END' || bad=1
+import csv, sys
+rows = [row for row in csv.DictReader(open(sys.argv[1] + "/history.csv"))]
+def series(name):
+    key = next(k for k in rows[0] if k.split("[")[0] == name)
+    return [(float(r["time[T]"]), float(r[key])) for r in rows if float(r["time[T]"]) >= 0.25]
+said = {r["gauge"]: float(r["mean"]) for r in csv.DictReader(open(sys.argv[1] + "/watch.csv"))}
+x = [v for _, v in series("drag.box.x")]
+y = series("dp")
+area = sum((b[0] - a[0]) * (a[1] + b[1]) / 2 for a, b in zip(y, y[1:]))
+for name, right in (("drag.box.x", (max(x) + min(x)) / 2), ("dp", area / (y[-1][0] - y[0][0]))):
+    if abs(said[name] - right) > 1e-7 * abs(right):
+        raise SystemExit(f"watch.{name}: mean {said[name]} for {right}")
+END
 
 # ---- help and schema ----------------------------------------------------------------------------
 "$build/bin/breakwater" --help bodies.N.motion | grep -q breakable || complain "--help KEY"
@@ -99,7 +131,8 @@ for path in sys.argv[2:]:
     except jsonschema.ValidationError as error:
         raise SystemExit(f"the schema refuses {path}: {error.json_path}: {error.message}")
     for change in ({"spaceing": 1}, {"accuracy": "best"}, {"bodies": {"a": {"motion": "flies"}}},
-                   {"phases": {"until": {"steps": 0}}}, {"output": {"sample_every": -1}}):
+                   {"phases": {"until": {"steps": 0}}}, {"output": {"sample_every": -1}},
+                   {"gravity": [0, 0, 0, 1]}):
         try:
             jsonschema.validate({**scene, **change}, schema)
         except jsonschema.ValidationError:

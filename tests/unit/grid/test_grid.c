@@ -118,9 +118,11 @@ END_TEST
 
 START_TEST(storage_holds_every_cell_once)
 {
-  for (int q = 0; q < 4; q++) {
-    bw_grid_config c = box(5 + q, 9, q % 2 ? 1 : 8);
-    c.halo = 1 + q / 2;
+  for (int q = 0; q < 6; q++) {
+    /* The last two: with their halos, rows of a page of memory. */
+    const int page = (int)(4096 / sizeof(bw_real));
+    bw_grid_config c = box(q < 4 ? 5 + q : page - 2 * (q - 3), 9, q % 2 ? 1 : 8);
+    c.halo = q < 4 ? 1 + q / 2 : q - 3;
     bw_grid *grid = make(&c);
     const bw_grid_view *v = bw_grid_look(grid);
     unsigned char *seen = NULL;
@@ -279,11 +281,17 @@ START_TEST(impossible_grids_are_refused_by_name)
   c = good, c.n[2] = 0, refused(c, "n[2] = 0");
   c = good, c.n[0] = -4, refused(c, "n[0] = -4");
   /* Counts that would not hold them: refused before anything is counted. */
-  c = good, c.n[1] = INT_MAX, refused(c, "at most 1073741824 in a direction");
+  c = good, c.n[1] = INT_MAX, refused(c, "at most 16777216 in a direction");
   c = good, c.n[0] = c.n[1] = c.n[2] = 1000000, refused(c, "cells are 1e+18");
   c = good, c.length[0] = NAN, refused(c, "length[0]");
   c = good, c.length[2] = 0, refused(c, "length[2]");
   c = good, c.length[1] = INFINITY, refused(c, "length[1]");
+  c = good, c.length[0] = 1e9, refused(c, "times as long in x as in y");
+  c = good, c.length[2] = 1e-9, refused(c, "times as long in x as in z");
+  c = good, c.n[2] = 1, c.length[2] = 1e9; /* one layer: a thickness */
+  bw_grid *flat = NULL;
+  bw_check_ok(bw_grid_plan(bw_check_world(), &c, &flat));
+  bw_grid_destroy(&flat);
   c = good, c.halo = 3, refused(c, "halo = 3");
   c = good, c.halo = 0, refused(c, "halo = 0");
   c = good, c.y_stretch = BW_STRETCH_TANH, c.periodic[1] = true, refused(c, "periodic");

@@ -142,6 +142,26 @@ START_TEST(fields_in_two_dimensions)
 }
 END_TEST
 
+/* What a field takes on its way is the inside and less than its halos, whichever way it is long. */
+START_TEST(bytes_of_a_field)
+{
+  bw_comm *self = NULL;
+  bw_check_ok(bw_comm_self(&self));
+  for (int d = 0; d < 3; d++) {
+    bw_grid_config c = bw_grid_config_default();
+    bw_grid *grid = NULL;
+    for (int e = 0; e < 3; e++)
+      c.n[e] = e == d ? 64 : 4, c.length[e] = c.n[e];
+    bw_check_ok(bw_grid_plan(self, &c, &grid));
+    const double bytes = bw_checkpoint_field_bytes(grid) / (double)sizeof(bw_real);
+    ck_assert_double_ge(bytes, 64 * 4 * 4);
+    ck_assert_double_le(bytes, 66 * 6 * 6);
+    bw_grid_destroy(&grid);
+  }
+  bw_comm_destroy(&self);
+}
+END_TEST
+
 /* Rank r puts the ids that leave r modulo the ranks; the last of several ranks puts none. */
 static void tables_by_ids(const bw_comm *comm, const bw_comm *reader, const char *name)
 {
@@ -269,7 +289,8 @@ START_TEST(a_good_file_is_not_replaced_by_a_bad_one)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(numbers_texts_and_names),
+static const bw_check_test tests[] = {BW_TEST(bytes_of_a_field),
+                                      BW_TEST(numbers_texts_and_names),
                                       BW_TEST(fields_in_three_dimensions),
                                       BW_TEST(fields_in_two_dimensions),
                                       BW_TEST(tables_by_other_ids),

@@ -233,6 +233,15 @@ START_TEST(tables_with_wrong_ids)
     ck_message_names(path, q < 3 ? why[q] : "no row with id 2");
     bw_check_status(bw_checkpoint_close(&ck), BW_EINPUT);
   }
+  /* Neither fewer than no rows nor rows of nothing. */
+  for (int q = 0; q < 2; q++) {
+    bw_check_ok(bw_checkpoint_create(comm, path, &ck));
+    bw_check_status(
+        bw_checkpoint_put_table(ck, "x", q == 0 ? -1 : 0, 0, NULL, 1 - q, BW_CK_DOUBLE, NULL),
+        BW_EINPUT);
+    ck_message_names(path, q == 0 ? "of -1 rows" : "with 0 components");
+    bw_check_status(bw_checkpoint_close(&ck), BW_EINPUT);
+  }
 }
 END_TEST
 

@@ -101,6 +101,22 @@ START_TEST(gathering_with_empty_ranks)
 }
 END_TEST
 
+/* In messages of a byte, one after the other: as in one call. */
+START_TEST(gathering_byte_by_byte)
+{
+  bw_comm *cut = NULL;
+  bw_check_ok(bw_comm_copy(bw_check_world(), 1, &cut));
+  const char mine = (char)(65 + bw_comm_rank(cut));
+  size_t total = 0;
+  void *all = NULL;
+  bw_check_ok(bw_comm_allgather(cut, 1, &mine, &total, &all));
+  ck_assert_uint_eq(total, (size_t)bw_comm_size(cut));
+  ck_assert_mem_eq(all, "ABCD", total);
+  bw_release(&all);
+  bw_comm_destroy(&cut);
+}
+END_TEST
+
 /* More than the memory holds is refused on all ranks. */
 START_TEST(gathering_too_much)
 {
@@ -196,6 +212,7 @@ static const bw_check_test tests[] = {BW_TEST(agreement_spreads_the_message),
                                       BW_TEST(reductions),
                                       BW_TEST(prefix_sum_and_broadcast),
                                       BW_TEST(gathering_with_empty_ranks),
+                                      BW_TEST(gathering_byte_by_byte),
                                       BW_TEST(gathering_too_much),
                                       BW_TEST(a_group_of_one),
                                       BW_TEST(memory),

@@ -370,6 +370,10 @@ START_TEST(help_names_every_key)
   const config c = defaults();
   bw_config_help(fields, &c, out);
   fclose(out);
+  /* A block has no default of its own. */
+  const char *block = strstr(text, "  fluid ");
+  ck_assert_ptr_nonnull(block);
+  ck_assert_uint_lt(strcspn(block, "\n"), strcspn(block, ";"));
   for (size_t q = 0; q < sizeof keys / sizeof *keys; q++)
     ck_assert_msg(strstr(text, keys[q]) != NULL, "'%s' not in:\n%s", keys[q], text);
   free(text);

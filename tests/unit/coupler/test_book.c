@@ -30,6 +30,24 @@ START_TEST(the_book_is_that_of_the_load)
 }
 END_TEST
 
+/* Without relaxation nothing of the load is held back for a later step. */
+START_TEST(a_load_that_is_felt_at_once_is_not_late)
+{
+  scene s = build(0.3, 1.0);
+  bw_coupler_report r;
+  s.coupler->config.load = BW_LOAD_REACTION;
+  s.coupler->config.count_work = true;
+  s.coupler->config.virtual_mass = 0.0;
+  bw_coupler_hold_solid(s.coupler, false);
+  for (int q = 0; q < 5; q++)
+    bw_check_ok(bw_coupler_step(s.coupler, 1e-3));
+  bw_check_ok(bw_coupler_measure(s.coupler, &r));
+  ck_assert_double_gt(fabs(r.work_given), 0.0);
+  ck_assert_double_le(fabs(r.work_late), ROUND_OFF * fabs(r.work_given));
+  destroy(&s);
+}
+END_TEST
+
 /* A free body loaded by probes: said once; by the reaction: not at all. */
 START_TEST(a_load_that_does_not_suit_is_said_once)
 {
@@ -63,5 +81,6 @@ START_TEST(a_load_that_does_not_suit_is_said_once)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(the_book_is_that_of_the_load),
+                                      BW_TEST(a_load_that_is_felt_at_once_is_not_late),
                                       BW_TEST(a_load_that_does_not_suit_is_said_once)};
 BW_CHECK_MAIN("coupler.book", tests)

@@ -62,7 +62,7 @@ static void check_round_trip(const bw_comm *comm, const int n[3], int columns, i
   if (!fits) return;
   const bw_grid_view *v = bw_grid_look(grid);
   bw_transpose *t = NULL;
-  bw_check_ok(bw_transpose_create(grid, columns, 2, &t));
+  bw_check_ok(bw_transpose_create(grid, columns, columns % 2 == 0 ? 2 : 1, &t));
   put_all(t, v, columns);
   bw_transpose_to_z(t);
   double seen = halve_blocks(t, v);
@@ -93,6 +93,8 @@ START_TEST(rows_become_columns_and_return)
       const bw_comm *comm = q == 0 ? NULL : cut;
       check_round_trip(comm, (const int[]){4, 9, 7}, 46, way);
       check_round_trip(comm, (const int[]){4, 5, 12}, 2, way); /* ranks without columns */
+      check_round_trip(comm, (const int[]){4, 5, 7}, 1, way);  /* a single number a row */
+      check_round_trip(comm, (const int[]){4, 4, 8}, 45, way); /* not in pairs */
       check_round_trip(comm, (const int[]){4, 8, 1}, 290, way);
       check_round_trip(comm, (const int[]){4, 8, 4}, 64, way);
     }

@@ -121,11 +121,11 @@ static void nothing_in_z(const bw_ns_channel *flat)
 }
 
 /* The same flow, planar and uniform over four cells in z: which is channel, inflow, lid. */
-static void planar_twin(int which, bw_ns_viscous viscous)
+static void planar_twin(int which, bw_ns_viscous viscous, int layers)
 {
   flow thick = flow_of(which);
   thick.config.viscous = viscous;
-  thick.n[2] = 4;
+  thick.n[2] = layers;
   for (int s = 0; s < 2 && which > 0; s++)
     thick.config.side[2][s] = (bw_ns_side){.kind = BW_SIDE_FREE_SLIP};
   flow flat = thick;
@@ -153,10 +153,12 @@ START_TEST(two_dimensions_are_three_without_z)
 {
   static const int flows[] = {0, 2, 3};
   for (int q = 0; q < 3; q++) {
-    planar_twin(flows[q], BW_VISCOUS_EXPLICIT);
-    planar_twin(flows[q], BW_VISCOUS_IMPLICIT_Y);
-    planar_twin(flows[q], BW_VISCOUS_IMPLICIT);
+    planar_twin(flows[q], BW_VISCOUS_EXPLICIT, 4);
+    planar_twin(flows[q], BW_VISCOUS_IMPLICIT_Y, 4);
+    planar_twin(flows[q], BW_VISCOUS_IMPLICIT, 4);
   }
+  /* Two layers of a cycle: each is the neighbour of the other on both sides. */
+  planar_twin(0, BW_VISCOUS_IMPLICIT, 2);
 }
 END_TEST
 

@@ -3,6 +3,7 @@
  * TEST ranks=1,2,3,4 */
 #include "body.h"
 #include "pd_body.h"
+#include "pd_interface_internal.h"
 
 /* A block cut by a crack between y = 5 and y = 6 (no face there before it opens). */
 typedef struct {
@@ -238,6 +239,16 @@ static void check_following(const bw_shape *shape)
       for (size_t d = 0; d < 3; d++)
         ck_assert_double_eq(one.N[3 * row + d], two.N[3 * row + d]);
     }
+    /* Change comes to h from copies and images, which do not know h: it has to look by itself. */
+    for (size_t row = 0; row < one.n; row++) {
+      const size_t h = (size_t)one.particle[row];
+      bool looks = false;
+      for (size_t s = 0; s < b.pi->rows.row_n[h]; s++) {
+        const bw_pd_interface__near *near = &b.pi->rows.pool[b.pi->rows.row[h] + s];
+        looks = looks || near->cross != 0 || near->partner >= (int32_t)n;
+      }
+      ck_assert(b.pi->fit.border[h] == looks);
+    }
     bw_pd_interface_destroy(&anew);
   }
   bw_release(&X);
@@ -249,6 +260,9 @@ START_TEST(following_agrees_with_looking_anew)
 {
   const bw_shape box = {.kind = BW_SHAPE_BOX, .upper = {10, 10, 10}};
   const bw_shape ball = {.kind = BW_SHAPE_SPHERE, .centre = {9, 9.5, 9}, .radius = 9};
+  /* Three particles from a border between ranks one sees a single particle of the other. */
+  const bw_shape row = {.kind = BW_SHAPE_BOX, .upper = {24, 1, 1}};
+  check_following(&row);
   check_following(&box);
   check_following(&ball); /* smooth, but for its cuts */
 }

@@ -49,6 +49,24 @@ START_TEST(stress_is_the_derivative_of_energy)
 }
 END_TEST
 
+/* Saint Venant and Kirchhoff's law in plane stress: no stress across makes the strain across
+ * E_33 = -nu/(1 - nu) (E_11 + E_22), and the stretch sqrt(1 + 2 E_33). */
+START_TEST(a_sheet_gets_thinner)
+{
+  const double nu = 0.3, H[9] = {0.2, -0.1, 0, 0.15, -0.1, 0, 0, 0, 0};
+  const bw_pd_material_point m =
+      bw_pd_material_elastic_point(BW_PD_MATERIAL_PLANE_STRESS, BW_PD_MATERIAL_SAINT_VENANT, 3, nu);
+  lanes G[9], P[9];
+  same(H, G);
+  bw_pd_material_stress(&m, G, P, NULL);
+  const double E[2] = {H[0] + 0.5 * (H[0] * H[0] + H[3] * H[3]),
+                       H[4] + 0.5 * (H[1] * H[1] + H[4] * H[4])};
+  const double across = sqrt(1 - 2 * nu / (1 - nu) * (E[0] + E[1])) - 1;
+  for (int k = 0; k < BW_PD_MATERIAL_LANES; k++)
+    bw_check_near(G[8][k], across, 1e-14);
+}
+END_TEST
+
 /* A point that is nearly or wholly turned inside out, too. */
 START_TEST(neo_hookean_beyond_the_flat)
 {
@@ -190,8 +208,10 @@ START_TEST(what_yields_keeps_its_book)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(stress_is_the_derivative_of_energy), BW_TEST(neo_hookean_beyond_the_flat),
-    BW_TEST(turned_bodies_have_turned_stress), BW_TEST(largest_tangent),
-    BW_TEST(what_yields_keeps_its_book)};
+static const bw_check_test tests[] = {BW_TEST(stress_is_the_derivative_of_energy),
+                                      BW_TEST(a_sheet_gets_thinner),
+                                      BW_TEST(neo_hookean_beyond_the_flat),
+                                      BW_TEST(turned_bodies_have_turned_stress),
+                                      BW_TEST(largest_tangent),
+                                      BW_TEST(what_yields_keeps_its_book)};
 BW_CHECK_MAIN("pd_material", tests)

@@ -195,6 +195,12 @@ START_TEST(contradictions_are_refused)
   poisson_case_sides(&c, 1, 1, 1), c.side[1][0] = BW_POISSON_PERIODIC, refused(c, false, "pairs");
   c.n[2] = 1;
   poisson_case_sides(&c, 1, 1, 2), refused(c, false, "one cell");
+  /* One such side is enough. */
+  for (int s = 0; s < 2; s++) {
+    poisson_case_sides(&c, 1, 1, 1);
+    c.side[2][s] = BW_POISSON_DIRICHLET, c.side[2][1 - s] = BW_POISSON_NEUMANN;
+    refused(c, false, "one cell");
+  }
 }
 END_TEST
 

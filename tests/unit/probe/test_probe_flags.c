@@ -42,19 +42,26 @@ typedef struct {
   unsigned char flag;
 } look;
 
-/* Flags of five points that look along +x at x = 1.8 (cell 7) from afar. */
+/* Flags of five points that look along +x at x = 1.8 (cell 7) from afar, and what they read: linear
+ * fields exactly, at whatever length. */
 static void expect_flags(const fixture *f, bw_probe *probe, const look row[5])
 {
-  double X[5][3], N[5][3], t[5][3];
+  double X[5][3], N[5][3], A[5][3], t[5][3], want[3];
   unsigned char flag[5];
   for (int q = 0; q < 5; q++) {
-    memcpy(X[q], (double[3]){1.8 - 0.3 * row[q].gap, 0.7 * q, 0.5 * q}, sizeof X[q]);
+    memcpy(X[q], (double[3]){1.8 - 0.3 * row[q].gap, 1.0 + 0.3 * q, 0.8 + 0.2 * q}, sizeof X[q]);
     memcpy(N[q], (double[3]){1.0, 0.0, 0.0}, sizeof N[q]);
+    for (int c = 0; c < 3; c++)
+      A[q][c] = -GRAD_P[c];
   }
   bw_check_ok(bw_probe_set_points(probe, 5, X[0], N[0]));
-  bw_probe_traction(probe, f->u, f->p, NULL, t[0], flag);
-  for (int q = 0; q < 5; q++)
+  bw_probe_traction(probe, f->u, f->p, A[0], t[0], flag);
+  for (int q = 0; q < 5; q++) {
     ck_assert_int_eq(flag[q], row[q].flag);
+    expected(false, X[q], N[q], A[q], 0.6, want);
+    for (int c = 0; c < 3; c++)
+      bw_check_near(t[q][c], flag[q] == BW_PROBE_BLOCKED ? 0.0 : want[c], ROUND_OFF);
+  }
 }
 
 /* Another solid, thick or one cell thin, begins at x = 1.8; probes of 2 and of 4 h look at it. */
@@ -83,6 +90,7 @@ START_TEST(obstacles_shorten_and_block)
     bw_probe_config c = bw_probe_config_default();
     c.rho = RHO, c.nu = NU, c.length = 4.0;
     make(&f, bw_check_world(), n, 0.3, true, BW_PROBE_LINEAR);
+    fill(&f, linear);
     bw_check_ok(bw_probe_create(f.grid, &c, &longer));
     bw_check_ok(bw_field_create(f.grid, &solid));
     for (int k = 1; k <= f.g->m[2]; k++)

@@ -1,5 +1,6 @@
 /* The fluid of a scene: gauges at places, ramps, forces on bodies by every route, bodies in it.
  * TEST ranks=1,2 */
+#include "coupler_internal.h"
 #include "scene_text.h"
 
 #define CHANNEL "domain: {length: [2, 1, 0.125], cells: [16, 8, 1]}\n"
@@ -146,6 +147,29 @@ START_TEST(flap)
 }
 END_TEST
 
+/* A wall that a body stands on carries it, the wall opposite and the open sides do not. */
+START_TEST(a_post_leans_on_its_wall)
+{
+  bw_scene *s =
+      made(CHANNEL
+           "fluid:\n  density: 1\n  viscosity: 0.05\n  sides:\n"
+           "    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n" WALLS
+           "materials: {m: {density: 10, young_modulus: 1000}}\n"
+           "bodies:\n  post: {shape: {box: {from: [0.75, -0.25], to: [1.25, 0.5]}}, material: m,\n"
+           "         motion: elastic, held: {side: y_lower, layers: 2}}\nphases: {until: 1}\n"
+           "gauges: {top: {body: post, of: displacement}}\nwatch: {top.x: {mean: midrange}}\n");
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 2; e++)
+      ck_assert(s->coupler->config.walled[d][e] == (d == 1 && e == 0));
+  /* Nothing moves: no share of nothing slips by it or goes through it. */
+  bw_coupler_report r;
+  bw_check_ok(bw_coupler_measure(s->coupler, &r));
+  ck_assert_double_eq(r.slip, 0);
+  ck_assert_double_eq(r.leak, 0);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
 /* What is too near to another body in a flow would be bonded: refused, with both names. */
 START_TEST(too_near)
 {
@@ -193,11 +217,8 @@ START_TEST(ramps_beside_free_slip)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(places),
-                                      BW_TEST(driven),
-                                      BW_TEST(ramp),
-                                      BW_TEST(force),
-                                      BW_TEST(flap),
-                                      BW_TEST(too_near),
-                                      BW_TEST(ramps_beside_free_slip)};
+static const bw_check_test tests[] = {BW_TEST(places),   BW_TEST(driven),
+                                      BW_TEST(ramp),     BW_TEST(force),
+                                      BW_TEST(flap),     BW_TEST(a_post_leans_on_its_wall),
+                                      BW_TEST(too_near), BW_TEST(ramps_beside_free_slip)};
 BW_CHECK_MAIN("scene.fluid", tests)

@@ -135,6 +135,17 @@ static const struct {
            {flat_period, "2D"},
            {flat_sites, "site[2] must be 0"}};
 
+/* A third in nine digits is a third. */
+START_TEST(the_ratio_of_bonds_may_be_given)
+{
+  bw_solid_law_choice choice = bw_solid_config_default().choice;
+  choice.poisson_ratio = 0.333333333;
+  bw_check_ok(bw_solid_law_check(&choice));
+  choice.poisson_ratio = 0.33;
+  bw_check_status(bw_solid_law_check(&choice), BW_EINPUT);
+}
+END_TEST
+
 START_TEST(bad_configurations_are_named)
 {
   pd_body body = pd_box(3, 3, 3);
@@ -300,7 +311,8 @@ START_TEST(divergence_is_reported_with_its_place)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(bad_configurations_are_named),
+static const bw_check_test tests[] = {BW_TEST(the_ratio_of_bonds_may_be_given),
+                                      BW_TEST(bad_configurations_are_named),
                                       BW_TEST(bad_lists_are_named),
                                       BW_TEST(steps_beyond_the_limit_are_refused),
                                       BW_TEST(the_limit_is_that_of_the_sharpest_wave),

@@ -255,6 +255,8 @@ START_TEST(what_is_wrong_with_a_group_is_named)
   c = good;
   c.more.joint_G0[0][1] = 2;
   refused(&c, by_half, "joint_G0[0][1]");
+  c.more.joint_G0[1][0] = 3; /* two values for one joint */
+  refused(&c, by_half, "must be positive and the same");
   refused(&good, third, "group 2");
 }
 END_TEST

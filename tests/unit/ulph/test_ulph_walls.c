@@ -98,6 +98,47 @@ START_TEST(moving_walls_carry_the_fluid)
 }
 END_TEST
 
+static void tension(const double x[3], void *context, double v[3], double *p)
+{
+  (void)x, (void)context;
+  v[0] = v[1] = v[2] = 0;
+  *p = -1;
+}
+
+/* Walls do not pull (their pressure is 0 at least): beside one, fluid under a uniform tension of -1
+ * feels the gradient of the difference form, V M^-1 times the sum of w V x over wall particles
+ * alone, as nothing else differs from it. On its lattice of spacing dx, M is that of all of them.
+ * p is a difference of densities, of which it is a millionth. */
+START_TEST(tension_is_met_by_the_difference_form_beside_a_wall)
+{
+  bw_ulph_config c = tank_config(2);
+  bw_ulph *u = NULL;
+  double moment = 0, beside = 0;
+  c.gravity[1] = 0;
+  bw_check_ok(tank(&c, 4, false, 1, &u));
+  bw_check_ok(bw_ulph_start(u, tension, NULL));
+  /* Rows j = 0, -1, .. of the wall and of the fluid, seen from the first row of the fluid. */
+  for (int j = -4; j <= 4; j++)
+    for (int i = -4; i <= 4; i++) {
+      const double y = j * c.dx, r2 = (i * i + j * j) * c.dx * c.dx;
+      const double w = vec_weight((vec){r2}, 1 / (u->R * u->R))[0];
+      moment += w * y * y;
+      beside -= j < 0 ? w * y : 0;
+    }
+  int64_t found = 0;
+  for (size_t i = 0; i < bw_ulph_count(u); i++) {
+    const bw_ulph__particle *p = u->own + i;
+    if (p->x[1] > c.dx || fabs(p->x[0] - 0.5) > 0.2) continue;
+    bw_check_near(p->a[0] * c.rho0 * c.dx, 0, 1e-6);
+    bw_check_near(p->a[1] * c.rho0, beside / moment, 1e-6);
+    found++;
+  }
+  bw_comm_sum_int(bw_check_world(), 1, &found);
+  ck_assert_int_ge(found, 4);
+  bw_ulph_destroy(&u);
+}
+END_TEST
+
 static void expect(const char *words)
 {
   ck_assert_msg(strstr(bw_last_message(), words) != NULL, "no '%s' in: %s", words,
@@ -153,6 +194,7 @@ END_TEST
 static const bw_check_test tests[] = {
     BW_TEST(a_tank_stays_at_rest),
     BW_TEST(moving_walls_carry_the_fluid),
+    BW_TEST(tension_is_met_by_the_difference_form_beside_a_wall),
     BW_TEST(bad_input_is_refused),
     BW_TEST(steps_that_cannot_be_are_refused),
 };

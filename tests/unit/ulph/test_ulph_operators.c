@@ -48,6 +48,40 @@ static void gradient_of(int d, int n)
   bw_ulph_destroy(&u);
 }
 
+static void uniform_tension(const double x[3], void *context, double v[3], double *p)
+{
+  (void)x, (void)context;
+  v[0] = v[1] = v[2] = 0;
+  *p = -0.01;
+}
+
+/* Largest acceleration, in units of p/(rho dx), of particles that see none of the surface. */
+static double pulled(bool cure)
+{
+  enum { ACROSS = 14 };
+  bw_ulph_config c = ulph_still(2);
+  c.tension_cure = cure;
+  bw_ulph *u = ulph_cloud(bw_check_world(), &c, ACROSS);
+  double largest = 0;
+  bw_check_ok(bw_ulph_start(u, uniform_tension, NULL));
+  for (size_t i = 0; i < bw_ulph_count(u); i++)
+    for (int k = 0; k < 2; k++)
+      if (fabs(u->own[i].x[0] - 6.5) < 1.5 && fabs(u->own[i].x[1] - 6.5) < 1.5)
+        largest = fmax(largest, fabs(u->own[i].a[k]) * c.rho0 * c.dx / 0.01);
+  bw_comm_max(bw_check_world(), 1, &largest);
+  bw_ulph_destroy(&u);
+  return largest;
+}
+
+/* A uniform tension has no gradient: its cure leaves disordered particles alone, which the pair
+ * form, made for the sake of energy, pulls together. */
+START_TEST(uniform_tension_moves_nothing)
+{
+  ck_assert_double_le(pulled(true), 1e-10); /* p is a difference of densities, 1e-5 of them */
+  ck_assert_double_gt(pulled(false), 0.1);
+}
+END_TEST
+
 START_TEST(gradient_of_a_linear_field_is_exact)
 {
   gradient_of(2, 12);
@@ -196,6 +230,7 @@ START_TEST(one_ended_viscosity_loses_momentum)
 END_TEST
 
 static const bw_check_test tests[] = {
+    BW_TEST(uniform_tension_moves_nothing),
     BW_TEST(gradient_of_a_linear_field_is_exact),
     BW_TEST(forces_keep_momentum_spin_and_energy),
     BW_TEST(viscosity_keeps_momentum_and_spin_and_takes_energy),

@@ -45,14 +45,17 @@ for side in a b; do
   build_at $side $(printf '%s\n' $programs | sort -u)
 done
 
+# Both sides run in one folder, so that the paths that they write down are the same.
 run_at() { # run_at SIDE NAME: results in $work/out/SIDE/NAME
-  file=$(set_ups "$1")/$2.yaml
-  out=$work/out/$1/$2
-  rm -rf "$out"
-  mkdir -p "$(dirname "$out")"
-  (cd "$(dirname "$file")" && mpirun -n "$(word "$file" ranks)" \
-    "$work/$1/build/bin/$(word "$file" program)" "$file" --out "$out" --quiet) \
+  folder=$work/run out=$work/out/$1/$2
+  rm -rf "$folder" "$out"
+  mkdir -p "$work/out/$1"
+  cp -r "$(set_ups "$1")" "$folder"
+  file=$folder/$2.yaml
+  (cd "$folder" && mpirun -n "$(word "$file" ranks)" \
+    "$work/$1/build/bin/$(word "$file" program)" "$file" --out "$folder/out" --quiet) \
     >"$out.log" 2>&1 || { cat "$out.log" >&2; die "$2: the run of side $1 failed"; }
+  mv "$folder/out" "$out"
 }
 
 code=0

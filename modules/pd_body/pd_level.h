@@ -41,7 +41,7 @@ typedef struct {
   double *tough;    /* (n) square of the critical stretch over that of the coarser end [-] */
   uint8_t *other;   /* (n) level at the other end */
   bool *sure;       /* (n) in a cloud: a bond wherever both sites are occupied */
-  int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none */
+  int16_t *number;  /* ((2 reach + 1)^3) direction of an offset, -1: none; NULL: several levels */
 } bw_pd_stencil;
 
 /* A row of the table of levels. */
@@ -56,6 +56,14 @@ typedef struct {
   bw_pd_stencil stencil; /* directions of a family */
   bw_real *row; /* (n_group, n_group, stencil.n, BW_PD_ROW) kernel rows: owner's group, other's */
 } bw_pd_level;
+
+/* Whether the owner of a bond in a direction of its level's stencil is the end that is first in
+ * lattice order: the last axis in which the two differ tells. */
+static inline bool bw_pd_body_is_first(const bw_pd_stencil *stencil, int direction)
+{
+  const int32_t *o = stencil->offset + 3 * direction;
+  return o[2] != 0 ? o[2] > 0 : o[1] != 0 ? o[1] > 0 : o[0] > 0;
+}
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 double bw_pd_body_family_reach(const bw_pd_body_config *c)
 {
@@ -93,10 +94,20 @@ static bw_status fractions(const bw_pd_body *pd, bw_pd_stencil *s)
   return st;
 }
 
+/* The direction of an offset by going through all. */
+static int direction_among(const bw_pd_stencil *s, const int32_t o[3])
+{
+  int q = s->n - 1;
+  while (q >= 0 && memcmp(s->offset + 3 * q, o, 3 * sizeof *o) != 0)
+    q--;
+  return q;
+}
+
 int bw_pd_body_direction(const bw_pd_stencil *s, const int32_t o[3])
 {
   const int r = s->reach, side = 2 * r + 1;
   if (abs(o[0]) > r || abs(o[1]) > r || abs(o[2]) > r) return -1;
+  if (s->number == NULL) return direction_among(s, o);
   return s->number[(o[0] + r) + side * ((o[1] + r) + side * (o[2] + r))];
 }
 
@@ -113,7 +124,7 @@ bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n)
   BW_TRY(BW_ALLOCATE(&s->tough, rows));
   BW_TRY(BW_ALLOCATE(&s->other, rows));
   BW_TRY(BW_ALLOCATE(&s->sure, rows));
-  /* With several levels offsets are many steps long and nobody looks for their numbers. */
+  /* With several levels offsets are many steps long and few look for their numbers. */
   if (pd->finest == 0) BW_TRY(BW_ALLOCATE(&s->number, cells));
   /* Offsets that are no direction are told from those that are. */
   for (size_t q = 0; s->number != NULL && q < cells; q++)

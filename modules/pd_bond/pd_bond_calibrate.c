@@ -37,11 +37,11 @@ double bw_pd_bond__classical_dilation(const bw_pd_body_config *c, double E)
 static void lattice_sums(bw_pd_body *pd)
 {
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &pd->level[0].stencil;
   memset(&state->full, 0, sizeof state->full);
   for (int q = 0; q < s->same; q++) {
     /* Volume for V_0 (3.44), first moment for the stiffness. */
-    const double w = s->fraction[q] * pd->level->dv, along = s->unit * s->offset[3 * q];
+    const double w = s->fraction[q] * pd->level[0].dv, along = s->unit * s->offset[3 * q];
     state->full.volume += w;
     state->full.moment += w * s->r0[q];
     /* Bonds that cross a plane along the lattice, from one side. */
@@ -52,14 +52,14 @@ static void lattice_sums(bw_pd_body *pd)
 /* The mean of xi.n > 0 over all n is |xi|/pi in the plane and |xi|/4 in space. */
 static bw_status cloud_sums(bw_pd_body *pd)
 {
-  const double ds = pd->level->ds;
+  const double ds = pd->level[0].ds;
   bw_pd_bond_full *full = &bw_pd_bond__own(pd)->full;
   /* No family of a cloud is the full one: means over many stand for it. */
   double mean[3];
   BW_TRY(bw_pd_body_cloud_means(pd, mean));
-  full->volume = pd->level->dv * mean[0];
-  full->moment = pd->level->dv * ds * mean[1];
-  full->crossing = pd->level->dv * ds * ds * mean[2] / (pd->dimension == 3 ? 4 : PI);
+  full->volume = pd->level[0].dv * mean[0];
+  full->moment = pd->level[0].dv * ds * mean[1];
+  full->crossing = pd->level[0].dv * ds * ds * mean[2] / (pd->dimension == 3 ? 4 : PI);
   return BW_OK;
 }
 
@@ -82,7 +82,7 @@ void bw_pd_bond__calibrate(bw_pd_body *pd)
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
   /* V_0 of the volume method is that of the ball, as printed (3.44), or the family's own. */
   const bool lattice = state->options.calibration == BW_PD_CALIBRATION_LATTICE;
-  const double d = pd->level->horizon;
+  const double d = pd->level[0].horizon;
   state->full_volume = pd->dimension == 3 ? 4.0 / 3 * PI * d * d * d : PI * d * d * c->thickness;
   /* Now alpha is 1 in the bulk. */
   if (lattice) state->full_volume = state->full.volume;

@@ -39,7 +39,7 @@ void bw_pd_bond__material(bw_pd_body *pd)
 {
   bw_pd_body_config *c = &pd->config;
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
-  const double d = pd->level->horizon, t = c->thickness;
+  const double d = pd->level[0].horizon, t = c->thickness;
   for (int g = 0; g < c->n_group; g++)
     for (int h = 0; h < c->n_group; h++) {
       /* A column per geometry: space, plane stress, plane strain. */

@@ -80,13 +80,13 @@ static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
 /* The conditions of direction q, not yet orthonormal; returns K. Distances in ds. */
 static int conditions(const bw_pd_body *pd, int q, double f[MOST])
 {
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &pd->level[0].stencil;
   /* Lengths in ds: numbers of order 1, whatever the unit. */
-  const double r = s->r0[q] / pd->level->ds;
+  const double r = s->r0[q] / pd->level[0].ds;
   int power[EVEN][3];
   double e[3];
   for (int k = 0; k < 3; k++)
-    e[k] = s->offset[3 * q + k] * (s->unit / pd->level->ds) / r;
+    e[k] = s->offset[3 * q + k] * (s->unit / pd->level[0].ds) / r;
   /* Even conditions carry the energy's |xi|; odd ones are of the direction alone. */
   const int n = monomials(pd->dimension, power);
   for (int k = 0; k < n; k++)
@@ -125,7 +125,7 @@ static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, con
 /* phi, T and the multipliers of a full family, whose factors 1 + full.phi go to state.bulk. */
 static bw_status basis(bw_pd_body *pd, solver *v)
 {
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &pd->level[0].stencil;
   double *bulk = bw_pd_bond__own(pd)->bulk;
   const size_t n = (size_t)s->same;
   double *rows = NULL, total = 0;
@@ -138,7 +138,7 @@ static bw_status basis(bw_pd_body *pd, solver *v)
     all = conditions(pd, q, f);
     for (int k = 0; k < all; k++)
       rows[(size_t)k * n + (size_t)q] = f[k];
-    total += s->fraction[q] * s->r0[q] / pd->level->ds;
+    total += s->fraction[q] * s->r0[q] / pd->level[0].ds;
   }
   /* Targets: of degree 4 the isotropic mean, of degree 3 nothing. Orthonormal ones stay. */
   for (int k = 0; k < all; k++) {
@@ -176,7 +176,7 @@ INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
 {
   /* The opposite direction is the mirror place in the stencil: phi(-xi) of the other end. */
   const bw_real *phi = v->phi + slot->direction * n;
-  const bw_real *back = v->phi + (pd->level->stencil.same - 1 - slot->direction) * n;
+  const bw_real *back = v->phi + (pd->level[0].stencil.same - 1 - slot->direction) * n;
   vec mine = vec_all(0), other = vec_all(0);
   for (int k = 0; k < n; k++) {
     mine = vec_fma(vec_all(phi[k]), vec_load(v->at[k] + block->first), mine);
@@ -196,10 +196,10 @@ INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     /* Factors are made from the multipliers at both ends each time: none is stored yet. */
     const bw_pd_slot *slot = &pd->bonds.slot[q];
-    if (slot->direction >= pd->level->stencil.same) continue; /* between levels */
+    if (slot->direction >= pd->level[0].stencil.same) continue; /* between levels */
     const bw_real *phi = v->phi + slot->direction * n;
     const vec alpha = vec_keep(lanes_of(slot->family), factors(pd, v, block, slot, n)) *
-                      (bw_real)pd->level->stencil.fraction[slot->direction];
+                      (bw_real)pd->level[0].stencil.fraction[slot->direction];
     for (int k = 0; k < n; k++)
       rest[k] = vec_fnma(vec_all(phi[k]), alpha, rest[k]);
   }
@@ -246,7 +246,7 @@ static void store(bw_pd_body *pd, const solver *v)
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
       /* Rounded alike from both ends: a bond's two forces stay exact opposites. */
-      const bool across = pd->bonds.slot[q].direction >= pd->level->stencil.same;
+      const bool across = pd->bonds.slot[q].direction >= pd->level[0].stencil.same;
       const vec alpha =
           across ? vec_all(1) : factors(pd, v, &pd->bonds.block[b], &pd->bonds.slot[q], v->n);
       for (int lane = 0; lane < BW_PD_LANES; lane++)

@@ -2,8 +2,9 @@
  *
  * On h, for r = |X_l - X_h| < r_c (POROUS 3.40 with ERRATA 3):
  *   C_h = - k_c (r_c/r - 1) e dV_l,  e from h to l,  k_c = 15 c0, r_c = ds,
- * with the law's micromodulus c0; between two materials the smaller r_c and the harmonic mean of
- * the two k_c. It derives from the energy k_c (r_c ln(r_c/r) - r_c + r) dV dV of a pair. */
+ * with the law's micromodulus c0; between two materials, or two levels, the smaller r_c and the
+ * harmonic mean of the two k_c. It derives from the energy k_c (r_c ln(r_c/r) - r_c + r) dV dV of a
+ * pair. */
 #pragma once
 #include "bw_pd_body.h"
 

@@ -9,20 +9,26 @@
 
 #include <math.h>
 
-static const double SKIN = 0.5; /* of the search, in ds: a new one after a move of ds/4 */
+static const double SKIN =
+    0.5; /* of the search, in the finest ds: a new one after a move of ds/4 */
 
-/* Between two materials the harmonic mean of their stiffnesses. */
-static bw_pd_pair pair_law(const bw_pd_body *pd, int g, int h)
+/* A table for all pairs of kinds: no mean is taken in a step. */
+static bw_status laws_of(bw_pd_contact *c)
 {
-  /* One material's own stiffness is taken as it stands. */
-  const bw_pd_material *m = pd->config.material;
-  const double a = pd->law->micromodulus(pd, g), b = pd->law->micromodulus(pd, h);
-  const double modulus = g == h ? a : 2 * a * b / (a + b);
-  /* An acceleration of h: its own density below, the partner's volume above. */
-  return (bw_pd_pair){.reach = pd->level->ds,
-                      .k = BW_PD_CONTACT_STIFFNESS * modulus * pd->level->dv / m[g].rho,
-                      .weight = m[g].rho / m[0].rho,
-                      .closest = INFINITY};
+  const bw_pd_body *pd = c->pd;
+  c->kinds = (pd->finest + 1) * pd->config.n_group;
+  bw_release(&c->law);
+  BW_TRY(BW_ALLOCATE(&c->law, (size_t)c->kinds * (size_t)c->kinds));
+  for (int a = 0; a < c->kinds; a++)
+    for (int b = 0; b < c->kinds; b++) {
+      bw_pd_pair pair = bw_pd_contact__law(pd, a, pd, b);
+      pair.weight /= bw_pd_body_unit_mass(pd);
+      c->law[a * c->kinds + b] = pair;
+    }
+  /* Two of the coarsest reach furthest; a move that counts is one of the finest. */
+  c->reach = pd->level[0].ds;
+  c->skin = SKIN * pd->level[pd->finest].ds;
+  return BW_OK;
 }
 
 /* What is as long as the body's lists. */
@@ -34,7 +40,8 @@ static bw_status arrays_of(bw_pd_contact *c)
     BW_TRY(BW_ALLOCATE(&c->u_built[k], pd->n));
   }
   bw_release(&c->link);
-  BW_TRY(BW_ALLOCATE(&c->link, (size_t)pd->level->stencil.n));
+  BW_TRY(BW_ALLOCATE(&c->link, (size_t)pd->directions));
+  BW_TRY(laws_of(c));
   c->revision = pd->revision;
   c->built = false;
   return BW_OK;
@@ -46,13 +53,7 @@ bw_status bw_pd_contact_create(bw_pd_body *pd, bw_pd_contact **out)
   bw_status st = BW_ALLOCATE(&c, 1);
   if (st == BW_OK) {
     c->pd = pd;
-    c->reach = pd->level->ds;
-    c->skin = SKIN * pd->level->ds;
     c->closest = INFINITY;
-    /* A table for all pairs of groups: no mean is taken in a step. */
-    for (int g = 0; g < pd->config.n_group; g++)
-      for (int h = 0; h < pd->config.n_group; h++)
-        c->law[g][h] = pair_law(pd, g, h);
     st = arrays_of(c);
   }
   if (st != BW_OK) bw_pd_contact_destroy(&c);
@@ -69,6 +70,7 @@ void bw_pd_contact_destroy(bw_pd_contact **contact)
     bw_release(&c->u_built[k]);
   bw_release(&c->near);
   bw_release(&c->link);
+  bw_release(&c->law);
   bw_release(contact);
 }
 
@@ -157,7 +159,8 @@ static double short_bonds(bw_pd_contact *c, const bw_pd_block *block, const bw_p
     const double d[3] = {(double)x->z[0][lane], (double)x->z[1][lane], (double)x->z[2][lane]};
     const int32_t h = bw_pd_body_owner(block, lane);
     /* In a cloud two that began nearer than r_c touch where they began. */
-    bw_pd_pair pair = bw_pd_contact__pair(c, pd->points.group[h], pd->points.group[l]);
+    bw_pd_pair pair = bw_pd_contact__pair(c, bw_pd_contact__kind(pd, (size_t)h),
+                                          bw_pd_contact__kind(pd, (size_t)l));
     pair.reach = sqrt((double)reach2[lane]);
     energy += bw_pd_contact__repel(&pair, d, (double)x->r2[lane], sum);
     c->closest = pair.closest;
@@ -176,13 +179,15 @@ static double block_contact(bw_pd_contact *c, const bw_pd_block *block, bool for
   const bool cloud = pd->config.disorder > 0;
   const owners h = owners_of(&all, block, 3, cloud);
   const bw_real *rows = rows_of(&all, block);
+  const bw_pd_level *own = bw_pd_body_level_of(pd, block);
   double energy = 0;
   for (uint32_t q = block->slot; q < bw_pd_body_slot_end(block); q++) {
     const bw_pd_slot *slot = &pd->bonds.slot[q];
     /* Every bond of the slot holds: joined particles do not touch. */
     if (slot->family == slot->mask) continue;
     const bond x = bond_of(&all, slot, rows + slot->direction * BW_PD_ROW, &h, 3, cloud);
-    vec reach2 = vec_all((bw_real)(c->reach * c->reach));
+    const double reach = fmin(own->ds, pd->level[own->stencil.other[slot->direction]].ds);
+    vec reach2 = vec_all((bw_real)(reach * reach));
     if (cloud) reach2 = vec_least(reach2, x.rest2);
     /* Broken, not retired, and nearer than their reach. */
     const unsigned near =
@@ -211,7 +216,7 @@ static double other_contact(bw_pd_contact *c, bool force)
     double sum[3] = {0}, d[3];
     /* Both ends list the pair, each on its rank, and get exactly opposite forces. */
     for (size_t p = c->found.pair_start[q]; p < c->found.pair_start[q + 1]; p++) {
-      bw_pd_pair pair = bw_pd_contact__pair(c, c->found.group[q], c->found.group[c->found.pair[p]]);
+      bw_pd_pair pair = bw_pd_contact__pair(c, c->found.kind[q], c->found.kind[c->found.pair[p]]);
       bw_pd_contact__difference(pd, c->found.y + 3 * q, c->found.y + 3 * (size_t)c->found.pair[p],
                                 d);
       energy += bw_pd_contact__repel(&pair, d, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], sum);
@@ -234,7 +239,7 @@ void bw_pd_contact_force(bw_pd_contact *c)
 
 double bw_pd_contact_energy(bw_pd_contact *c)
 {
-  /* By the mass of the first group, as the weights are. */
+  /* By the mass of the first group on level 0, as the weights are. */
   const double energy =
       family_contact(c, false) + other_contact(c, false) + bw_pd_contact__wall_act(c, false);
   return energy * bw_pd_body_unit_mass(c->pd);
@@ -243,10 +248,9 @@ double bw_pd_contact_energy(bw_pd_contact *c)
 /* The stiffest pair against the lightest of the two: 1/w of their oscillation. */
 double bw_pd_contact_time(const bw_pd_contact *c)
 {
-  const bw_pd_body *pd = c->pd;
   double most = 0;
-  for (int g = 0; g < pd->config.n_group; g++)
-    for (int h = 0; h < pd->config.n_group; h++) {
+  for (int g = 0; g < c->kinds; g++)
+    for (int h = 0; h < c->kinds; h++) {
       /* Two masses on one spring of stiffness k_c/r_c dV^2: w^2 is the sum of both
        * accelerations. */
       const bw_pd_pair a = bw_pd_contact__pair(c, g, h), b = bw_pd_contact__pair(c, h, g);

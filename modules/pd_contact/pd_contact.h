@@ -3,7 +3,8 @@
  * Two kinds of pairs. Family pairs whose bond broke are found where their slots are: no search.
  * All others start further apart than the horizon; a cell search lists those nearer than reach +
  * skin, anew when something moved by half the skin since. So the force is one of positions and
- * broken bonds alone. Positions are in lattice axes, where periods act. */
+ * broken bonds alone. Positions are in lattice axes, where periods act. What a particle brings into
+ * a pair follows from its kind: its level and its group in one number. */
 #pragma once
 #include "bw_pd_contact.h"
 #include "pd_law.h"
@@ -20,8 +21,8 @@ typedef struct {
  * sum[] and returns half of its energy over rho dV of the first group. */
 typedef struct {
   double reach;   /* r_c [L] */
-  double k;       /* k_c dV/rho of h */
-  double weight;  /* rho of h over that of the first group */
+  double k;       /* k_c dV of l/rho of h */
+  double weight;  /* mass of h over that of the first group on level 0 */
   double closest; /* least r/reach met */
 } bw_pd_pair;
 
@@ -33,7 +34,7 @@ typedef struct {
   bw_exchange *plan;
   double *send, *y;   /* (n_sent,3); (n_mine + n_theirs,3) present positions */
   int32_t *site;      /* (n_mine + n_theirs,3) */
-  uint8_t *group;     /* (n_mine + n_theirs) */
+  uint8_t *kind;      /* (n_mine + n_theirs) */
   double *shift;      /* (n_mine + n_theirs,3) from the site, in a cloud; else NULL */
   size_t *pair_start; /* (n_mine + 1) */
   int32_t *pair;      /* index into y */
@@ -42,13 +43,14 @@ typedef struct {
 } bw_pd_search;
 
 struct bw_pd_contact {
-  bw_pd_body *pd;     /* borrowed */
-  double reach, skin; /* the largest r_c; of the search [L] */
-  double closest;     /* least distance of a pair over its reach, in the forces so far */
-  bw_pd_pair law[BW_PD_GROUPS][BW_PD_GROUPS]; /* owner's group, other's */
-  bool built;                                 /* there is a search that holds */
-  int64_t revision;                           /* of the body that the arrays are for */
-  bw_real *u_built[3];                        /* (n) displacement at the last search */
+  bw_pd_body *pd;      /* borrowed */
+  double reach, skin;  /* the largest r_c; of the search [L] */
+  double closest;      /* least distance of a pair over its reach, in the forces so far */
+  int kinds;           /* levels times groups */
+  bw_pd_pair *law;     /* (kinds, kinds) owner's kind, other's */
+  bool built;          /* there is a search that holds */
+  int64_t revision;    /* of the body that the arrays are for */
+  bw_real *u_built[3]; /* (n) displacement at the last search */
   bw_pd_search found;
 
   size_t n_near;
@@ -62,8 +64,20 @@ struct bw_pd_contact {
 
 /* pd_contact_pair.c: the push of a pair, see there. */
 double bw_pd_contact__repel(bw_pd_pair *pair, const double d[3], double r2, double sum[3]);
-/* The pair law of a particle of group g with one of group h. */
-bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h);
+/* The pair law of a particle of kind a with one of kind b. */
+bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int a, int b);
+/* Kind of an own particle or a copy; the row of the table of levels, and the group, of a kind. */
+static inline uint8_t bw_pd_contact__kind(const bw_pd_body *pd, size_t e)
+{
+  const int level = (int)(bw_pd_body_level(pd, e) - pd->level);
+  return (uint8_t)(level * pd->config.n_group + pd->points.group[e]);
+}
+static inline const bw_pd_level *bw_pd_contact__level(const bw_pd_body *pd, int kind)
+{
+  return pd->level + kind / pd->config.n_group;
+}
+/* What a particle of kind a of p feels of one of kind b of q, another body or the same. */
+bw_pd_pair bw_pd_contact__law(const bw_pd_body *p, int a, const bw_pd_body *q, int b);
 
 /* pd_contact_wall.c. act returns energy as repel does; with force adds to extra, sets
  * wall_force. */
@@ -85,7 +99,7 @@ bw_status bw_pd_contact__append(bw_pd_partners *list, int32_t partner) BW_MUST_C
 /* *busy (n_busy) <- candidates whose row start[q] .. start[q + 1] is not empty; the caller's. */
 bw_status bw_pd_contact__busy(size_t n, const size_t start[], size_t *n_busy,
                               int32_t **busy) BW_MUST_CHECK;
-/* pd_contact_share.c: from the candidates in mine: sent, plan, and y, site, group, shift of own and
+/* pd_contact_share.c: from the candidates in mine: sent, plan, and y, site, kind, shift of own and
  * others. BW_EMEM. Collective. */
 bw_status bw_pd_contact__share(bw_pd_contact *c) BW_MUST_CHECK;
 void bw_pd_contact__release(bw_pd_contact *c);

@@ -15,13 +15,8 @@ static bw_pd_pair pair_law(const bw_pd_contact_between *c, int a, int b)
 {
   const bw_pd_body *p = c->body[c->kinds.body[a]], *q = c->body[c->kinds.body[b]];
   if (p == q) return (bw_pd_pair){.closest = INFINITY};
-  const int g = a - c->kinds.first[c->kinds.body[a]], h = b - c->kinds.first[c->kinds.body[b]];
-  const double x = p->law->micromodulus(p, g), y = q->law->micromodulus(q, h);
-  const double modulus = x == y ? x : 2 * x * y / (x + y), rho = p->config.material[g].rho;
-  return (bw_pd_pair){.reach = fmin(p->level->ds, q->level->ds),
-                      .k = BW_PD_CONTACT_STIFFNESS * modulus * q->level->dv / rho,
-                      .weight = rho * p->level->dv,
-                      .closest = INFINITY};
+  return bw_pd_contact__law(p, a - c->kinds.first[c->kinds.body[a]], q,
+                            b - c->kinds.first[c->kinds.body[b]]);
 }
 
 /* Two bodies that can meet: in one space, of one dimension. */
@@ -57,7 +52,7 @@ static bw_status check_period(const bw_pd_body *p, int number)
             "contact: body %d has period[%d] = %g and a turned lattice; periods are along the "
             "axes of space",
             number, k, p->config.period[k]);
-    BW_REQUIRE(p->config.period[k] / p->level->ds > 3.5, BW_EINPUT,
+    BW_REQUIRE(p->config.period[k] / p->level[0].ds > 3.5, BW_EINPUT,
                "contact: body %d has period[%d] = %g; contact needs at least 4 ds", number, k,
                p->config.period[k]);
   }
@@ -68,10 +63,6 @@ static bw_status check(int n, bw_pd_body *const body[])
 {
   BW_REQUIRE(n >= 1, BW_EINPUT, "contact: %d bodies; at least 1", n);
   for (int q = 0; q < n; q++) {
-    BW_REQUIRE(body[q]->finest == 0, BW_EINPUT,
-               "contact: body %d has particles of several levels; contact knows one spacing of a "
-               "body: leave its boxes out",
-               q);
     BW_TRY(check_period(body[q], q));
     for (int p = 0; p < q; p++)
       BW_TRY(check_two(body[p], body[q], q));
@@ -79,16 +70,24 @@ static bw_status check(int n, bw_pd_body *const body[])
   return BW_OK;
 }
 
+static int kinds_of(const bw_pd_body *pd)
+{
+  return (pd->finest + 1) * pd->config.n_group;
+}
+
 static bw_status constants(bw_pd_contact_between *c)
 {
+  c->kinds.n = 0, c->reach = 0;
+  bw_release(&c->kinds.body);
+  bw_release(&c->kinds.law);
   for (int b = 0; b < c->n_body; b++) {
     c->kinds.first[b] = c->kinds.n;
-    c->kinds.n += c->body[b]->config.n_group;
+    c->kinds.n += kinds_of(c->body[b]);
   }
   BW_TRY(BW_ALLOCATE(&c->kinds.body, (size_t)c->kinds.n));
   BW_TRY(BW_ALLOCATE(&c->kinds.law, (size_t)c->kinds.n * (size_t)c->kinds.n));
   for (int b = 0; b < c->n_body; b++)
-    for (int g = 0; g < c->body[b]->config.n_group; g++)
+    for (int g = 0; g < kinds_of(c->body[b]); g++)
       c->kinds.body[c->kinds.first[b] + g] = b;
   for (int a = 0; a < c->kinds.n; a++)
     for (int b = 0; b < c->kinds.n; b++) {
@@ -115,6 +114,7 @@ static bw_status arrays_of(bw_pd_contact_between *c)
       bw_release(&c->u_built[k][b]);
       BW_TRY(BW_ALLOCATE(&c->u_built[k][b], c->body[b]->n));
     }
+  BW_TRY(constants(c));
   c->revision = revision_of(c);
   c->built = false;
   return BW_OK;
@@ -132,8 +132,7 @@ static bw_status build(bw_pd_contact_between *c, int n, bw_pd_body *const body[]
   for (int b = 0; b < n; b++)
     c->body[b] = body[b];
   c->closest = INFINITY;
-  BW_TRY(arrays_of(c));
-  return constants(c);
+  return arrays_of(c);
 }
 
 bw_status bw_pd_contact_between_create(int n, bw_pd_body *const body[], bw_pd_contact_between **out)

@@ -1,7 +1,7 @@
 /* pd_contact_between.h -- state of the contact between bodies, shared by its sources.
  *
  * A row of the lists below is a particle that may be near another body: own ones first, then what
- * other ranks sent. `kind` of a row numbers bodies and their groups in one: the law of a pair
+ * other ranks sent. `kind` of a row numbers bodies, levels and groups in one: the law of a pair
  * follows from the kinds of both. */
 #pragma once
 #include "bw_particles_cells.h"
@@ -12,10 +12,10 @@ typedef struct {
   int32_t body, particle;
 } bw_pd_between_row;
 
-/* Bodies and their groups in one numbering. */
+/* Bodies and the kinds of their particles (pd_contact.h) in one numbering. */
 typedef struct {
   int n;
-  int *first;      /* (n_body) kind of a body's first group */
+  int *first;      /* (n_body) of a body's first kind */
   int *body;       /* (n) */
   bw_pd_pair *law; /* (n, n) owner's kind, other's; reach 0: the same body */
 } bw_pd_between_kinds;

@@ -124,7 +124,7 @@ static bw_status candidates(bw_pd_contact_between *c, const double *box, int **d
 
 static int32_t kind_of(const bw_pd_contact_between *c, bw_pd_between_row row)
 {
-  return c->kinds.first[row.body] + c->body[row.body]->points.group[row.particle];
+  return c->kinds.first[row.body] + bw_pd_contact__kind(c->body[row.body], (size_t)row.particle);
 }
 
 /* Rows of all candidates that this rank sees. Collective. */

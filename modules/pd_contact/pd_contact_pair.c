@@ -33,9 +33,24 @@ double bw_pd_contact__repel(bw_pd_pair *w, const double d[3], double r2, double 
   return w->weight * (0.5 * w->k * (w->reach * log(w->reach / r) - w->reach + r));
 }
 
-bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int g, int h)
+bw_pd_pair bw_pd_contact__law(const bw_pd_body *p, int a, const bw_pd_body *q, int b)
 {
-  bw_pd_pair pair = c->law[g][h];
+  const bw_pd_level *own = bw_pd_contact__level(p, a), *other = bw_pd_contact__level(q, b);
+  const int g = a % p->config.n_group, h = b % q->config.n_group;
+  /* Of two stiffnesses the harmonic mean; one material's own is taken as it stands. */
+  const double x = p->law->micromodulus(p, g) * own->stiff;
+  const double y = q->law->micromodulus(q, h) * other->stiff;
+  const double modulus = x == y ? x : 2 * x * y / (x + y), rho = p->config.material[g].rho;
+  /* An acceleration of the owner: its own density below, the partner's volume above. */
+  return (bw_pd_pair){.reach = fmin(own->ds, other->ds),
+                      .k = BW_PD_CONTACT_STIFFNESS * modulus * other->dv / rho,
+                      .weight = rho * own->dv,
+                      .closest = INFINITY};
+}
+
+bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int a, int b)
+{
+  bw_pd_pair pair = c->law[a * c->kinds + b];
   pair.closest = c->closest;
   return pair;
 }

@@ -19,7 +19,7 @@ void bw_pd_contact__release(bw_pd_contact *c)
   bw_release(&c->found.send);
   bw_release(&c->found.y);
   bw_release(&c->found.site);
-  bw_release(&c->found.group);
+  bw_release(&c->found.kind);
   bw_release(&c->found.shift);
   bw_release(&c->found.pair_start);
   bw_release(&c->found.pair);
@@ -47,7 +47,7 @@ typedef struct {
 static void displacement(const bw_pd_body *pd, const bw_pd_contact *c, size_t q, double u[3])
 {
   for (size_t k = 0; k < 3; k++) {
-    u[k] = c->found.y[3 * q + k] - pd->level->ds * c->found.site[3 * q + k];
+    u[k] = c->found.y[3 * q + k] - pd->level[0].stencil.unit * c->found.site[3 * q + k];
     if (c->found.shift != NULL) u[k] -= c->found.shift[3 * q + k];
   }
 }
@@ -82,8 +82,10 @@ static bw_status make_cells(const bw_pd_body *pd, const bw_pd_contact *c, cells 
 static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, int n,
                  int32_t cell[][3])
 {
-  /* Two that are not family began beyond its reach: to be listed they must come nearer by this. */
-  const double limit = pd->level->reach - (c->reach + c->skin);
+  /* Two that are not family began beyond its reach: to be listed they must come nearer by this,
+   * which is least for the finest. */
+  const bw_pd_level *finest = &pd->level[pd->finest];
+  const double limit = finest->reach - (finest->ds + c->skin);
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
   /* Buckets may hold other cells too: their displacements can only make it less calm. */
   for (int q = 0; q < n; q++) {
@@ -105,29 +107,31 @@ static bool calm(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g, i
 static bool same_family(const bw_pd_body *pd, const bw_pd_contact *c, size_t a, size_t b)
 {
   int32_t o[3];
+  const bw_pd_level *own = bw_pd_contact__level(pd, c->found.kind[a]);
+  const bw_pd_stencil *s = &own->stencil;
   for (size_t k = 0; k < 3; k++) {
     /* The nearest image of the site, as families are built. */
-    const int32_t p = (int32_t)lround(pd->config.period[k] / pd->level->ds);
+    const int32_t p = (int32_t)lround(pd->config.period[k] / s->unit);
     o[k] = c->found.site[3 * b + k] - c->found.site[3 * a + k];
     if (p > 0) o[k] = ((o[k] % p) + p + p / 2) % p - p / 2;
   }
-  const int direction = bw_pd_body_direction(&pd->level->stencil, o);
+  const int direction = bw_pd_body_direction(s, o);
   /* On a lattice a direction of the stencil is family; in a cloud the distance decides. */
-  if (direction < 0 || pd->level->stencil.sure[direction]) return direction >= 0;
+  if (direction < 0 || s->sure[direction]) return direction >= 0;
   return bw_pd_body_apart(pd, direction, c->found.shift + 3 * a, c->found.shift + 3 * b).r0 <
-         pd->level->reach;
+         own->reach;
 }
 
 /* Partners of candidate q in one cell are appended to the pairs. */
 static bw_status pairs_in_cell(const bw_pd_body *pd, const bw_pd_contact *c, const cells *g,
                                size_t q, const int32_t cell[3], bw_pd_partners *found)
 {
-  const double far = c->reach + c->skin;
   for (int32_t p = g->in.head[bw_particles_cells_bucket(&g->in, cell)]; p >= 0; p = g->in.next[p]) {
     double d[3];
     /* Other cells of the same bucket are told by their numbers. */
     if ((size_t)p == q || !bw_particles_cells_holds(&g->in, cell, p)) continue;
     bw_pd_contact__difference(pd, c->found.y + 3 * q, c->found.y + 3 * p, d);
+    const double far = c->law[c->found.kind[q] * c->kinds + c->found.kind[p]].reach + c->skin;
     if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < far * far)) continue;
     /* Those are watched where their slots are, without a search. */
     if (same_family(pd, c, q, (size_t)p)) continue;

@@ -88,35 +88,35 @@ static bw_status share_shifts(const bw_pd_body *pd, bw_pd_contact *c)
 static bw_status share(const bw_pd_body *pd, bw_pd_contact *c)
 {
   int32_t *send = NULL;
-  uint8_t *group = NULL;
+  uint8_t *kind = NULL;
   const size_t n = c->found.n_mine;
   /* Rows of the own candidates, then of those that came. */
   c->found.n_theirs = bw_exchange_received(c->found.plan);
   bw_status st = BW_ALLOCATE(&c->found.y, 3 * (n + c->found.n_theirs));
   BW_THEN(st, BW_ALLOCATE(&c->found.site, 3 * (n + c->found.n_theirs)));
-  BW_THEN(st, BW_ALLOCATE(&c->found.group, n + c->found.n_theirs));
+  BW_THEN(st, BW_ALLOCATE(&c->found.kind, n + c->found.n_theirs));
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->found.n_sent));
-  BW_THEN(st, BW_ALLOCATE(&group, c->found.n_sent));
+  BW_THEN(st, BW_ALLOCATE(&kind, c->found.n_sent));
   /* All arrays stand on all ranks: the exchanges below can be made. */
   st = bw_comm_agree(pd->comm, st);
   for (size_t q = 0; q < n && st == BW_OK; q++) {
-    c->found.group[q] = pd->points.group[c->found.mine[q]];
+    c->found.kind[q] = bw_pd_contact__kind(pd, (size_t)c->found.mine[q]);
     bw_pd_contact__position(pd, (size_t)c->found.mine[q], c->found.y + 3 * q);
     memcpy(c->found.site + 3 * q, pd->points.site + 3 * (size_t)c->found.mine[q], 3 * sizeof *send);
   }
   for (size_t q = 0; q < c->found.n_sent && st == BW_OK; q++) {
-    group[q] = pd->points.group[c->found.sent[q]];
+    kind[q] = bw_pd_contact__kind(pd, (size_t)c->found.sent[q]);
     bw_pd_contact__position(pd, (size_t)c->found.sent[q], c->found.send + 3 * q);
     memcpy(send + 3 * q, pd->points.site + 3 * (size_t)c->found.sent[q], 3 * sizeof *send);
   }
-  /* Sites tell who is family, groups which pair law acts. */
+  /* Sites tell who is family, kinds which pair law acts. */
   if (st == BW_OK) {
     share_rows(c, 3 * sizeof(double), c->found.send, c->found.y);
     share_rows(c, 3 * sizeof *send, send, c->found.site);
-    share_rows(c, sizeof *group, group, c->found.group);
+    share_rows(c, sizeof *kind, kind, c->found.kind);
   }
   bw_release(&send);
-  bw_release(&group);
+  bw_release(&kind);
   BW_TRY(st);
   return pd->config.disorder > 0 ? share_shifts(pd, c) : BW_OK;
 }

@@ -103,7 +103,8 @@ double bw_pd_contact__wall_act(bw_pd_contact *c, bool force)
     if (c->near[q].held) continue;
     /* The image moves with the particle: its own displacement is all that is needed. */
     const gap g = gap_of(pd, w, i);
-    bw_pd_pair pair = bw_pd_contact__pair(c, pd->points.group[i], pd->points.group[i]);
+    const int kind = bw_pd_contact__kind(pd, (size_t)i);
+    bw_pd_pair pair = bw_pd_contact__pair(c, kind, kind);
     /* Who began nearer than ds/2 touches where it began, or it would be pushed off at rest. */
     pair.reach = fmin(pair.reach, 2 * g.first);
     for (int k = 0; k < 3; k++)

@@ -10,7 +10,7 @@ bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *n
   const bw_pd_interface__stencil *s = &pi->stencil;
   /* POROUS 3.42: mean present distance to broken partners, sector by sector. */
   bw_pd_interface__locate(pi, h, now);
-  const uint32_t empty = bw_pd_interface__empty_sectors(pi);
+  const uint32_t empty = bw_pd_interface__empty_sectors(pi, h);
   return !pi->wall.outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
 }
 
@@ -140,7 +140,8 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
       write_row(pi, h);
     }
     /* The reference shape's own area, or a new crack face's (ERRATA 10). */
-    pi->now.area[pi->now.n_list] = pi->first[h] ? pi->area_first[h] : pi->area_new;
+    pi->now.area[pi->now.n_list] =
+        pi->first[h] ? pi->area_first[h] : bw_pd_interface__side_area(pi, h);
     pi->now.list[pi->now.n_list++] = (int32_t)h;
   }
 }

@@ -117,16 +117,12 @@ static void place_walls(bw_pd_interface *pi)
  * restart finds the same. Collective. */
 static void measure_reference(bw_pd_interface *pi)
 {
-  const bw_solid_config *c = bw_solid_settings(pi->pd);
-  const double ds = c->ds;
-  pi->area_new = pi->stencil.dims == 2 ? ds * c->thickness : ds * ds;
-  const double least = 0.25 * pi->area_new; /* ridges of one particle still are markers */
   double total[2] = {0.0, 0.0};
   /* Every particle with all its bonds, whatever has broken since. */
   for (size_t h = 0; h < pi->n; h++) {
     bw_pd_interface__resolve(pi, h, true);
     pi->first[h] = pi->surface[h] = bw_pd_interface__judge(pi, h, NULL);
-    if (!pi->wall.outside[h]) total[0] += bw_pd_interface__open_area(pi);
+    if (!pi->wall.outside[h]) total[0] += bw_pd_interface__open_area(pi, h);
   }
   /* Normals 3.45 of that surface, then their fits where it is smooth. */
   bw_pd_interface__renew(pi, true);
@@ -137,9 +133,10 @@ static void measure_reference(bw_pd_interface *pi)
     const size_t h = (size_t)pi->now.list[row];
     double n[3];
     bw_pd_interface__resolve(pi, h, true);
-    const double facing = bw_pd_interface__facing_area(pi, &pi->fit.own_normal[3 * h]);
+    const double facing = bw_pd_interface__facing_area(pi, h, &pi->fit.own_normal[3 * h]);
     const bool known = bw_pd_interface__normal_of(pi, n); /* else a sheet open on both sides */
-    pi->area_first[h] = known ? fmax(facing, least) : pi->area_new;
+    const double side = bw_pd_interface__side_area(pi, h);
+    pi->area_first[h] = known ? fmax(facing, 0.25 * side) : side; /* a ridge is a marker, too */
     total[1] += 1.0;
   }
   /* Area of the shape and number of its surface particles, on all ranks. */
@@ -158,7 +155,6 @@ static bw_status build(bw_pd_interface *pi)
   BW_TRY(bw_pd_interface__stencil_create(pi->pd, &pi->stencil));
   BW_TRY(check_config(&pi->config, pi->stencil.sectors, bw_solid_settings(pi->pd)->disorder));
   if (pi->config.n_empty == 0) pi->config.n_empty = pi->stencil.dims == 2 ? 2 : 1;
-  pi->opening = pi->config.threshold * bw_solid_horizon(pi->pd);
   return allocate_arrays(pi);
 }
 

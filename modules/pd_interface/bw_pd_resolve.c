@@ -64,12 +64,13 @@ static void fill_images(bw_pd_interface *pi, size_t h)
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
   const bw_pd_interface_config *c = &pi->config;
+  const double opening = bw_pd_interface__opening(pi, h);
   bool off = false;
   for (size_t d = 0; d < 3; d++) {
     /* Away from the wall, along its normal. */
     const double moved = (double)now->u[d][now->place[h]];
-    off = off || (c->walled[d][0] && moved > pi->opening);
-    off = off || (c->walled[d][1] && moved < -pi->opening);
+    off = off || (c->walled[d][0] && moved > opening);
+    off = off || (c->walled[d][1] && moved < -opening);
   }
   return off;
 }
@@ -132,10 +133,11 @@ void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held
   *never = all & ~known;
 }
 
-uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
+uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi, size_t h)
 {
   const bw_pd_interface__stencil *s = &pi->stencil;
   double sum[BW_PD_INTERFACE__SECTORS] = {0.0}, broken[BW_PD_INTERFACE__SECTORS] = {0.0};
+  const double opening = bw_pd_interface__opening(pi, h);
   uint32_t empty, never;
   bw_pd_interface__bare_sectors(pi, &empty, &never);
   /* Only sectors without an intact bond can be empty; their broken partners tell how far. */
@@ -147,7 +149,7 @@ uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi)
       if (s->sector_of[q] >> (unsigned)k & 1u) sum[k] += distance, broken[k] += 1.0;
   }
   for (int k = 0; k < s->sectors; k++) /* 3.42 */
-    if (broken[k] > 0.0 && !(sum[k] > pi->opening * broken[k])) empty &= ~(1u << (unsigned)k);
+    if (broken[k] > 0.0 && !(sum[k] > opening * broken[k])) empty &= ~(1u << (unsigned)k);
   return empty;
 }
 
@@ -214,20 +216,20 @@ static int open_sides(const bw_pd_interface *pi, double e[][3])
   return open;
 }
 
-double bw_pd_interface__open_area(const bw_pd_interface *pi)
+double bw_pd_interface__open_area(const bw_pd_interface *pi, size_t h)
 {
   double e[6][3], area = 0.0;
   const int open = open_sides(pi, e);
   for (int f = 0; f < open; f++)
     area += face_projection(pi, e[f]);
-  return area * pi->area_new;
+  return area * bw_pd_interface__side_area(pi, h);
 }
 
-double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3])
+double bw_pd_interface__facing_area(const bw_pd_interface *pi, size_t h, const double n[3])
 {
   double e[6][3], area = 0.0;
   const int open = open_sides(pi, e);
   for (int f = 0; f < open; f++)
     area += e[f][0] * n[0] + e[f][1] * n[1] + e[f][2] * n[2];
-  return area * pi->area_new;
+  return area * bw_pd_interface__side_area(pi, h);
 }

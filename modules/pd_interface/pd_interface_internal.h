@@ -115,9 +115,7 @@ struct bw_pd_interface {
   bw_pd_interface__stencil stencil;
   int64_t revision;     /* of the solid that all this is for */
   size_t n, n_extended; /* own particles; own and copies */
-  double opening;       /* mean distance that opens a sector [L] */
   double area_total;    /* of the reference shape [L^2] */
-  double area_new;      /* of a crack face, one side of a particle [L^2] */
   double *area_first;   /* (n) of those that are surface in the reference shape [L^2] */
   bool *surface;        /* (n) now */
   bool *first;          /* (n) in the reference shape */
@@ -136,6 +134,19 @@ struct bw_pd_interface {
   bw_pd_interface__fit fit;
 };
 
+/* Mean distance that opens a sector of an own particle; area of one side of it, as of a crack face.
+ * Local. */
+static inline double bw_pd_interface__opening(const bw_pd_interface *pi, size_t h)
+{
+  return pi->config.threshold * bw_solid_horizon_of(pi->pd, h);
+}
+
+static inline double bw_pd_interface__side_area(const bw_pd_interface *pi, size_t h)
+{
+  const double ds = bw_solid_spacing(pi->pd, h);
+  return ds * (pi->stencil.dims == 2 ? bw_solid_settings(pi->pd)->thickness : ds);
+}
+
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
 
 /* Everything anew, after the set of particles changed. Collective. */
@@ -151,7 +162,7 @@ void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *
 /* Of the particle resolved last: bits of the sectors where nothing intact is, and of those where
  * nothing ever was; located too: bits of its empty sectors (3.42). Local. */
 void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never);
-uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi);
+uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi, size_t h);
 
 /* Unit normal 3.45 of the particle resolved last in the reference shape; false, and n unchanged,
  * when its present partners balance. Local. */
@@ -159,10 +170,10 @@ bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3]);
 
 /* Area [L^2] of the open lattice faces of the particle resolved last, each projected on the
  * normal there (reference shape). Local. */
-double bw_pd_interface__open_area(const bw_pd_interface *pi);
+double bw_pd_interface__open_area(const bw_pd_interface *pi, size_t h);
 
 /* ds^2 sum over the open sides f of the particle resolved last of e_f.n [L^2]. Local. */
-double bw_pd_interface__facing_area(const bw_pd_interface *pi, const double n[3]);
+double bw_pd_interface__facing_area(const bw_pd_interface *pi, size_t h, const double n[3]);
 
 /* Has h moved from a wall it leans on by more than opens a sector? Local. */
 bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now);

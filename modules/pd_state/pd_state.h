@@ -28,9 +28,11 @@ static inline double bw_pd_state__joint_G0(const bw_pd_body_config *c, int g, in
 /* Poisson's ratios that such a law can have; those left out are the bond law's own. BW_EINPUT. */
 bw_status bw_pd_state__check_poisson(const bw_pd_body_config *config) BW_MUST_CHECK;
 void bw_pd_state__resolve_poisson(bw_pd_body_config *config);
-/* Sums over the full family of a body's stencil, or means of a cloud's: of Gamma dV xi.n over the
+/* The kernel rows of a level of bonds from group g to group h, (stencil.n, BW_PD_ROW). Local. */
+bw_real *bw_pd_state__row(const bw_pd_body *pd, const bw_pd_level *level, int g, int h);
+/* Sums over the full family of a level's stencil, or means of a cloud's: of Gamma dV xi.n over the
  * half with xi.n > 0, n along the lattice [L^4]; of Gamma dV |xi| [L^4]. BW_EMEM. Local. */
-bw_status bw_pd_state__full_sums(const bw_pd_body *pd, double *crossing,
+bw_status bw_pd_state__full_sums(const bw_pd_body *pd, const bw_pd_level *level, double *crossing,
                                  double *moment) BW_MUST_CHECK;
 /* Micromodulus of a bond law of the same E, for contact [M/(L^5 T^2)]. */
 double bw_pd_state__micromodulus(const bw_pd_body *pd, int group);

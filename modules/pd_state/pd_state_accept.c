@@ -8,11 +8,12 @@
 static double held(const bw_pd_body *pd, const bw_pd_block *block, int lane)
 {
   const bw_pd_state_family f = bw_pd_state__family(pd, block, lane, NULL);
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   double H[9] = {0}, sum = 0;
   if (!f.spans) return 0;
   bw_pd_state__gradient(pd, block, lane, &f, NULL, H);
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
-    const double w = bw_pd_correspondence_weight(pd, b.rest.r0) * b.weight, *xi = b.rest.xi;
+    const double w = bw_pd_correspondence_weight(pd, level, b.rest.r0) * b.weight, *xi = b.rest.xi;
     for (int i = 0; i < pd->dimension; i++) {
       const double z = ((double)pd->u[i][b.l] - (double)pd->u[i][b.h]) -
                        (H[3 * i] * xi[0] + H[3 * i + 1] * xi[1] + H[3 * i + 2] * xi[2]);

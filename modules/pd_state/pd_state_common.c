@@ -22,9 +22,15 @@ void bw_pd_state__resolve_poisson(bw_pd_body_config *c)
       c->material[g].nu = c->geometry == BW_PD_PLANE_STRESS ? 1.0 / 3 : 0.25;
 }
 
-bw_status bw_pd_state__full_sums(const bw_pd_body *pd, double *crossing, double *moment)
+bw_real *bw_pd_state__row(const bw_pd_body *pd, const bw_pd_level *level, int g, int h)
 {
-  const double ds = pd->level->ds, dv = pd->level->dv;
+  return level->row + (size_t)((g * pd->config.n_group + h) * level->stencil.n) * BW_PD_ROW;
+}
+
+bw_status bw_pd_state__full_sums(const bw_pd_body *pd, const bw_pd_level *level, double *crossing,
+                                 double *moment)
+{
+  const double ds = level->ds, dv = level->dv;
   *crossing = *moment = 0;
   if (pd->config.disorder > 0) {
     /* The mean of xi.n > 0 over all directions n is |xi|/pi in the plane, |xi|/4 in space. */
@@ -34,7 +40,7 @@ bw_status bw_pd_state__full_sums(const bw_pd_body *pd, double *crossing, double 
     *crossing = *moment / (pd->dimension == 3 ? 4 : PI);
     return BW_OK;
   }
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &level->stencil;
   for (int q = 0; q < s->n; q++) {
     const double w = s->fraction[q] * dv, along = ds * s->offset[3 * q];
     *moment += w * s->r0[q];
@@ -45,7 +51,7 @@ bw_status bw_pd_state__full_sums(const bw_pd_body *pd, double *crossing, double 
 
 double bw_pd_state__micromodulus(const bw_pd_body *pd, int group)
 {
-  const double E = pd->config.material[group].E, d = pd->level->horizon;
+  const double E = pd->config.material[group].E, d = pd->level[0].horizon;
   const double t = pd->config.thickness;
   const double c[] = {12 * E / (PI * d * d * d * d), 9 * E / (PI * t * d * d * d),
                       48 * E / (5 * PI * t * d * d * d)};

@@ -62,13 +62,14 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
 
 /* Sums over the stencil's sites, which of a cloud stand for what its families have: tr K/d, and the
  * springs' first moment. */
-static void full_family(bw_pd_body *pd, double *kappa, double *moment)
+static void full_family(const bw_pd_body *pd, const bw_pd_level *level, double *kappa,
+                        double *moment)
 {
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &level->stencil;
   *kappa = *moment = 0;
   for (int q = 0; q < s->n; q++) {
-    if (!(s->r0[q] < pd->level->reach)) continue;
-    const double w = bw_pd_correspondence_weight(pd, s->r0[q]) * s->fraction[q] * pd->level->dv;
+    if (!(s->r0[q] < level->reach)) continue;
+    const double w = bw_pd_correspondence_weight(pd, level, s->r0[q]) * s->fraction[q] * level->dv;
     *kappa += w * s->r0[q] * s->r0[q] / pd->dimension;
     *moment += w * s->r0[q];
   }
@@ -135,7 +136,7 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   return check_families(pd);
 }
 
-/* s0 of a joint from its G0. */
+/* s0 of a joint on level 0 from its G0. */
 static double stretch(const bw_pd_body *pd, int g, int h)
 {
   const bw_pd_body_config *c = &pd->config;
@@ -146,19 +147,20 @@ static double stretch(const bw_pd_body *pd, int g, int h)
   const double strain = bw_pd_state__strain_poisson(c->geometry, nu);
   const double factor =
       bw_pd_state__correspondence_crack(c, uniform, strain) * E * (1 + strain) / (1 + nu);
-  return sqrt(bw_pd_state__joint_G0(c, g, h) / (factor * pd->level->horizon));
+  return sqrt(bw_pd_state__joint_G0(c, g, h) / (factor * pd->level[0].horizon));
 }
 
-static void row_constants(bw_pd_body *pd, int g, int h, bw_real row[])
+static void row_constants(bw_pd_body *pd, const bw_pd_level *level, int g, int h)
 {
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &level->stencil;
   const bool cloud = pd->config.disorder > 0;
-  const double s0 = bw_pd_correspondence_of(pd)->s0[g][h];
+  const double s0 = bw_pd_correspondence_of(pd)->s0[g][h] * level->stretch;
+  bw_real *row = bw_pd_state__row(pd, level, g, h);
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double r0 = cloud ? 1 : s->r0[q];
     row[BW_PD_STIFFNESS] =
-        (bw_real)(cloud ? pd->level->dv
-                        : bw_pd_correspondence_weight(pd, r0) * s->fraction[q] * pd->level->dv);
+        (bw_real)(cloud ? level->dv
+                        : bw_pd_correspondence_weight(pd, level, r0) * s->fraction[q] * level->dv);
     row[BW_PD_LIMIT2] = (bw_real)(r0 * (1 + s0) * r0 * (1 + s0));
   }
 }
@@ -169,8 +171,9 @@ static void constants(bw_pd_body *pd)
   const bw_pd_body_config *c = &pd->config;
   const bw_pd_material_plane plane = (bw_pd_material_plane)c->geometry; /* in the same order */
   static const double dilation[] = {3, 1.5, 1.6}; /* energy of bonds, over E e^2 */
-  double moment;
-  full_family(pd, &o->kappa, &moment);
+  double moment[BW_PD_FINEST + 1];
+  for (int l = 0; l <= pd->finest; l++)
+    full_family(pd, &pd->level[l], &o->kappa[l], &moment[l]);
   o->breakable = o->options.breaks != BW_PD_STATE_BREAKS_BY_STRETCH;
   for (int g = 0; g < c->n_group; g++) {
     const bw_pd_material *m = &c->material[g];
@@ -179,13 +182,13 @@ static void constants(bw_pd_body *pd)
     o->material[g].own = o->options.own;
     memcpy(o->material[g].parameter, o->options.parameter, sizeof o->options.parameter);
     o->small[g] = bw_pd_material_elastic_point(plane, BW_PD_MATERIAL_LINEAR, m->E, m->nu);
-    o->spring[g] = 2 * dilation[c->geometry] * m->E / moment;
+    for (int l = 0; l <= pd->finest; l++)
+      o->spring[l][g] = 2 * dilation[c->geometry] * m->E / moment[l];
     for (int h = 0; h < c->n_group; h++) {
       o->s0[g][h] = stretch(pd, g, h);
       o->breakable |= isfinite(o->s0[g][h]);
-      row_constants(pd, g, h,
-                    pd->level->row +
-                        (size_t)((g * c->n_group + h) * pd->level->stencil.n) * BW_PD_ROW);
+      for (int l = 0; l <= pd->finest; l++)
+        row_constants(pd, &pd->level[l], g, h);
     }
   }
   /* beta follows mu: all shapes are made anew at the next pass. */
@@ -205,20 +208,20 @@ static void forget(bw_pd_body *pd, const bw_pd_block *block, int lane)
 }
 
 /* Both ends see the same numbers. */
-static bool beyond(const bw_pd_body *pd, const bw_pd_walk *b)
+static bool beyond(const bw_pd_body *pd, const bw_pd_level *level, const bw_pd_walk *b)
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   double y[3];
   const double s = bw_pd_walk_present(b, y) / b->rest.r0 - 1;
   if (o->measure != NULL) return s > 0 && (double)o->measure[b->h] + (double)o->measure[b->l] > 2;
-  return s > o->s0[bw_pd_body_group_at(pd, b->h)][bw_pd_body_group_at(pd, b->l)];
+  return s > level->stretch * o->s0[bw_pd_body_group_at(pd, b->h)][bw_pd_body_group_at(pd, b->l)];
 }
 
 static bool breaks(bw_pd_body *pd, bw_pd_block *block)
 {
   uint8_t changed = 0;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)~block->gone); bw_pd_walk_next(&b);) {
-    if (!beyond(pd, &b) || bw_pd_walk_unbreakable(&b)) continue;
+    if (!beyond(pd, bw_pd_body_level_of(pd, block), &b) || bw_pd_walk_unbreakable(&b)) continue;
     bw_pd_body_cut(pd, block, b.slot, b.lane);
     changed |= (uint8_t)(1u << b.lane);
   }

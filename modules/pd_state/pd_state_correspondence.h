@@ -8,9 +8,10 @@ enum { BW_PD_REMEMBERED = 17 }; /* H 9, sigma 6, flow, dissipated */
 typedef struct {
   bw_pd_state_correspondence_options options;
   bw_pd_material_point material[BW_PD_GROUPS], small[BW_PD_GROUPS]; /* the other: of small strain */
-  double kappa;                /* tr K/d of a full family [L^5] */
-  double spring[BW_PD_GROUPS]; /* c of the central springs, w c s per volume [M/(L^4 T^2)] */
-  double s0[BW_PD_GROUPS][BW_PD_GROUPS];
+  double kappa[BW_PD_FINEST + 1]; /* of each level: tr K/d of a full family [L^5] */
+  /* c of the central springs of each level, w c s per volume [M/(L^4 T^2)] */
+  double spring[BW_PD_FINEST + 1][BW_PD_GROUPS];
+  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* on level 0 [-] */
   bool breakable, remembers;
   bw_real *inverse[6]; /* storage: K^-1, xx yy zz yz xz xy */
   bw_real *beta;       /* storage: beta; of a particle on springs minus their c */
@@ -29,10 +30,11 @@ static inline bw_pd_correspondence *bw_pd_correspondence_of(const bw_pd_body *pd
   return (bw_pd_correspondence *)pd->state;
 }
 
-/* w of a bond, q = |xi|/reach. */
-static inline double bw_pd_correspondence_weight(const bw_pd_body *pd, double r0)
+/* w of a bond of a particle of a level, q = |xi|/reach. */
+static inline double bw_pd_correspondence_weight(const bw_pd_body *pd, const bw_pd_level *level,
+                                                 double r0)
 {
-  const double q = r0 / pd->level->reach;
+  const double q = r0 / level->reach;
   return bw_pd_correspondence_of(pd)->options.weight == BW_PD_STATE_UNIFORM
              ? 1
              : (1 - q) * (1 - q) * (1 + 2 * q);

@@ -27,7 +27,7 @@ static passes passes_of(const bw_pd_body *pd)
   passes s = {.all = sweep_of(pd),
               .law = o,
               .uniform = o->options.weight == BW_PD_STATE_UNIFORM,
-              .reach = (bw_real)(1 / pd->level->reach),
+              .reach = (bw_real)(1 / pd->level[0].reach), /* of clouds, which have one level */
               .beta = o->beta,
               .measure = o->measure};
   for (int q = 0; q < 9; q++)

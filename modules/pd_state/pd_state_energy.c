@@ -13,10 +13,11 @@ typedef bw_pd_material_lanes wide;
 void bw_pd_state__gradient(const bw_pd_body *pd, const bw_pd_block *block, int lane,
                            const bw_pd_state_family *f, const bw_pd_slot *without, double H[9])
 {
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   double S[9] = {0};
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;
-    const double w = bw_pd_correspondence_weight(pd, b.rest.r0) * b.weight;
+    const double w = bw_pd_correspondence_weight(pd, level, b.rest.r0) * b.weight;
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
         S[3 * i + j] += w * ((double)pd->u[i][b.l] - (double)pd->u[i][b.h]) * b.rest.xi[j];
@@ -65,15 +66,16 @@ static double bonds_energy(const bw_pd_body *pd, const bw_pd_block *block, int l
                            const double H[9])
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   const int g = bw_pd_body_group_at(pd, block->first + lane);
   const double beta = f->spans ? bw_pd_correspondence_beta(pd, block->first + lane, f->kappa) : 0;
   double sum = 0, y[3];
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;
-    const double w = bw_pd_correspondence_weight(pd, b.rest.r0) * b.weight, *xi = b.rest.xi;
+    const double w = bw_pd_correspondence_weight(pd, level, b.rest.r0) * b.weight, *xi = b.rest.xi;
     if (!f->spans) {
       const double e = bw_pd_walk_present(&b, y) - b.rest.r0;
-      sum += 0.5 * w * o->spring[g] * e * e / b.rest.r0;
+      sum += 0.5 * w * o->spring[block->level][g] * e * e / b.rest.r0;
       continue;
     }
     for (int i = 0; i < pd->dimension; i++) {
@@ -94,7 +96,7 @@ static double particle_energy(const bw_pd_body *pd, const bw_pd_block *block, in
     bw_pd_state__gradient(pd, block, lane, &f, without, H);
     W = material(pd, block->first + lane, frozen, H, P);
   }
-  return pd->level->dv * (W + bonds_energy(pd, block, lane, &f, without, H));
+  return bw_pd_body_level_of(pd, block)->dv * (W + bonds_energy(pd, block, lane, &f, without, H));
 }
 
 double bw_pd_state__bond_energy(const bw_pd_body *pd, const bw_pd_block *block,
@@ -117,6 +119,7 @@ void bw_pd_state__virial(const bw_pd_body *pd, const bw_pd_block *block, int lan
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   const bw_pd_state_family f = bw_pd_state__family(pd, block, lane, NULL);
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   const int g = bw_pd_body_group_at(pd, block->first + lane);
   double H[9] = {0}, P[9], y[3];
   if (f.spans) {
@@ -130,8 +133,8 @@ void bw_pd_state__virial(const bw_pd_body *pd, const bw_pd_block *block, int lan
   }
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     const double r = bw_pd_walk_present(&b, y);
-    const double t = bw_pd_correspondence_weight(pd, b.rest.r0) * b.weight * o->spring[g] *
-                     (1 / b.rest.r0 - 1 / r);
+    const double t = bw_pd_correspondence_weight(pd, level, b.rest.r0) * b.weight *
+                     o->spring[block->level][g] * (1 / b.rest.r0 - 1 / r);
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
         sum[i][j] += t * y[i] * y[j];

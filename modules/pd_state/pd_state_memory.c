@@ -144,6 +144,7 @@ double bw_pd_state__dissipated(const bw_pd_body *pd)
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   double sum = 0;
   for (size_t i = 0; i < pd->n && o->remembers; i++)
-    sum += (double)o->accepted[BW_PD_REMEMBERED - 1][pd->points.place[i]];
-  return sum * pd->level->dv;
+    sum += (double)o->accepted[BW_PD_REMEMBERED - 1][pd->points.place[i]] *
+           bw_pd_body_level(pd, i)->dv;
+  return sum;
 }

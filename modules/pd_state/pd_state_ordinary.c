@@ -43,7 +43,8 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
     bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
     double moment;
     o->options = resolved(options);
-    st = bw_pd_state__full_sums(pd, &o->crossing, &moment);
+    for (int l = 0; l <= pd->finest; l++)
+      BW_THEN(st, bw_pd_state__full_sums(pd, &pd->level[l], &o->crossing[l], &moment));
     BW_THEN(st, bw_pd_body_add_field(pd, 0, false, &o->pull));
     BW_THEN(st, bw_pd_body_add_field(pd, -1, false, &o->q));
     BW_THEN(st, bw_pd_body_add_field(pd, -1, false, &o->stiff));
@@ -55,23 +56,25 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   return BW_OK;
 }
 
-/* Columns of the kernel rows of bonds between two groups. */
-static void row_constants(bw_pd_body *pd, int g, int h, bw_real row[])
+/* Columns of the kernel rows of a level of bonds between two groups. */
+static void row_constants(bw_pd_body *pd, const bw_pd_level *level, int g, int h)
 {
   const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
-  const bw_pd_stencil *s = &pd->level->stencil;
+  const bw_pd_stencil *s = &level->stencil;
+  bw_real *row = bw_pd_state__row(pd, level, g, h);
   const bool cloud = pd->config.disorder > 0;
   /* With all bonds across a flat cut at w_c their sum is G0 (ERRATA-ADAPT 24). A crack breaks them
    * one by one and needs more. */
   const bw_pd_body_config *c = &pd->config;
   const double nu =
       bw_pd_state__strain_poisson(c->geometry, 0.5 * (c->material[g].nu + c->material[h].nu));
-  const double held = bw_pd_state__joint_G0(c, g, h) /
-                      (o->crossing * bw_pd_state__ordinary_crack(
-                                         c, o->options.influence == BW_PD_STATE_INVERSE, nu));
+  const double held =
+      bw_pd_state__joint_G0(c, g, h) /
+      (o->crossing[level - pd->level] *
+       bw_pd_state__ordinary_crack(c, o->options.influence == BW_PD_STATE_INVERSE, nu));
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double w = cloud ? 1 : bw_pd_ordinary_influence(o, s->r0[q]);
-    row[BW_PD_STIFFNESS] = (bw_real)(w * (cloud ? 1 : s->fraction[q]) * pd->level->dv);
+    row[BW_PD_STIFFNESS] = (bw_real)(w * (cloud ? 1 : s->fraction[q]) * level->dv);
     row[BW_PD_LIMIT2] = (bw_real)(2 * held / w);
   }
 }
@@ -88,8 +91,8 @@ static void constants(bw_pd_body *pd)
     o->dilates |= o->lam[g] != o->mu[g];
     for (int h = 0; h < groups; h++) {
       o->breakable |= isfinite(bw_pd_state__joint_G0(&pd->config, g, h));
-      row_constants(pd, g, h,
-                    pd->level->row + (size_t)((g * groups + h) * pd->level->stencil.n) * BW_PD_ROW);
+      for (int l = 0; l <= pd->finest; l++)
+        row_constants(pd, &pd->level[l], g, h);
     }
   }
   for (size_t e = 0; e < pd->n_extended; e++) {
@@ -117,7 +120,8 @@ static double particle_energy(const bw_pd_body *pd, const bw_pd_block *block, in
     bonds += w * e * e;
   }
   /* swell is d^2 (lam* - mu)/q^2, stiff d (d + 2) mu/q. */
-  return 0.5 * pd->level->dv * ((double)o->swell[h] * swell * swell + (double)o->stiff[h] * bonds);
+  return 0.5 * bw_pd_body_level_of(pd, block)->dv *
+         ((double)o->swell[h] * swell * swell + (double)o->stiff[h] * bonds);
 }
 
 /* What the owner's particle loses with the bond: energies of bonds cut one by one add up to what a
@@ -141,17 +145,16 @@ static double energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t ask
 static bool breaks(bw_pd_body *pd, bw_pd_block *block)
 {
   const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
-  const int groups = pd->config.n_group;
   bool any = false;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)~block->gone); bw_pd_walk_next(&b);) {
     double y[3];
     const double e = bw_pd_walk_present(&b, y) - b.rest.r0;
     const double f = ((double)o->stiff[b.h] + (double)o->stiff[b.l]) * e +
                      ((double)o->pull[b.h] + (double)o->pull[b.l]) * b.rest.r0;
-    const int pair = bw_pd_body_group_at(pd, b.h) * groups + bw_pd_body_group_at(pd, b.l);
     const bw_real *row =
-        pd->level->row + (size_t)(pair * pd->level->stencil.n + b.slot->direction) * BW_PD_ROW;
-    double limit = (double)row[BW_PD_LIMIT2];
+        bw_pd_state__row(pd, bw_pd_body_level_of(pd, block), bw_pd_body_group_at(pd, b.h),
+                         bw_pd_body_group_at(pd, b.l));
+    double limit = (double)row[b.slot->direction * BW_PD_ROW + BW_PD_LIMIT2];
     if (pd->config.disorder > 0 && o->options.influence == BW_PD_STATE_INVERSE) limit *= b.rest.r0;
     if (!(e > 0 && f * e > limit) || bw_pd_walk_unbreakable(&b)) continue;
     bw_pd_body_cut(pd, block, b.slot, b.lane);

@@ -4,7 +4,8 @@
 
 typedef struct {
   bw_pd_state_ordinary_options options;
-  double crossing; /* sum of Gamma dV xi.n over half of a full family [L^4] */
+  double crossing[BW_PD_FINEST + 1]; /* of each level: sum of Gamma dV xi.n over half of a full
+                                        family [L^4] */
   double lam[BW_PD_GROUPS], mu[BW_PD_GROUPS]; /* lam* and mu [M/(L T^2)] */
   bool dilates;                               /* some lam* is not mu: theta counts */
   bool breakable;                             /* some limit is finite */

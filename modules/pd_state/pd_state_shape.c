@@ -40,17 +40,19 @@ static void invert(const double K[6], int dimension, double out[6])
 bw_pd_state_family bw_pd_state__family(const bw_pd_body *pd, const bw_pd_block *block, int lane,
                                        const bw_pd_slot *without)
 {
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   bw_pd_state_family f = {.spans = false};
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;
-    const double w = bw_pd_correspondence_weight(pd, b.rest.r0) * b.weight, *xi = b.rest.xi;
+    const double w = bw_pd_correspondence_weight(pd, level, b.rest.r0) * b.weight, *xi = b.rest.xi;
     for (int k = 0; k < 3; k++) {
       f.K[k] += w * xi[k] * xi[k];
       f.K[3 + k] += w * xi[(k + 1) % 3] * xi[(k + 2) % 3];
     }
   }
   f.kappa = (f.K[0] + f.K[1] + f.K[2]) / pd->dimension;
-  f.spans = bw_pd_state__least(f.K, pd->dimension) > FLAT * bw_pd_correspondence_of(pd)->kappa;
+  f.spans = bw_pd_state__least(f.K, pd->dimension) >
+            FLAT * bw_pd_correspondence_of(pd)->kappa[block->level];
   if (f.spans) invert(f.K, pd->dimension, f.inverse);
   return f;
 }
@@ -67,10 +69,11 @@ static void block_shapes(const bw_pd_body *pd, const bw_pd_block *block)
     for (int c = 0; c < 6; c++)
       o->inverse[c][h] = (bw_real)f.inverse[c];
     /* kappa of what is left, so that z keeps its weight against H. */
-    o->beta[h] = (bw_real)(f.spans ? bw_pd_correspondence_beta(pd, h, f.kappa) : -o->spring[g]);
+    o->beta[h] = (bw_real)(f.spans ? bw_pd_correspondence_beta(pd, h, f.kappa)
+                                   : -o->spring[block->level][g]);
     if (o->whole == NULL) continue;
-    o->whole[h] =
-        (bw_real)(f.spans ? o->options.stabilisation * o->small[g].mu / f.kappa : -o->spring[g]);
+    o->whole[h] = (bw_real)(f.spans ? o->options.stabilisation * o->small[g].mu / f.kappa
+                                    : -o->spring[block->level][g]);
   }
 }
 

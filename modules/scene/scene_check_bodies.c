@@ -144,12 +144,6 @@ static bw_status check_levels(const bw_scene_config *c, const bw_scene_body *b,
              "bodies.%s.levels: they are of bodies that deform, outside of a flow, without turn; "
              "leave them out",
              b->name);
-  BW_REQUIRE(strcmp(c->contact.between, "none") == 0 || b->motion != BW_SCENE_BREAKABLE ||
-                 b->self_contact == 0,
-             BW_EINPUT,
-             "bodies.%s.levels: contact knows one spacing; give self_contact: false, or contact: "
-             "{between: none}",
-             b->name);
   for (int q = 0; q < b->n_levels; q++)
     BW_REQUIRE(meets(s, bw_scene__planar(c) ? 2 : 3, b->levels[q].from, b->levels[q].to), BW_EINPUT,
                "bodies.%s.levels.%d: nothing of the body is in it; it goes from (%g, %g, %g) to "

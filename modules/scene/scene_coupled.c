@@ -11,18 +11,18 @@ static void find_leaning(bw_scene *s, bw_coupler_config *c)
   double lower[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < q->n; i++)
     for (size_t d = 0; d < 3; d++) {
-      lower[d] = fmin(lower[d], q->X0[3 * i + d]);
-      upper[d] = fmax(upper[d], q->X0[3 * i + d]);
+      /* Particles whose face lies on the wall touch it; those beyond are held under it. */
+      const double near = 0.75 * bw_solid_spacing(q->solid, i);
+      lower[d] = fmin(lower[d], q->X0[3 * i + d] - near);
+      upper[d] = fmax(upper[d], q->X0[3 * i + d] + near);
     }
   bw_comm_min(s->comm, 3, lower);
   bw_comm_max(s->comm, 3, upper);
-  const double ds = bw_solid_settings(q->solid)->ds;
   for (int d = 0; d < (s->planar ? 2 : 3); d++) {
-    /* Particles whose face lies on the wall touch it; those beyond are held under it. */
     const bool walls[2] = {fluid->side[d][0].kind == BW_SIDE_WALL,
                            fluid->side[d][1].kind == BW_SIDE_WALL};
-    c->walled[d][0] = walls[0] && lower[d] < 0.75 * ds;
-    c->walled[d][1] = walls[1] && upper[d] > s->config.domain.length[d] - 0.75 * ds;
+    c->walled[d][0] = walls[0] && lower[d] < 0.0;
+    c->walled[d][1] = walls[1] && upper[d] > s->config.domain.length[d];
   }
 }
 

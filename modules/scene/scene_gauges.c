@@ -61,6 +61,11 @@ static void name_column(const bw_scene *s, const bw_scene__column *c, char name[
            several ? c->what->word : "", part[0] != '\0' ? "." : "", part, c->what->unit);
 }
 
+static double spacing(const bw_scene *s, int solid, int32_t particle)
+{
+  return bw_solid_spacing(s->solid[solid].solid, (size_t)particle);
+}
+
 /* The nearest particles of this rank: all that are as near as the nearest of all ranks. */
 static void keep_nearest(bw_scene *s, const bw_scene_gauge_config *g, bw_scene__aim *aim)
 {
@@ -73,7 +78,7 @@ static void keep_nearest(bw_scene *s, const bw_scene_gauge_config *g, bw_scene__
         const double z = s->planar ? 0.0 : x[2] - g->nearest[2];
         const double r = hypot(hypot(x[0] - g->nearest[0], x[1] - g->nearest[1]), z);
         if (pass == 0) least = fmin(least, r);
-        if (pass == 1 && r <= least + 1e-6 * bw_solid_settings(s->solid[q].solid)->ds)
+        if (pass == 1 && r <= least + 1e-6 * spacing(s, q, aim->particle[q][k]))
           aim->particle[q][kept++] = aim->particle[q][k];
       }
       if (pass == 1) aim->n[q] = kept;
@@ -106,12 +111,11 @@ static bw_status take_aim(bw_scene *s, int gauge)
   BW_TRY(bw_comm_agree(s->comm, st));
   /* Every rank notes its own particles that the gauge looks at. */
   for (int q = 0; q < s->n_solids; q++) {
-    const double ds = bw_solid_settings(s->solid[q].solid)->ds;
     for (size_t i = 0; i < s->solid[q].n; i++) {
       const int b = bw_scene__body_of(&s->solid[q], i);
       if (!belongs(s, g, b, support)) continue;
-      if (g->has_region && !bw_scene__in_box(&g->region, s->planar, ds, s->solid[q].X0 + 3 * i))
-        continue;
+      const double *x = s->solid[q].X0 + 3 * i, ds = bw_solid_spacing(s->solid[q].solid, i);
+      if (g->has_region && !bw_scene__in_box(&g->region, s->planar, ds, x)) continue;
       if (support && !(bw_solid_kind(s->solid[q].solid)[i] & BW_PD_PRESCRIBED)) continue;
       aim->particle[q][aim->n[q]++] = (int32_t)i;
     }

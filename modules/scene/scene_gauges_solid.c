@@ -101,7 +101,7 @@ static bw_status tip_of(bw_scene *s, const bw_scene_gauge_config *g, const bw_sc
   value[0] = g->origin[0], value[1] = g->origin[1], value[2] = g->origin[2], value[3] = 0.0;
   for (int q = 0; q < s->n_solids; q++) {
     const bw_scene__solid *p = &s->solid[q];
-    const double ds = bw_solid_settings(p->solid)->ds;
+    double ds = HUGE_VAL;
     double *damage = NULL, *own = NULL;
     bw_pd_crack crack = {0};
     bw_status st = BW_ALLOCATE(&damage, p->n);
@@ -112,9 +112,11 @@ static bw_status tip_of(bw_scene *s, const bw_scene_gauge_config *g, const bw_sc
       /* What was cut at the start is no part of the crack that is followed. */
       for (int k = 0; k < aim->n[q]; k++) {
         const int32_t i = aim->particle[q][k];
+        ds = fmin(ds, bw_solid_spacing(p->solid, (size_t)i)); /* cracks are in the finest */
         own[i] = p->cut != NULL && p->cut[i] ? 0.0 : damage[i];
       }
     }
+    bw_comm_min(s->comm, 1, &ds);
     BW_THEN(st, bw_pd_crack_collect(s->comm, &look, p->n, p->X0, own, &crack));
     BW_THEN(st, bw_pd_crack_join(&crack, g->origin[0], g->origin[1], 3.0 * ds));
     double tip[2];

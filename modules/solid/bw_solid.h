@@ -207,19 +207,20 @@ const int64_t *bw_solid_id(const bw_solid *solid);               /* (n) global i
 const uint8_t *bw_solid_kind(const bw_solid *solid);             /* (n) bits BW_PD_PRESCRIBED ... */
 const bw_solid_config *bw_solid_settings(const bw_solid *solid); /* of create, defaults resolved */
 const bw_comm *bw_solid_comm(const bw_solid *solid);             /* of create */
-double bw_solid_horizon(const bw_solid *solid);                  /* [L] */
+double bw_solid_horizon(const bw_solid *solid);                  /* of level 0 [L] */
 double bw_solid_micromodulus(const bw_solid *solid);     /* c0 of the first group [M/(L^5 T^2)] */
 double bw_solid_critical_stretch(const bw_solid *solid); /* s0 of the first group [-]; NaN: the
                                                                 law has none */
 double bw_solid_volume(const bw_solid *solid);           /* of one particle of level 0 [L^3] */
 /* What one own particle i is, by its group and its lattice; settings() holds those of the first
  * group. Local. */
-int bw_solid_level(const bw_solid *solid, size_t i);        /* 0: of spacing ds, 1: of ds/2, ... */
-int bw_solid_group(const bw_solid *solid, size_t i);        /* row of the materials, 0: the first */
-double bw_solid_density(const bw_solid *solid, size_t i);   /* [M/L^3] */
-double bw_solid_spacing(const bw_solid *solid, size_t i);   /* [L] */
-double bw_solid_volume_of(const bw_solid *solid, size_t i); /* [L^3] */
-bw_pd_body *bw_solid_body(const bw_solid *solid);           /* for laws and tools */
+int bw_solid_level(const bw_solid *solid, size_t i);      /* 0: of spacing ds, 1: of ds/2, ... */
+int bw_solid_group(const bw_solid *solid, size_t i);      /* row of the materials, 0: the first */
+double bw_solid_density(const bw_solid *solid, size_t i); /* [M/L^3] */
+double bw_solid_spacing(const bw_solid *solid, size_t i); /* [L] */
+double bw_solid_horizon_of(const bw_solid *solid, size_t i); /* [L] */
+double bw_solid_volume_of(const bw_solid *solid, size_t i);  /* [L^3] */
+bw_pd_body *bw_solid_body(const bw_solid *solid);            /* for laws and tools */
 
 /* Copies in the caller's array (n,3). Positions are not wrapped in periodic directions. Local. */
 void bw_solid_get_reference(const bw_solid *solid, double X0[]); /* [L] */

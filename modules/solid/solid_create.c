@@ -47,8 +47,6 @@ static bw_status check_config(const bw_solid_config *c)
              "solid: surface_correction = %d is of bonds; families at faces are whole in a "
              "state-based law, leave it out",
              (int)c->surface_correction);
-  BW_REQUIRE(c->finer.n == 0 || !c->contact, BW_EINPUT,
-             "solid: contact with levels: contact knows one spacing; leave one of them out");
   BW_REQUIRE(
       c->finer.n == 0 || (c->damping.pair == 0 && c->damping.mean == 0), BW_EINPUT,
       "solid: damping.pair = %g, damping.mean = %g with levels: between neighbours they damp "

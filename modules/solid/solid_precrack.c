@@ -36,7 +36,7 @@ static bw_status make_cut(const bw_pd_body *pd, const double a[3], const double 
     out->e2[k] = planar ? k == 2 : c[k] - a[k];
   }
   cross(out->e1, out->e2, out->normal);
-  const double area = sqrt(dot(out->normal, out->normal)), ds = pd->level->ds;
+  const double area = sqrt(dot(out->normal, out->normal)), ds = pd->level[0].ds;
   BW_REQUIRE(area > 0 && isfinite(area), BW_EINPUT,
              "solid_precrack: the crack at (%g, %g, %g) has no extent", a[0], a[1], a[2]);
   for (int k = 0; k < 3; k++)
@@ -78,9 +78,8 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
 static void ends(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot, int lane,
                  double p[3], double q[3])
 {
-  /* The last axis that the two ends differ in tells which is first. */
-  const int32_t *o = bw_pd_body_level_of(pd, block)->stencil.offset + 3 * slot->direction;
-  const bool forward = o[2] != 0 ? o[2] > 0 : o[1] != 0 ? o[1] > 0 : o[0] > 0;
+  const bool forward =
+      bw_pd_body_is_first(&bw_pd_body_level_of(pd, block)->stencil, slot->direction);
   bw_pd_body_reference(pd, (size_t)bw_pd_body_owner(block, lane), forward ? p : q);
   bw_pd_body_reference(pd, (size_t)pd->points.occupant[slot->base + lane], forward ? q : p);
 }
@@ -99,7 +98,7 @@ static bool crosses_image(const bw_pd_body *pd, const cut *c, const double p[3],
         for (int d = 0; d < 3; d++)
           for (int k = 0; k < 3; k++)
             moved.a[k] += image[d] * g->period[d] * g->axes[d][k];
-        if (crosses(&moved, pd->level->ds, p, q)) return true;
+        if (crosses(&moved, pd->level[0].ds, p, q)) return true;
       }
   return false;
 }

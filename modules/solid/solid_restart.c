@@ -74,7 +74,7 @@ uint64_t bw_solid_fingerprint(const bw_solid *s)
     all ^= bw_mix(hash + pd->points.group[i]);
   }
   bw_comm_xor(pd->comm, 1, &all);
-  return mix_number(all, pd->level->horizon);
+  return mix_number(all, pd->level[0].horizon);
 }
 
 size_t bw_solid_restart_row(const bw_solid *s)

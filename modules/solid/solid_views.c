@@ -80,7 +80,7 @@ bw_pd_body *bw_solid_body(const bw_solid *s)
 
 double bw_solid_horizon(const bw_solid *s)
 {
-  return s->body->level->horizon;
+  return s->body->level[0].horizon;
 }
 
 double bw_solid_micromodulus(const bw_solid *s)
@@ -95,7 +95,7 @@ double bw_solid_critical_stretch(const bw_solid *s)
 
 double bw_solid_volume(const bw_solid *s)
 {
-  return s->body->level->dv;
+  return s->body->level[0].dv;
 }
 
 int bw_solid_level(const bw_solid *s, size_t i)
@@ -111,6 +111,11 @@ int bw_solid_group(const bw_solid *s, size_t i)
 double bw_solid_density(const bw_solid *s, size_t i)
 {
   return bw_pd_body_material(s->body, i)->rho;
+}
+
+double bw_solid_horizon_of(const bw_solid *s, size_t i)
+{
+  return bw_pd_body_level(s->body, i)->horizon;
 }
 
 double bw_solid_volume_of(const bw_solid *s, size_t i)
@@ -180,12 +185,12 @@ int bw_solid_links(const bw_solid *s, size_t h, bw_pd_link link[])
 
 const double *bw_solid_stencil_offset(const bw_solid *s, int slot)
 {
-  return s->body->level->stencil.xi + 3 * slot;
+  return s->body->level[0].stencil.xi + 3 * slot;
 }
 
 double bw_solid_stencil_fraction(const bw_solid *s, int slot)
 {
-  return s->body->level->stencil.fraction[slot];
+  return s->body->level[0].stencil.fraction[slot];
 }
 
 bw_pd_extended bw_solid_get_extended(bw_solid *s)

@@ -106,7 +106,8 @@ static void cut(trial *t)
       for (size_t k = 0; k < 3; k++)
         y[k] = t->X0[3 * i + k] + b.rest.xi[k];
       /* From the end that is first in lattice order, so that both decide alike. */
-      const bool forward = 2 * b.slot->direction >= pd->level->stencil.n;
+      const bool forward =
+          bw_pd_body_is_first(&bw_pd_body_level_of(pd, block)->stencil, b.slot->direction);
       const crack *c = &t->crack[t->near[i]];
       if (!meets(t, c, forward ? &t->X0[3 * i] : y, forward ? y : &t->X0[3 * i])) continue;
       b.slot->mask = (uint8_t)(b.slot->mask & ~(1u << b.lane));
@@ -216,9 +217,9 @@ static bw_status release(trial *t)
   for (size_t i = 0; i < pd->n; i++) {
     if (t->near[i] < 0) continue;
     crack *c = &t->crack[t->near[i]];
+    const double dv = bw_pd_body_level(pd, i)->dv;
     for (size_t k = 0; k < 3; k++)
-      c->released +=
-          0.5 * pd->level->dv * t->g[3 * i + k] * (t->u[3 * i + k] + t->d[3 * i + k]) / area;
+      c->released += 0.5 * dv * t->g[3 * i + k] * (t->u[3 * i + k] + t->d[3 * i + k]) / area;
   }
   return BW_OK;
 }
@@ -331,7 +332,7 @@ bw_status bw_solid_failure_griffith(bw_solid *s, const bw_solid_strength *k, dou
              "solid_failure: G0 = %g and flaw = %g must be positive, part = %g from 0 to 1", k->G0,
              k->flaw, part);
   /* A crack is felt by the families of the families it meets; what relaxes reaches further. */
-  trial t = {.pd = pd, .flaw = k->flaw, .apart = k->flaw + 8 * pd->level->reach};
+  trial t = {.pd = pd, .flaw = k->flaw, .apart = k->flaw + 8 * pd->level[0].reach};
   if (!pd->current) bw_pd_body_refresh(pd, false);
   bw_status st = begin(s, &t);
   BW_THEN(st, collect(s, &t, part));

@@ -139,10 +139,6 @@ START_TEST(what_does_not_go_together_is_named)
   refused(c, d, "pierce");
   d.origin[0] = 30, d.period[1] = 4;
   refused(c, d, "period[1]");
-  d = c, d.origin[0] = 30, d.surface_correction = BW_PD_SURFACE_NONE;
-  d.finer.n = 1, d.finer.jump = BW_PD_JUMP_DUAL,
-  d.finer.box[0] = (bw_pd_box){1, {30, 0, 0}, {31, 1, 0.5}};
-  refused(c, d, "levels");
   c = pd_soft(BW_PD_PLANE_STRESS), d = c;
   d.origin[0] = 3, d.thickness = 2;
   refused(c, d, "thickness");

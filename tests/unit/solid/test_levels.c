@@ -359,9 +359,7 @@ START_TEST(what_levels_do_not_go_with_is_refused)
 {
   const bw_solid_config good = nested(BW_PD_3D, 1, BW_PD_JUMP_BALANCED);
   bw_solid_config c = good;
-  c.contact = true;
-  refused(&c, "contact");
-  c = good, c.surface_correction = BW_PD_SURFACE_VOLUME;
+  c.surface_correction = BW_PD_SURFACE_VOLUME;
   refused(&c, "tensor");
   c = good, c.disorder = 0.2;
   refused(&c, "disorder");

@@ -239,11 +239,20 @@ function(_bw_run label name target head)
     set(head_timeout ${BW_TIMEOUT})
   endif()
   separate_arguments(args UNIX_COMMAND "${head_args}")
+  # On few ranks, two where it can be: what the other presets run of each program.
+  list(GET head_ranks -1 head_few)
+  if(2 IN_LIST head_ranks)
+    set(head_few 2)
+  endif()
   foreach(np ${head_ranks})
     add_test(NAME ${label}.${name}.np${np}
              COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} $<TARGET_FILE:${target}> ${args}
              WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
-    set_tests_properties(${label}.${name}.np${np} PROPERTIES LABELS ${label} PROCESSORS ${np}
+    set(labels ${label})
+    if(np EQUAL head_few)
+      list(APPEND labels ${label}.few)
+    endif()
+    set_tests_properties(${label}.${name}.np${np} PROPERTIES LABELS "${labels}" PROCESSORS ${np}
                          TIMEOUT ${head_timeout} ENVIRONMENT "${BW_MPI_ENVIRONMENT}"
                          RESOURCE_LOCK ${label}.${name}) # its files are the same on any np
   endforeach()
@@ -383,7 +392,12 @@ function(bw_scripted_tests)
     get_filename_component(label ${folder} NAME)
     add_test(NAME ${label}.${name}
              COMMAND sh ${script} ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
-    set_tests_properties(${label}.${name} PROPERTIES LABELS ${label} PROCESSORS 2
+    # A lint is one process that reads; other scripts start runs on several ranks.
+    set(processors 2)
+    if(label STREQUAL lint)
+      set(processors 1)
+    endif()
+    set_tests_properties(${label}.${name} PROPERTIES LABELS ${label} PROCESSORS ${processors}
                          TIMEOUT ${BW_SCRIPT_TIMEOUT}
                          ENVIRONMENT "${BW_MPI_ENVIRONMENT}")
   endforeach()

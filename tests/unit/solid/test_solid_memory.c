@@ -3,7 +3,7 @@
  * By hand with any number of particles (the figures of a body of four million):
  *   mpirun -n 4 build/bin/test_solid_memory 4e6
  * BUILD modules=shape
- * TEST ranks=1,2,4 timeout=600 */
+ * TEST ranks=2,4 timeout=600 */
 #include "bw_check.h"
 #include "bw_memory.h"
 #include "bw_shape.h"

@@ -37,6 +37,7 @@ typedef struct {
   int size[3], type, byte_order, skip; /* of a raw file; size INT_MIN: it is none */
   int from[3], to[3]; /* voxels that count, first and behind the last; INT_MIN: all */
   bool flip[3];       /* the last voxel along x, y, z comes first */
+  int coarsen[3];     /* voxels along x, y, z that make one                 default 1, 1, 1 */
 } porous_image;
 /* A medium from a closed surface. */
 typedef struct {

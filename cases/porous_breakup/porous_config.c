@@ -98,6 +98,8 @@ static const bw_config_field image_fields[] = {
       "voxel along x, y, z before which it ends; left out: all count"),
     V(porous_image, flip, BW_OPTIONAL, BW_ANY, "",
       "whether the voxels along x, y, z come in reverse"),
+    V(porous_image, coarsen, BW_OPTIONAL, BW_FROM_TO(1, 1024), "",
+      "voxels along x, y, z that make one, solid where half of them are"),
     BW_CONFIG_END};
 static const bw_config_field surface_fields[] = {
     V(porous_surface, file, BW_REQUIRED, BW_FILE, "", "path of an STL file with a closed surface"),
@@ -190,6 +192,7 @@ porous_config porous_config_default(void)
                                               .unit = unset,
                                               .size = {unset, unset, unset},
                                               .type = unset,
+                                              .coarsen = {1, 1, 1},
                                               .from = {unset, unset, unset},
                                               .to = {unset, unset, unset}},
                                     .surface = {.scale = 1.0},

@@ -151,6 +151,8 @@ bw_status porous_image_body(const porous_config *q, porous_body *b)
   BW_TRY(open_image(m, &b->mask));
   BW_TRY(cut_image(m, b->mask));
   BW_TRY(set_spacing(m, b->mask));
+  if (m->coarsen[0] * m->coarsen[1] * m->coarsen[2] > 1)
+    BW_TRY(bw_shape_mask_coarsen(b->mask, m->coarsen));
   BW_TRY(check_length(q, b->mask));
   /* Its corner at the front, on the floor and at z = 0, wherever the file puts it. */
   memcpy(b->mask->lower, box.lower, sizeof b->mask->lower);

@@ -145,6 +145,9 @@ typedef struct {
   double low, high;         /* voxels of [low, high] are solid */
   double at[3];             /* lower corner [L]; NaN: the file's */
   double voxel;             /* edge of a voxel [L]; NaN: the file's */
+  int from[3], to[3];       /* voxels that count, first and behind the last; INT_MIN: all */
+  bool flip[3];             /* the last voxel along x, y, z comes first */
+  int coarsen[3];           /* voxels along x, y, z that make one */
 } bw_scene_image;
 typedef struct {
   char file[BW_SCENE_PATH]; /* binary or text STL */

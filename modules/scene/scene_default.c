@@ -26,7 +26,13 @@ static void default_body(bw_scene_body *b)
   s->cylinder = (bw_scene_cylinder){2, {NAN, NAN}, NAN, NAN, NAN};
   s->sphere = (bw_scene_sphere){{NAN, NAN, NAN}, NAN};
   s->pores = (bw_scene_pores){INT_MIN, {NAN, NAN, NAN}, NAN, NAN};
-  s->image = (bw_scene_image){"", 0.5, BW_CONFIG_LARGEST, {NAN, NAN, NAN}, NAN};
+  s->image = (bw_scene_image){.low = 0.5,
+                              .high = BW_CONFIG_LARGEST,
+                              .at = {NAN, NAN, NAN},
+                              .voxel = NAN,
+                              .from = {INT_MIN, INT_MIN, INT_MIN},
+                              .to = {INT_MIN, INT_MIN, INT_MIN},
+                              .coarsen = {1, 1, 1}};
   s->stl = (bw_scene_stl){"", 1.0, NAN};
 }
 

@@ -50,12 +50,21 @@ static const bw_config_field pores_fields[] = {
     V(bw_scene_pores, pitch, BW_REQUIRED, BW_ABOVE(0), "L", "edge of the lattice's cube"),
     BW_CONFIG_END};
 static const bw_config_field image_fields[] = {
-    V(bw_scene_image, file, BW_REQUIRED, BW_FILE, "", "voxel image: .nrrd .nhdr .mhd .mha"),
+    V(bw_scene_image, file, BW_REQUIRED, BW_FILE, "",
+      "voxel image: NRRD, MetaImage, TIFF, npy; a folder or pattern of TIFF"),
     V(bw_scene_image, low, BW_OPTIONAL, BW_ANY, "", "least value of a voxel that is solid"),
     V(bw_scene_image, high, BW_OPTIONAL, BW_ANY, "", "largest value of a voxel that is solid"),
     V(bw_scene_image, at, BW_OPTIONAL, BW_POINT, "L", "lower corner; left out: the file's"),
     V(bw_scene_image, voxel, BW_OPTIONAL, BW_ABOVE(0), "L",
       "edge of a voxel; left out: the file's"),
+    V(bw_scene_image, from, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "first voxel along x, y, z that counts, from 0"),
+    V(bw_scene_image, to, BW_OPTIONAL, BW_AT_LEAST(1), "",
+      "voxel along x, y, z before which it ends; left out: all count"),
+    V(bw_scene_image, flip, BW_OPTIONAL, BW_ANY, "",
+      "whether the voxels along x, y, z come in reverse"),
+    V(bw_scene_image, coarsen, BW_OPTIONAL, BW_FROM_TO(1, 1024), "",
+      "voxels along x, y, z that make one, solid where half of them are"),
     BW_CONFIG_END};
 static const bw_config_field stl_fields[] = {
     V(bw_scene_stl, file, BW_REQUIRED, BW_FILE, "", "closed surface of triangles"),

@@ -2,6 +2,7 @@
 #include "scene_shapes.h"
 
 #include "bw_memory.h"
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -81,6 +82,30 @@ static void add_round(const bw_scene_shape *part, int p, bw_scene__shapes *s)
   add(s, p, shape);
 }
 
+/* The part of an image that counts, mirrored, and brought to fewer voxels. */
+static bw_status cut_image(const bw_scene_body *b, const bw_scene_image *m, int p,
+                           bw_shape_mask *mask)
+{
+  int64_t from[3], to[3];
+  for (int d = 0; d < 3; d++) {
+    from[d] = m->from[d] != INT_MIN ? m->from[d] : 0;
+    to[d] = m->to[d] != INT_MIN ? m->to[d] : mask->size[d];
+    BW_REQUIRE(from[d] < to[d] && to[d] <= mask->size[d], BW_EINPUT,
+               "bodies.%s.shape.%d.image: from[%d] = %lld, to[%d] = %lld: the image has the voxels "
+               "0 to %lld along %c",
+               b->name, p, d, (long long)from[d], d, (long long)to[d], (long long)mask->size[d] - 1,
+               "xyz"[d]);
+    BW_REQUIRE(m->coarsen[d] <= to[d] - from[d], BW_EINPUT,
+               "bodies.%s.shape.%d.image: coarsen[%d] = %d, but there are %lld voxels along %c",
+               b->name, p, d, m->coarsen[d], (long long)(to[d] - from[d]), "xyz"[d]);
+  }
+  BW_TRY(bw_shape_mask_crop(mask, from, to));
+  for (int d = 0; d < 3; d++)
+    if (m->flip[d]) BW_TRY(bw_shape_mask_flip(mask, d));
+  return m->coarsen[0] * m->coarsen[1] * m->coarsen[2] > 1 ? bw_shape_mask_coarsen(mask, m->coarsen)
+                                                           : BW_OK;
+}
+
 static bw_status add_mask(const bw_scene_body *b, const bw_scene_shape *part, int p,
                           bw_scene__shapes *s)
 {
@@ -97,10 +122,11 @@ static bw_status add_mask(const bw_scene_body *b, const bw_scene_shape *part, in
       "bodies.%s.shape.%d.image: %s does not say how large a voxel is; give its edge (voxel)",
       b->name, p, part->image.file);
   /* Where the file puts it, or where the scene does. */
-  for (int d = 0; part->has_image && d < 3; d++) {
+  for (int d = 0; part->has_image && d < 3; d++)
     if (!isnan(part->image.voxel)) (*mask)->spacing[d] = part->image.voxel;
+  if (part->has_image) BW_TRY(cut_image(b, &part->image, p, *mask));
+  for (int d = 0; part->has_image && d < 3; d++)
     if (!isnan(part->image.at[d])) (*mask)->lower[d] = part->image.at[d];
-  }
   add(s, p, (bw_shape){.kind = BW_SHAPE_MASK, .remove = part->remove, .mask = *mask});
   return BW_OK;
 }

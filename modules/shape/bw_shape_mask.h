@@ -73,6 +73,13 @@ bw_status bw_shape_mask_crop(bw_shape_mask *mask, const int64_t from[3],
  * is. BW_EINPUT for a mask without a file. Local. */
 bw_status bw_shape_mask_flip(bw_shape_mask *mask, int axis) BW_MUST_CHECK;
 
+/* Cells of an open mask become blocks of factor[d] >= 1 of them, solid where at least half of them
+ * are; at the upper ends what makes no whole block is left out. So an image is brought to the
+ * spacing of the particles, where taking the voxel at each centre would miss what lies between.
+ * Crop and flip first. BW_EINPUT for a factor that is none or longer than the mask, for a mask
+ * without a file, or coarsened before. Local. */
+bw_status bw_shape_mask_coarsen(bw_shape_mask *mask, const int factor[3]) BW_MUST_CHECK;
+
 /* The solid of a mask. */
 typedef struct {
   double volume; /* of its solid cells [L^3] */

@@ -97,18 +97,68 @@ static bw_status make_room(int64_t first, int64_t layers, bw_shape_mask *mask)
   return BW_OK;
 }
 
-bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
+/* The same layers as the file numbers them; its other ones are not touched. */
+static bw_status read_layers(bw_shape_mask *mask, int64_t first, int64_t layers)
 {
   bw_shape_source *from = mask->source;
+  const int64_t at = from->first[2] + (from->flipped[2] ? mask->size[2] - first - layers : first);
+  return from->reader->read(from, at, at + layers, mask);
+}
+
+/* Layer k of a coarse mask from the layers that `fine` holds of it. */
+static void join_cells(const bw_shape_mask *fine, const int64_t c[3], int64_t k,
+                       bw_shape_mask *mask)
+{
+  uint8_t *row = mask->solid + (k - mask->first) * mask->size[1] * mask->size[0];
+  for (int64_t j = 0; j < mask->size[1]; j++, row += mask->size[0])
+    for (int64_t i = 0; i < mask->size[0]; i++) {
+      int64_t solid = 0;
+      for (int64_t z = 0; z < c[2]; z++)
+        for (int64_t y = 0; y < c[1]; y++) {
+          const int64_t at = k * c[2] + z - fine->first;
+          const uint8_t *from = fine->solid + (at * fine->size[1] + j * c[1] + y) * fine->size[0];
+          for (int64_t x = 0; x < c[0]; x++)
+            solid += from[i * c[0] + x];
+        }
+      row[i] = 2 * solid >= c[0] * c[1] * c[2];
+    }
+}
+
+/* The layers that a coarse mask holds, some of them at a time: 64 MB of the file's voxels, and one
+ * layer at least. */
+static bw_status read_coarse(bw_shape_mask *mask)
+{
+  static const double at_once = 64e6;
+  const int64_t *c = mask->source->coarse, end = mask->first + mask->held;
+  bw_shape_mask fine = *mask;
+  bw_status st = BW_OK;
+  fine.solid = NULL, fine.held = 0;
+  for (int d = 0; d < 3; d++)
+    fine.size[d] *= c[d];
+  const double layer = (double)fine.size[0] * (double)fine.size[1] * (double)c[2];
+  const int64_t many = (int64_t)fmax(1.0, floor(at_once / layer));
+  for (int64_t k = mask->first, some; k < end && st == BW_OK; k += some) {
+    some = k + many < end ? many : end - k;
+    st = make_room(k * c[2], some * c[2], &fine);
+    BW_THEN(st, read_layers(&fine, k * c[2], some * c[2]));
+    for (int64_t q = k; st == BW_OK && q < k + some; q++)
+      join_cells(&fine, c, q, mask);
+  }
+  mask->about = fine.about;
+  bw_release(&fine.solid);
+  return st;
+}
+
+bw_status bw_shape_mask_hold(bw_shape_mask *mask, int64_t first, int64_t layers)
+{
   BW_REQUIRE(first >= 0 && layers >= 0 && first <= mask->size[2] - layers, BW_EINPUT,
              "mask: there are no layers %lld .. %lld of %lld", (long long)first,
              (long long)(first + layers), (long long)mask->size[2]);
   /* What is asked for may be here already. */
   if (first >= mask->first && first + layers <= mask->first + mask->held) return BW_OK;
   BW_TRY(make_room(first, layers, mask));
-  /* The same layers as the file numbers them; its other ones are not touched. */
-  const int64_t at = from->first[2] + (from->flipped[2] ? mask->size[2] - first - layers : first);
-  const bw_status st = from->reader->read(from, at, at + layers, mask);
+  const bw_status st =
+      mask->source->coarse[0] > 0 ? read_coarse(mask) : read_layers(mask, first, layers);
   /* Half read is not held. */
   if (st != BW_OK) mask->held = 0;
   return st;
@@ -129,7 +179,8 @@ bw_status bw_shape__mask_all(bw_status st, bw_shape_mask **mask)
 
 bw_status bw_shape_mask_crop(bw_shape_mask *mask, const int64_t from[3], const int64_t to[3])
 {
-  BW_REQUIRE(mask->source != NULL, BW_EINPUT, "mask: only an open one can be cropped");
+  BW_REQUIRE(mask->source != NULL && mask->source->coarse[0] == 0, BW_EINPUT,
+             "mask: only an open one can be cropped, before it is coarsened");
   for (int d = 0; d < 3; d++)
     BW_REQUIRE(from[d] >= 0 && from[d] < to[d] && to[d] <= mask->size[d], BW_EINPUT,
                "%s: crop from %lld to %lld in direction %d; it has voxels 0 .. %lld",
@@ -146,10 +197,32 @@ bw_status bw_shape_mask_crop(bw_shape_mask *mask, const int64_t from[3], const i
 
 bw_status bw_shape_mask_flip(bw_shape_mask *mask, int axis)
 {
-  BW_REQUIRE(mask->source != NULL, BW_EINPUT, "mask: only an open one can be flipped");
+  BW_REQUIRE(mask->source != NULL && mask->source->coarse[0] == 0, BW_EINPUT,
+             "mask: only an open one can be flipped, before it is coarsened");
   BW_REQUIRE(axis >= 0 && axis <= 2, BW_EINPUT, "mask: axis = %d has to be 0, 1 or 2", axis);
   mask->source->flipped[axis] = !mask->source->flipped[axis];
   mask->first = mask->held = 0;
+  return BW_OK;
+}
+
+bw_status bw_shape_mask_coarsen(bw_shape_mask *mask, const int factor[3])
+{
+  const int64_t none[3] = {0};
+  int64_t to[3];
+  BW_REQUIRE(mask->source != NULL && mask->source->coarse[0] == 0, BW_EINPUT,
+             "mask: only an open one can be coarsened, and once");
+  for (int d = 0; d < 3; d++) {
+    BW_REQUIRE(factor[d] >= 1 && factor[d] <= mask->size[d], BW_EINPUT,
+               "%s: blocks of %d cells along %c; from 1 to the %lld that there are",
+               mask->source->path, factor[d], "xyz"[d], (long long)mask -> size[d]);
+    to[d] = mask->size[d] - mask->size[d] % factor[d];
+  }
+  BW_TRY(bw_shape_mask_crop(mask, none, to));
+  for (int d = 0; d < 3; d++) {
+    mask->source->coarse[d] = factor[d];
+    mask->size[d] /= factor[d];
+    mask->spacing[d] *= factor[d];
+  }
   return BW_OK;
 }
 

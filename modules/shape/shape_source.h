@@ -19,6 +19,7 @@ struct bw_shape_source {
   double low, high;  /* values of a solid voxel */
   int64_t first[3];  /* the voxel of the file that lies first in the mask, counted in the file */
   bool flipped[3];   /* the mask goes from high to low numbers of the file */
+  int64_t coarse[3]; /* voxels of the file in a cell of the mask; 0: one, as it is read */
   const bw_shape__reader *reader;
   void *state; /* the reader's own */
 };

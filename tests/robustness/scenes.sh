@@ -72,6 +72,8 @@ refused $beam gravity="[1e45, 0]" "gravity: by 1e+45, beam falls"
 refused $beam bodies.beam.velocity="[1e45, 0]" "bodies.beam.velocity: 1e+45 is"
 refused $flow fluid.viscosity=1e45 "phases.0.until.time = 20 takes"
 refused $flow fluid.viscosity=1e-45 "the cell Reynolds number is 1e+44"
+refused rock_from_image "bodies.rock.shape.0.image.coarsen=[25, 1, 1]" "there are 24 voxels along x"
+refused rock_from_image "bodies.rock.shape.0.image.to=[25, 1, 1]" "has the voxels 0 to 23 along x"
 refused $flow fluid.model=particles "fluid.model = particles: not in this build"
 refused $flow "domain.cells=[120, 61, 1]" "cells are cubes"
 refused $flow fluid.sides.x.lower.mean=-1 "nothing comes in through this inflow"
@@ -108,6 +110,30 @@ area = sum((b[0] - a[0]) * (a[1] + b[1]) / 2 for a, b in zip(y, y[1:]))
 for name, right in (("drag.box.x", (max(x) + min(x)) / 2), ("dp", area / (y[-1][0] - y[0][0]))):
     if abs(said[name] - right) > 1e-7 * abs(right):
         raise SystemExit(f"watch.{name}: mean {said[name]} for {right}")
+END
+
+# ---- parts of an image, and blocks of its voxels, counted by another hand ------------------------
+rock=$source/scenes/rock_from_image
+counted() {
+  "$build/bin/breakwater" "$rock/rock_from_image.yaml" --check "$@" 2>&1 |
+    sed -n 's/^solid .*rock: \([0-9]*\) particles.*/\1/p'
+}
+image=bodies.rock.shape.0.image
+upper=$(counted --set "$image.from=[12, 0, 0]" --set "$image.flip=[true, false, false]")
+lower=$(counted --set "$image.from=[0, 0, 0]" --set "$image.to=[12, 24, 24]")
+blocks=$(counted --set "domain.cells=[24, 12, 12]" --set "$image.coarsen=[2, 2, 2]")
+/usr/bin/python3 - "$rock/rock.nrrd" "$upper $lower $blocks" <<'END' || bad=1
+import sys
+voxel = open(sys.argv[1], "rb").read().split(b"\n\n", 1)[1]
+N = range(24)
+solid = {(i, j, k): voxel[i + 24 * (j + 24 * k)] >= 100 for i in N for j in N for k in N}
+half = sum(s for (i, _, _), s in solid.items() if i >= 12)
+eight = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+blocks = sum(sum(solid[i + x, j + y, k + z] for x, y, z in eight) >= 4
+             for i in N[::2] for j in N[::2] for k in N[::2])
+right = f"{half} {sum(solid.values()) - half} {blocks}"
+if sys.argv[2] != right:
+    raise SystemExit(f"parts and blocks of the rock: {sys.argv[2]} particles for {right}")
 END
 
 # ---- help and schema ----------------------------------------------------------------------------

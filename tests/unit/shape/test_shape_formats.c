@@ -323,6 +323,55 @@ START_TEST(crop_and_flip)
 }
 END_TEST
 
+/* Blocks of voxels, solid where half of them are, also of a part and its mirror image, read layer by
+ * layer; what makes no whole block is left out. */
+START_TEST(blocks_of_voxels)
+{
+  enum { EDGE = 11 };
+  static const int factor[][3] = {{1, 1, 1}, {2, 2, 2}, {3, 1, 2}, {5, 4, 3}};
+  static unsigned char fine[EDGE * EDGE * EDGE];
+  for (int q = 0; q < EDGE * EDGE * EDGE; q++)
+    fine[q] = (unsigned char)(q * q % 251 > 120);
+  write_file("c.raw", "", fine, sizeof fine);
+  const bw_shape_voxels v = {.size = {EDGE, EDGE, EDGE}, .spacing = {1, 2, 3}};
+  const int64_t from[3] = {1, 0, 0}, to[3] = {EDGE, EDGE, EDGE};
+  for (int q = 0; q < 4; q++) {
+    const int *c = factor[q];
+    bw_shape_mask *m = NULL;
+    bw_check_ok(bw_shape_mask_open_raw(path_of("c.raw"), &v, 1, 1, &m));
+    bw_check_ok(bw_shape_mask_crop(m, from, to));
+    bw_check_ok(bw_shape_mask_flip(m, 2));
+    bw_check_ok(bw_shape_mask_coarsen(m, c));
+    bw_check_near(m->lower[0], 1, 1e-12);
+    for (int d = 0; d < 3; d++) {
+      ck_assert_int_eq(m->size[d], (EDGE - from[d]) / c[d]);
+      bw_check_near(m->spacing[d], v.spacing[d] * c[d], 1e-12);
+    }
+    for (int64_t k = 0; k < m->size[2]; k++) {
+      bw_check_ok(bw_shape_mask_hold(m, k, 1));
+      for (int64_t j = 0; j < m->size[1]; j++)
+        for (int64_t i = 0; i < m->size[0]; i++) {
+          int solid = 0;
+          for (int64_t z = k * c[2]; z < (k + 1) * c[2]; z++)
+            for (int64_t y = j * c[1]; y < (j + 1) * c[1]; y++)
+              for (int64_t x = i * c[0]; x < (i + 1) * c[0]; x++)
+                solid += fine[x + 1 + EDGE * (y + EDGE * (EDGE - 1 - z))];
+          ck_assert_int_eq(m->solid[i + m->size[0] * j], 2 * solid >= c[0] * c[1] * c[2]);
+        }
+    }
+    bw_check_status(bw_shape_mask_coarsen(m, factor[1]), BW_EINPUT);
+    bw_check_status(bw_shape_mask_flip(m, 0), BW_EINPUT);
+    bw_shape_mask_destroy(&m);
+  }
+  bw_shape_mask *m = NULL;
+  bw_check_ok(bw_shape_mask_open_raw(path_of("c.raw"), &v, 1, 1, &m));
+  bw_check_status(bw_shape_mask_coarsen(m, (const int[3]){1, 12, 1}), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "blocks of 12 cells along y"));
+  bw_shape_mask_destroy(&m);
+  remove(path_of("c.raw"));
+}
+END_TEST
+
 START_TEST(the_system_says_why)
 {
   must_refuse("gone.nrrd", "No such file");
@@ -346,5 +395,6 @@ static const bw_check_test tests[] = {BW_TEST(words_of_nrrd),
                                       BW_TEST(headers_that_claim_too_much),
                                       BW_TEST(arrays_of_numpy),
                                       BW_TEST(crop_and_flip),
+                                      BW_TEST(blocks_of_voxels),
                                       BW_TEST(the_system_says_why)};
 BW_CHECK_MAIN("shape.formats", tests)

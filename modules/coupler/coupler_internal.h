@@ -58,7 +58,8 @@ typedef struct {
  * inside at the beginning (n,3); guess of the markers' and its residual (n_surface,3); what earlier
  * tries of the step taught, (n_surface,3) a column. */
 enum { BW_COUPLER__COLUMNS = 30 };
-#define BW_COUPLER__THETA 0.8 /* of the displacement; ringing: -2/3 */
+enum { BW_COUPLER__START = 100 }; /* steps in which every flow slips */
+#define BW_COUPLER__THETA 0.8     /* of the displacement; ringing: -2/3 */
 typedef struct {
   bw_coupler__state start;
   double *X, *answer, *load, *inside, *guess, *residual;
@@ -128,7 +129,7 @@ struct bw_coupler {
   int iterations;
   double residual;
   int64_t unconverged;
-  int64_t steps;       /* since create */
+  int64_t steps;       /* since create; a restart begins behind the start */
   size_t handed;       /* markers that this rank has handed over */
   int slip_above;      /* reports in a row with much slip; -1: it was said */
   double slip_last[2]; /* slip and leak of the last of them */

@@ -82,7 +82,7 @@ static double measure_leak(bw_coupler *c, double speed)
   return past > 0.0 ? sum[0] / past : 0.0;
 }
 
-enum { IN_A_ROW = 5, SETTLED = 100 }; /* a start is no news */
+enum { IN_A_ROW = 5 }; /* reports */
 
 static bool much_slip(const bw_coupler *c)
 {
@@ -93,7 +93,7 @@ static bool much_slip(const bw_coupler *c)
 static void tell_slip(bw_coupler *c, bw_log *log)
 {
   char start[64] = "";
-  if (c->steps < SETTLED)
+  if (c->steps < BW_COUPLER__START)
     snprintf(start, sizeof start, "run longer (%lld steps are a start), ", (long long)c->steps);
   c->slip_above = -1;
   bw_log_warn(log,
@@ -106,14 +106,15 @@ static void tell_slip(bw_coupler *c, bw_log *log)
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
 {
   c->slip_last[0] = r->slip, c->slip_last[1] = r->leak;
-  if (c->slip_above < 0 || c->steps < SETTLED) return;
+  if (c->slip_above < 0 || c->steps < BW_COUPLER__START) return;
   c->slip_above = much_slip(c) ? c->slip_above + 1 : 0;
   if (c->slip_above == IN_A_ROW) tell_slip(c, log);
 }
 
 void bw_coupler_warn_end(bw_coupler *c, bw_log *log)
 {
-  if (c->slip_above >= 0 && much_slip(c)) tell_slip(c, log);
+  /* Where nothing was stepped nothing is new. */
+  if (c->steps > 0 && c->slip_above >= 0 && much_slip(c)) tell_slip(c, log);
 }
 
 void bw_coupler_warn_load(bw_coupler *c, const bw_coupler_report *r, bw_log *log)

@@ -217,6 +217,7 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
   memset(c->book.window, 0, sizeof c->book.window); /* windows begin anew */
   c->book.steps = 0;
   BW_TRY(bw_coupler__state_restore(c, &c->kept));
+  c->steps = BW_COUPLER__START;
   /* The surface follows from bonds and places. */
   return bw_coupler__follow_surface(c);
 }

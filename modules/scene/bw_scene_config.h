@@ -6,9 +6,7 @@
 #pragma once
 #include "bw_config.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+BW_BEGIN_DECLS
 
 /* Sizes of the lists of a scene. */
 enum {
@@ -398,6 +396,4 @@ bw_status bw_scene_check(const bw_scene_config *c) BW_MUST_CHECK;
 /* The keys as a JSON schema (draft 2020-12). Local. */
 void bw_scene_schema(FILE *out);
 
-#ifdef __cplusplus
-}
-#endif
+BW_END_DECLS

@@ -91,11 +91,12 @@ grep -q "upper wall in y is a gap of about 1.0 cells" "$out/log" || complain "no
 # ---- what is watched, and a slice, once more from the rows that were written ---------------------
 sed -e "s/^gauges:/&\\n  cut: {slice: {axis: z, at: 0}, of: velocity, every: 1}/" \
   "$source/scenes/$flow/$flow.yaml" >"$out/watched.yaml"
-"$build/bin/breakwater" "$out/watched.yaml" --quiet --out "$out/watched" \
+"$build/bin/breakwater" "$out/watched.yaml" --out "$out/watched" --set watch.0.frequency=true \
   --set domain.cells="[60, 30, 1]" --set domain.length="[8, 4, 0.133333333333333]" \
   --set phases.0.until.time=1 --set output.sample_every=0.1 \
   --set watch.0.from=0.25 --set watch.1.from=0.25 \
   >"$out/log" 2>&1 || complain "watched: $(tail -1 "$out/log")"
+grep -q "^drag.box.x  *mean (midrange) .*frequency .*whole period" "$out/log" || complain "watch: no line"
 [ "$(cat "$out"/watched/cut-*.csv | wc -l)" -eq 1801 ] || complain "a slice is not 60 x 30 cells"
 /usr/bin/python3 - "$out/watched" <<'END' || bad=1
 import csv, sys
@@ -137,6 +138,8 @@ if sys.argv[2] != right:
 END
 
 # ---- help and schema ----------------------------------------------------------------------------
+"$build/bin/breakwater" "$source/scenes/flap_behind_cylinder/flap_behind_cylinder.yaml" --check |
+  grep -q "^coupling  *about [0-9]* sub-steps of the solid" || complain "--check: no sub-steps"
 "$build/bin/breakwater" --help bodies.N.motion | grep -q breakable || complain "--help KEY"
 "$build/bin/breakwater" --schema >"$out/schema.json"
 /usr/bin/python3 - "$out/schema.json" "$source"/scenes/*/*.yaml <<'END' || bad=1

@@ -142,6 +142,9 @@ START_TEST(a_restart_goes_on_to_the_last_bit)
   const bw_coupler_particles_report b = bw_coupler_particles_measure(rest.coupler);
   bw_check_near(a.received, b.received, 1e-13 * fabs(a.received));
   bw_check_near(a.given, b.given, 1e-13 * fabs(a.given));
+  const double all = hypot(hypot(a.impulse[0], a.impulse[1]), a.impulse[2]);
+  for (int k = 0; k < 3; k++)
+    bw_check_near(b.impulse[k], a.impulse[k], 1e-13 * all);
   splash_free(&whole);
   splash_free(&part);
   splash_free(&rest);
@@ -199,9 +202,19 @@ START_TEST(what_cannot_be_is_refused)
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "inside the solid"));
   /* A second solid, other dimensions, values out of range. */
   bw_check_status(bw_coupler_particles_create(&q, &c, p.fluid, p.solid, 0, NULL, &none), BW_EINPUT);
-  q.solid_safety = 2;
-  bw_check_status(bw_coupler_particles_create(&q, &c, u, p.solid, 0, NULL, &none), BW_EINPUT);
-  q.solid_safety = 0.8, c.dimensions = 3;
+  static const struct {
+    double safety, mass, share;
+    const char *word;
+  } wrong[] = {{2, 1, 0.9, "solid_safety is 2"},     {0, 1, 0.9, "solid_safety is 0"},
+               {0.8, -1, 0.9, "virtual_mass is -1"}, {0.8, 11, 0.9, "virtual_mass is 11"},
+               {0.8, 1, 0, "step_share is 0"},       {0.8, 1, 1.5, "step_share is 1.5"}};
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+    q.solid_safety = wrong[k].safety, q.virtual_mass = wrong[k].mass;
+    q.step_share = wrong[k].share;
+    bw_check_status(bw_coupler_particles_create(&q, &c, u, p.solid, 0, NULL, &none), BW_EINPUT);
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), wrong[k].word));
+  }
+  q = bw_coupler_particles_config_default(), c.dimensions = 3;
   bw_check_status(bw_coupler_particles_create(&q, &c, u, p.solid, 0, NULL, &none), BW_EINPUT);
   ck_assert_ptr_null(none);
   bw_ulph_destroy(&u);

@@ -126,6 +126,22 @@ START_TEST(rigid_and_particles)
 }
 END_TEST
 
+/* Damping of a phase, a force -c V v: velocity and spin of a body of density rho decay alike, by
+ * exp(-c t/rho); the force of a step is that at its beginning. */
+START_TEST(damping_stops_motion_and_spin)
+{
+  bw_scene *s = made(STEEL "bodies: {a: {shape: {box: {from: [0, 0], to: [0.4, 0.4]}}, material: m,"
+                           " motion: rigid, spacing: 0.05, velocity: [1, 0],"
+                           " rotation: {rate: 0.5, centre: [0.2, 0.2]}}}\n"
+                           "phases: {until: 1, damp: 3}\nnumerics: {step: 0.001}\n"
+                           "gauges: {a: {body: a, of: [velocity, spin]}}\n");
+  run(s);
+  bw_check_near(gauge(s, "a.velocity.x"), exp(-1.0), 2e-3);
+  bw_check_near(gauge(s, "a.spin.z"), 0.5 * exp(-1.0), 2e-3);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
 /* The state of a scene in a checkpoint, and a scene that goes on from it. */
 static bw_scene *again(bw_scene *s, const char *text)
 {
@@ -275,7 +291,13 @@ START_TEST(refused)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(springs), BW_TEST(mass_of_the_file), BW_TEST(rigid_meet), BW_TEST(rigid_and_particles),
-    BW_TEST(flow),    BW_TEST(stream_or_motion), BW_TEST(restart),    BW_TEST(refused)};
+static const bw_check_test tests[] = {BW_TEST(springs),
+                                      BW_TEST(mass_of_the_file),
+                                      BW_TEST(rigid_meet),
+                                      BW_TEST(rigid_and_particles),
+                                      BW_TEST(damping_stops_motion_and_spin),
+                                      BW_TEST(flow),
+                                      BW_TEST(stream_or_motion),
+                                      BW_TEST(restart),
+                                      BW_TEST(refused)};
 BW_CHECK_MAIN("scene.rigid", tests)

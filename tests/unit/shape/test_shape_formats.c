@@ -323,8 +323,8 @@ START_TEST(crop_and_flip)
 }
 END_TEST
 
-/* Blocks of voxels, solid where half of them are, also of a part and its mirror image, read layer by
- * layer; what makes no whole block is left out. */
+/* Blocks of voxels, solid where half of them are, also of a part and its mirror image, read layer
+ * by layer; what makes no whole block is left out. */
 START_TEST(blocks_of_voxels)
 {
   enum { EDGE = 11 };

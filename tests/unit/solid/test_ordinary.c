@@ -79,6 +79,25 @@ START_TEST(the_book_closes_to_the_order_of_the_integrator)
 }
 END_TEST
 
+/* Far beyond s0, bonds stay while breaking is off, and go when it is on. */
+START_TEST(breaking_can_be_turned_off)
+{
+  bw_solid_config c = with(BW_PD_3D, 0.4);
+  c.G0 = 1e-9;
+  pd_body body = pd_box(6, 4, 4);
+  bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+  pd_set(pd, NULL, state_tremble);
+  bw_solid_enable_breakage(pd, false);
+  pd_steps(pd, 5, 0.2 * bw_solid_dt_max(pd));
+  ck_assert_int_eq(ledger_of(pd).broken, 0);
+  bw_solid_enable_breakage(pd, true);
+  pd_steps(pd, 5, 0.2 * bw_solid_dt_max(pd));
+  ck_assert_int_gt(ledger_of(pd).broken, 0);
+  bw_solid_destroy(&pd);
+  pd_body_release(&body);
+}
+END_TEST
+
 START_TEST(same_on_any_number_of_ranks_and_after_a_restart)
 {
   bw_solid_config c = with(BW_PD_3D, 0.4);
@@ -145,6 +164,7 @@ static const bw_check_test tests[] = {BW_TEST(force_is_the_derivative_of_energy)
                                       BW_TEST(rest_by_relaxation_and_by_the_linear_solve),
                                       BW_TEST(with_the_ratio_of_bonds_it_is_the_bond_law),
                                       BW_TEST(the_book_closes_to_the_order_of_the_integrator),
+                                      BW_TEST(breaking_can_be_turned_off),
                                       BW_TEST(same_on_any_number_of_ranks_and_after_a_restart),
                                       BW_TEST(turned_bodies_are_at_rest),
                                       BW_TEST(stress_of_a_dilation_at_faces_too),

@@ -105,6 +105,34 @@ static void tension(const double x[3], void *context, double v[3], double *p)
   *p = -1;
 }
 
+/* The same tank in another unit of length has the same particles. */
+START_TEST(units_do_not_show)
+{
+  int64_t particles[2] = {0, 0};
+  for (int q = 0; q < 2; q++) {
+    bw_ulph_config c = tank_config(2);
+    const double unit = q == 0 ? 1 : 100, t = 6 * unit / N, origin[3] = {0};
+    c.dx *= unit, c.speed *= unit, c.gravity[1] *= unit;
+    const bw_shape fluid = {.kind = BW_SHAPE_BOX, .upper = {unit, unit, unit}};
+    const bw_shape wall[2] = {
+        {.kind = BW_SHAPE_BOX, .lower = {-t, -t, -t}, .upper = {unit + t, 1.5 * unit, unit + t}},
+        {.kind = BW_SHAPE_BOX, .remove = true, .upper = {unit, 9 * unit, unit}}};
+    const bw_ulph_wall walls = {.count = 2, .shape = wall};
+    size_t n = 0;
+    double *x = NULL;
+    bw_ulph *u = NULL;
+    bw_check_ok(bw_ulph_fill(bw_check_world(), &c, origin, 1, &fluid, &n, &x));
+    bw_check_ok(bw_ulph_create(bw_check_world(), &c, n, x, 1, &walls, &u));
+    particles[q] = (int64_t)(u->fluid.own + u->wall.own);
+    bw_release(&x);
+    bw_ulph_destroy(&u);
+  }
+  bw_comm_sum_int(bw_check_world(), 2, particles);
+  ck_assert_int_gt(particles[0], N * N);
+  ck_assert_int_eq(particles[1], particles[0]);
+}
+END_TEST
+
 /* Walls do not pull (their pressure is 0 at least): beside one, fluid under a uniform tension of -1
  * feels the gradient of the difference form, V M^-1 times the sum of w V x over wall particles
  * alone, as nothing else differs from it. On its lattice of spacing dx, M is that of all of them.
@@ -192,10 +220,8 @@ START_TEST(steps_that_cannot_be_are_refused)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(a_tank_stays_at_rest),
-    BW_TEST(moving_walls_carry_the_fluid),
-    BW_TEST(tension_is_met_by_the_difference_form_beside_a_wall),
-    BW_TEST(bad_input_is_refused),
-    BW_TEST(steps_that_cannot_be_are_refused),
+    BW_TEST(a_tank_stays_at_rest), BW_TEST(moving_walls_carry_the_fluid),
+    BW_TEST(units_do_not_show),    BW_TEST(tension_is_met_by_the_difference_form_beside_a_wall),
+    BW_TEST(bad_input_is_refused), BW_TEST(steps_that_cannot_be_are_refused),
 };
 BW_CHECK_MAIN("ulph walls", tests)

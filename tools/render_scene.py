@@ -71,13 +71,17 @@ def fluid_layer(fluid):
 
 
 def squares(picture, name):
-    """A square per particle, as wide as they are apart, by damage."""
+    """A square per particle, as wide as they are apart: solids by damage, a fluid by its speed."""
     data, points = vtkPolyData(), vtkPoints()
     x = np.array(picture.points, dtype=float)
     x[:, 2] = 1.0 + 1e-3 * x[:, 2]  # in front of the fluid, nearer ones on top
     points.SetData(numpy_to_vtk(x, deep=True))
     data.SetPoints(points)
     values = picture.get("damage", np.zeros(len(x)))
+    water = name == "fluid"
+    if water:
+        values = np.sqrt((np.array(picture["velocity"], dtype=float) ** 2).sum(axis=1))
+        x[:, 2] -= 0.5  # behind bodies
     data.GetPointData().SetScalars(numpy_to_vtk(np.array(values, dtype=float), deep=True))
     reference = x[:, :2] - np.array(picture.get("displacement", np.zeros((len(x), 3))))[:, :2]
     some = reference[:: max(1, len(x) // 200)]
@@ -90,6 +94,11 @@ def squares(picture, name):
     glyph.SetSourceConnection(cube.GetOutputPort())
     glyph.SetScaleModeToDataScalingOff()
     plain = (0.35, 0.45, 0.6) if "damage" in picture else (0.2, 0.2, 0.2)
+    if name == "walls":
+        plain = (0.75, 0.75, 0.75)
+    if water:
+        return actor(glyph, table(0, float(values.max()) or 1.0, (0.15, 0.25, 0.55),
+                                  (0.9, 0.9, 0.85), (0.75, 0.2, 0.1))), data.GetBounds()
     return actor(glyph, table(0, 1, plain, (0.95, 0.75, 0.2), (0.6, 0.05, 0.05))), data.GetBounds()
 
 
@@ -99,9 +108,10 @@ def main():
     run, renderer = Run(sys.argv[1]), vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     bounds = []
-    deep = "fluid" in run.names and run.fluid()["velocity"].shape[0] > 1
+    grid = "fluid" in run.names and "walls" not in run.names  # else a fluid of particles
+    deep = grid and run.fluid()["velocity"].shape[0] > 1
     for name in ["fluid"] if deep else run.names:
-        shown, box = (fluid_layer(run.fluid()) if name == "fluid"
+        shown, box = (fluid_layer(run.fluid()) if grid and name == "fluid"
                       else squares(run.particles(name), name))
         renderer.AddActor(shown)
         bounds.append(box)

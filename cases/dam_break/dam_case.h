@@ -1,15 +1,10 @@
 /* dam_case.h -- water in a tank, and a solid in it: what the sources of the case share.
  *
- * Any consistent units. The tank is 0 .. size with walls on all sides but the top; y is up. Time
- * advances in equal intervals (between samples); the steps within one follow from the state alone,
- * so that what follows a checkpoint does not depend on whether it was read. */
+ * Any consistent units. The tank is 0 .. size with walls on all sides but the top; y is up. The
+ * case is a scene (bw_scene.h) with keys of its own. */
 #pragma once
-#include "bw_case.h"
-#include "bw_coupler_particles.h"
-#include "bw_history.h"
-#include "bw_shape.h"
-#include "bw_ulph.h"
-#include "bw_vtk.h"
+#include "bw_scene.h"
+#include "bw_solid.h"
 
 enum { DAM_BOXES = 16, DAM_GAUGES = 16, DAM_NAME = 32 };
 
@@ -85,57 +80,9 @@ typedef struct {
 extern const bw_config_field dam_fields[]; /* its keys */
 dam_config dam_config_default(void);       /* required values NaN */
 
-/* The fluid's configuration, all contradictions found. Local. */
-bw_status dam_resolve(const dam_config *c, bw_ulph_config *fluid) BW_MUST_CHECK;
+/* Refuses every contradiction, in the words of the case's keys. Local. */
+bw_status dam_check(const dam_config *c) BW_MUST_CHECK;
 
-/* A run. */
-typedef struct {
-  const dam_config *config; /* borrowed */
-  bw_case *run;             /* borrowed */
-  const bw_comm *comm;      /* borrowed */
-  bw_ulph *fluid;
-  bw_solid *solid;            /* NULL: there is none */
-  bw_coupler_particles *both; /* NULL: the same */
-  bw_history *history;
-  int64_t intervals, rows; /* done; of history.csv, when the checkpoint was written */
-  double dt;               /* the last step */
-  /* Integrals over time of the pressure gauges in this interval, and the time that they cover. */
-  double pressure[DAM_GAUGES], covered;
-  bool stopped; /* asked to end early */
-} dam_run;
-
-/* dam_run.c. All collective. */
-bw_status dam_create(dam_run *d, const bw_ulph_config *fluid) BW_MUST_CHECK;
-void dam_destroy(dam_run *d);                    /* half-built objects, too */
-int64_t dam_intervals(const dam_config *c);      /* of the whole run */
-bw_status dam_advance(dam_run *d) BW_MUST_CHECK; /* one interval, or less when stopped */
-bw_status dam_restart(dam_run *d, const char *path) BW_MUST_CHECK;
-bw_status dam_checkpoint(dam_run *d) BW_MUST_CHECK; /* checkpoint.h5 */
-void dam_where(const dam_run *d, double x[3]);      /* place of the tank now */
-double dam_dt_max(dam_run *d);                      /* the step that is recommended now */
-void dam_box_shape(const double lower[3], const double upper[3], bw_shape *shape); /* Local. */
-
-/* dam_solid.c: nothing but the first is called without a solid. All collective. */
-enum { DAM_SOLID_COLUMNS = 6 };
-extern const char *const dam_solid_columns[DAM_SOLID_COLUMNS];
-bw_status dam_solid_create(dam_run *d, const bw_ulph_config *fluid, int n_walls,
-                           const bw_ulph_wall wall[]) BW_MUST_CHECK;
-bw_status dam_solid_row(dam_run *d, double unit, double row[DAM_SOLID_COLUMNS]) BW_MUST_CHECK;
-bw_status dam_solid_picture(dam_run *d) BW_MUST_CHECK; /* solid.pvd */
-double dam_moved(const dam_run *d, const dam_gauge *g, int axis);
-
-/* dam_plan.c: before anything is built, what cannot run is refused, as the run would; sizes, step
- * and memory to the log. A small tank is built for that, the case's own where that is small: time
- * and memory do not grow with the particles. Collective. */
-bw_status dam_plan(const dam_run *d, const bw_ulph_config *fluid) BW_MUST_CHECK;
-
-/* dam_output.c. All collective. */
-/* `sample`: a fluid of this spacing, sound and weight; bytes: of a rank. */
-void dam_describe(const dam_run *d, const bw_ulph_config *fluid, bw_ulph *sample, double water,
-                  double walls, double bytes);
-bw_status dam_open_history(dam_run *d) BW_MUST_CHECK;
-bw_status dam_sample(dam_run *d) BW_MUST_CHECK;  /* a row of it */
-bw_status dam_picture(dam_run *d) BW_MUST_CHECK; /* water.pvd, walls.pvd, solid.pvd */
-/* NAME-STEP.vtp of points with their data, joined to NAME.pvd. */
-bw_status dam_write_points(dam_run *d, const char *name, size_t n, const double x[], int count,
-                           const bw_vtk_array array[]) BW_MUST_CHECK;
+/* *scene (bw_scene_config_default) <- the tank as a scene: its box, the water, obstacles as one
+ * fixed body, the solid as another, gauges, when files are written. After dam_check. Local. */
+void dam_to_scene(const dam_config *c, bw_scene_config *scene);

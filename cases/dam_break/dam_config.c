@@ -3,6 +3,7 @@
 
 #include "bw_number.h"
 #include "bw_solid_words.h"
+#include "bw_ulph.h"
 
 #include <limits.h>
 #include <math.h>
@@ -72,8 +73,8 @@ static const bw_config_field solid_fields[] = {
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {
     V(dam_time, end, BW_REQUIRED | BW_MAY_CHANGE, BW_ABOVE(0), "T", "end of the run"),
-    V(dam_time, step_share, BW_OPTIONAL, BW_ABOVE_TO(0, 2), "",
-      "acoustic step over spacing/(sound speed + speed)"),
+    V(dam_time, step_share, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
+      "step over the one that is recommended, at most spacing/(sound speed + speed)"),
     BW_CONFIG_END};
 static const bw_config_field output_fields[] = {
     V(dam_output, sample_every, BW_REQUIRED, BW_ABOVE(0), "T", "time between rows of history.csv"),
@@ -184,10 +185,16 @@ static bw_status times_divide(const char *whole_key, double whole, const char *p
   return BW_OK;
 }
 
-/* Lengths are whole numbers of spacings, so that walls stand between particles. */
+/* Lengths are whole numbers of spacings, so that walls stand between particles, and no more than
+ * sites have numbers (bw_shape.h). */
 static bw_status spacing_check(const dam_config *c)
 {
+  static const double most = 2147483000.0;
   int64_t times;
+  for (int k = 0; k < 3; k++)
+    BW_REQUIRE(c->tank.size[k] / c->fluid.spacing <= most, BW_EINPUT,
+               "tank.size[%d] = %g is %.3g spacings of %g, more than 2^31: take a larger spacing",
+               k, c->tank.size[k], c->tank.size[k] / c->fluid.spacing, c->fluid.spacing);
   for (int k = 0; k < 3; k++)
     BW_REQUIRE(
         (k == 2 && c->tank.size[k] == 0) || bw_divides(c->tank.size[k], c->fluid.spacing, &times),
@@ -200,17 +207,26 @@ static bw_status spacing_check(const dam_config *c)
   return BW_OK;
 }
 
-bw_status dam_resolve(const dam_config *c, bw_ulph_config *fluid)
+/* A block is seen three spacings deep. */
+static bw_status obstacle_check(const dam_config *c, int number)
+{
+  const dam_box *o = &c->obstacles[number];
+  BW_TRY(box_check(c, "obstacles", number, o, 100 * c->fluid.spacing));
+  for (int k = 0; k < (c->tank.size[2] > 0 ? 3 : 2); k++)
+    BW_REQUIRE(o->upper[k] - o->lower[k] >= 3 * c->fluid.spacing * (1 - 1e-9), BW_EINPUT,
+               "obstacles.%d is %g thick in direction %d, thinner than 3 spacings of %g", number,
+               o->upper[k] - o->lower[k], k, c->fluid.spacing);
+  return BW_OK;
+}
+
+bw_status dam_check(const dam_config *c)
 {
   const dam_output *o = &c->output;
-  double low = INFINITY, high = -INFINITY;
   BW_TRY(spacing_check(c));
-  for (int q = 0; q < c->n_water; q++) {
+  for (int q = 0; q < c->n_water; q++)
     BW_TRY(box_check(c, "water", q, &c->water[q], 1e-9 * c->fluid.spacing));
-    low = fmin(low, c->water[q].lower[1]), high = fmax(high, c->water[q].upper[1]);
-  }
   for (int q = 0; q < c->n_obstacles; q++)
-    BW_TRY(box_check(c, "obstacles", q, &c->obstacles[q], 100 * c->fluid.spacing));
+    BW_TRY(obstacle_check(c, q));
   for (int q = 0; q < c->n_gauges; q++)
     BW_TRY(gauge_check(c, q));
   for (int q = 0; q < (c->has_solid ? c->solid.n_parts : 0); q++)
@@ -220,17 +236,6 @@ bw_status dam_resolve(const dam_config *c, bw_ulph_config *fluid)
   BW_TRY(times_divide("time.end", c->time.end, "output.sample_every", o->sample_every));
   BW_TRY(times_divide("output.picture_every", o->picture_every, "output.sample_every",
                       o->sample_every));
-  BW_TRY(times_divide("output.checkpoint_every", o->checkpoint_every, "output.sample_every",
-                      o->sample_every));
-  /* The case's numbers become those of the fluid; the rest it checks itself. */
-  *fluid = bw_ulph_config_default();
-  fluid->dimensions = c->tank.size[2] > 0 ? 3 : 2;
-  fluid->dx = c->fluid.spacing, fluid->rho0 = c->fluid.density, fluid->mu = c->fluid.viscosity;
-  fluid->gravity[1] = -c->fluid.gravity;
-  fluid->c0 = c->fluid.sound_speed;
-  fluid->speed = isnan(c->fluid.speed) ? 2 * sqrt(c->fluid.gravity * (high - low)) : c->fluid.speed;
-  fluid->alpha = c->fluid.alpha, fluid->alpha_wall = c->fluid.alpha_wall;
-  fluid->delta = c->fluid.delta, fluid->shifting = c->fluid.shifting;
-  fluid->step_share = c->time.step_share;
-  return BW_OK;
+  return times_divide("output.checkpoint_every", o->checkpoint_every, "output.sample_every",
+                      o->sample_every);
 }

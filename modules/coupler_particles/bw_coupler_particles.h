@@ -103,6 +103,12 @@ void bw_coupler_particles_pressure(const bw_coupler_particles *c, double p[]);
 bw_status bw_coupler_particles_save(bw_coupler_particles *c, bw_checkpoint *ck) BW_MUST_CHECK;
 bw_status bw_coupler_particles_restore(bw_coupler_particles *c, bw_checkpoint *ck) BW_MUST_CHECK;
 
+/* The same of a fluid without a solid. Collective. */
+bw_status bw_coupler_particles_save_fluid(const bw_comm *comm, const bw_ulph *fluid,
+                                          bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status bw_coupler_particles_restore_fluid(const bw_comm *comm, bw_ulph *fluid,
+                                             bw_checkpoint *ck) BW_MUST_CHECK;
+
 #ifdef __cplusplus
 }
 #endif

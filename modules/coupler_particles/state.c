@@ -43,21 +43,78 @@ static void print_of(const bw_coupler_particles *c, double numbers[2])
   numbers[0] = (double)(print >> 32), numbers[1] = (double)(print & UINT32_MAX);
 }
 
+static bw_status put_fluid(const bw_ulph *fluid, bw_checkpoint *ck, int64_t id[], double rows[])
+{
+  double numbers[BW_ULPH_NUMBERS];
+  bw_ulph_ids(fluid, id);
+  bw_ulph_state_get(fluid, rows, numbers);
+  BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
+  return bw_checkpoint_put_table(ck, "fluid/rows", bw_ulph_total(fluid), bw_ulph_count(fluid), id,
+                                 BW_ULPH_ROW, BW_CK_DOUBLE, rows);
+}
+
+/* Rows of the particles that this rank reads. */
+static bw_status get_fluid(bw_ulph *fluid, bw_checkpoint *ck, size_t n, const int64_t id[],
+                           double rows[])
+{
+  double numbers[BW_ULPH_NUMBERS];
+  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
+  BW_TRY(bw_checkpoint_get_table(ck, "fluid/rows", bw_ulph_total(fluid), n, id, BW_ULPH_ROW,
+                                 BW_CK_DOUBLE, rows));
+  return bw_ulph_state_set(fluid, n, id, rows, numbers);
+}
+
+/* Which particles a rank reads: any division will do, the fluid sends them where they belong. */
+static void part_of(const bw_comm *comm, int64_t total, int64_t *first, size_t *n)
+{
+  const int64_t size = bw_comm_size(comm), rank = bw_comm_rank(comm);
+  *first = total * rank / size;
+  *n = (size_t)(total * (rank + 1) / size - *first);
+}
+
+/* Rows and numbers of n particles of a fluid alone. */
+static bw_status rows_make(const bw_comm *comm, size_t n, table *t)
+{
+  memset(t, 0, sizeof *t);
+  bw_status st = BW_ALLOCATE(&t->rows, BW_ULPH_ROW * n);
+  BW_THEN(st, BW_ALLOCATE(&t->id, n));
+  return bw_comm_agree(comm, st);
+}
+
+bw_status bw_coupler_particles_save_fluid(const bw_comm *comm, const bw_ulph *fluid,
+                                          bw_checkpoint *ck)
+{
+  table t;
+  bw_status st = rows_make(comm, bw_ulph_count(fluid), &t);
+  BW_THEN(st, put_fluid(fluid, ck, t.id, t.rows));
+  table_release(&t);
+  return st;
+}
+
+bw_status bw_coupler_particles_restore_fluid(const bw_comm *comm, bw_ulph *fluid, bw_checkpoint *ck)
+{
+  int64_t first;
+  size_t n;
+  table t;
+  part_of(comm, bw_ulph_total(fluid), &first, &n);
+  bw_status st = rows_make(comm, n, &t);
+  for (size_t i = 0; i < n && st == BW_OK; i++)
+    t.id[i] = first + (int64_t)i;
+  BW_THEN(st, get_fluid(fluid, ck, n, t.id, t.rows));
+  table_release(&t);
+  return st;
+}
+
 static bw_status save(bw_coupler_particles *c, bw_checkpoint *ck, table *t)
 {
   const int64_t total = (int64_t)c->total, *id = bw_solid_id(c->solid);
-  const size_t n = bw_ulph_count(c->fluid);
-  double numbers[BW_ULPH_NUMBERS], sums[BW_SOLID_RESTART_SUMS], print[2];
+  double sums[BW_SOLID_RESTART_SUMS], print[2];
   double between[SUMS] = {c->late, c->received};
   memcpy(between + 2, c->impulse, sizeof c->impulse);
   bw_comm_sum(bw_solid_comm(c->solid), SUMS, between);
   print_of(c, print);
   /* The fluid by the numbers of its particles ... */
-  bw_ulph_ids(c->fluid, t->id);
-  bw_ulph_state_get(c->fluid, t->rows, numbers);
-  BW_TRY(bw_checkpoint_put_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
-  BW_TRY(bw_checkpoint_put_table(ck, "fluid/rows", bw_ulph_total(c->fluid), n, t->id, BW_ULPH_ROW,
-                                 BW_CK_DOUBLE, t->rows));
+  BW_TRY(put_fluid(c->fluid, ck, t->id, t->rows));
   /* ... the solid by those of its own ... */
   bw_solid_get_restart(c->solid, t->solid, sums);
   bw_solid_get_bits(c->solid, t->bits);
@@ -86,17 +143,6 @@ bw_status bw_coupler_particles_save(bw_coupler_particles *c, bw_checkpoint *ck)
   BW_THEN(st, save(c, ck, &t));
   table_release(&t);
   return st;
-}
-
-static bw_status read_fluid(bw_coupler_particles *c, bw_checkpoint *ck, size_t n, table *t)
-{
-  double numbers[BW_ULPH_NUMBERS];
-  BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/numbers", BW_ULPH_NUMBERS, numbers));
-  BW_TRY(bw_checkpoint_get_table(ck, "fluid/rows", bw_ulph_total(c->fluid), n, t->id, BW_ULPH_ROW,
-                                 BW_CK_DOUBLE, t->rows));
-  /* The body first: lists are made with it. */
-  bw_ulph_body_set(c->fluid, t->body);
-  return bw_ulph_state_set(c->fluid, n, t->id, t->rows, numbers);
 }
 
 static bw_status read_solid(bw_coupler_particles *c, bw_checkpoint *ck, table *t)
@@ -142,17 +188,18 @@ static bw_status read_between(bw_coupler_particles *c, bw_checkpoint *ck, table 
 bw_status bw_coupler_particles_restore(bw_coupler_particles *c, bw_checkpoint *ck)
 {
   const bw_comm *comm = bw_solid_comm(c->solid);
-  const int64_t total = bw_ulph_total(c->fluid), size = bw_comm_size(comm);
-  const int64_t first = total * bw_comm_rank(comm) / size;
-  const size_t n = (size_t)(total * (bw_comm_rank(comm) + 1) / size - first);
+  int64_t first;
+  size_t n;
   table t;
+  part_of(comm, bw_ulph_total(c->fluid), &first, &n);
   bw_status st = table_make(c, n, &t);
-  /* Any division will do: the fluid sends particles where they belong. */
   for (size_t i = 0; i < n && st == BW_OK; i++)
     t.id[i] = first + (int64_t)i;
   BW_THEN(st, read_solid(c, ck, &t));
   BW_THEN(st, read_between(c, ck, &t));
-  BW_THEN(st, read_fluid(c, ck, n, &t));
+  /* The body before the fluid, whose lists are made with it. */
+  if (st == BW_OK) bw_ulph_body_set(c->fluid, t.body);
+  BW_THEN(st, get_fluid(c->fluid, ck, n, t.id, t.rows));
   if (st == BW_OK) {
     bw_solid_get_position(c->solid, c->X);
     bw_coupler_particles__join(c, c->X, c->x);

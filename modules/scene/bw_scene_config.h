@@ -4,27 +4,9 @@
  * texts ""); bw_scene_resolve fills what `accuracy` decides. Names join the parts: a body names its
  * material, a gauge its body. */
 #pragma once
-#include "bw_config.h"
+#include "bw_scene_parts.h"
 
 BW_BEGIN_DECLS
-
-/* Sizes of the lists of a scene. */
-enum {
-  BW_SCENE_NAME = 48,      /* bytes of a name, its end included */
-  BW_SCENE_NAMES = 256,    /* bytes of a list of names */
-  BW_SCENE_PATH = 512,     /* bytes of the path of a file */
-  BW_SCENE_MATERIALS = 16, /* materials */
-  BW_SCENE_BODIES = 64,    /* bodies */
-  BW_SCENE_PARTS = 12,     /* shapes of a body */
-  BW_SCENE_LEVELS = 16,    /* boxes in which it is finer */
-  BW_SCENE_HELD = 6,       /* places where a body is held */
-  BW_SCENE_CRACKS = 8,     /* cracks of a body */
-  BW_SCENE_LOADS = 32,     /* loads */
-  BW_SCENE_PHASES = 12,    /* phases */
-  BW_SCENE_GAUGES = 48,    /* gauges */
-  BW_SCENE_WATCHED = 48,   /* lines of `watch` */
-  BW_SCENE_VORTICES = 8    /* vortices at the start of the fluid */
-};
 
 /* How careful a run is with what the file leaves open. */
 typedef enum {
@@ -40,13 +22,6 @@ typedef enum {
   BW_SCENE_STRAIN  /* one layer, held across */
 } bw_scene_plane;
 
-/* What the fluid is. */
-typedef enum {
-  BW_SCENE_INCOMPRESSIBLE, /* a flow on a grid */
-  BW_SCENE_PARTICLES,      /* particles with a free surface */
-  BW_SCENE_NO_FLUID        /* none */
-} bw_scene_fluid_model;
-
 /* How a body moves. */
 typedef enum {
   BW_SCENE_FIXED,      /* not at all */
@@ -55,56 +30,6 @@ typedef enum {
   BW_SCENE_ELASTIC,    /* it deforms and does not break */
   BW_SCENE_BREAKABLE   /* it deforms and breaks */
 } bw_scene_motion;
-
-/* The box of the fluid; without it there are solids alone. */
-typedef struct {
-  double length[3]; /* edges, lower corner at the origin [L] */
-  int cells[3];     /* cells[2] = 1: two dimensions */
-  double stretch;   /* of y by tanh [-], 0: uniform */
-} bw_scene_domain;
-
-/* A side of that box. */
-typedef struct {
-  int kind, profile;  /* bw_ns_side_kind, bw_ns_profile */
-  double velocity[3]; /* of a wall or a uniform inflow [L/T] */
-  double mean;        /* mean velocity of a poiseuille inflow [L/T]; NaN: not given */
-  double ramp;        /* time over which an inflow or a moving wall reaches its velocity [T] */
-} bw_scene_side;
-typedef struct {
-  bw_scene_side lower, upper; /* at 0 and at the length */
-} bw_scene_pair;
-typedef struct {
-  bw_scene_pair x, y, z; /* normal to x, y and z */
-  bool has_z;            /* are there sides in z? Not in two dimensions */
-} bw_scene_sides;
-
-/* A vortex along z, u_theta = swirl s exp((1 - s^2)/2) with s = r/radius. */
-typedef struct {
-  double centre[3]; /* [L] */
-  double radius;    /* where it is fastest [L] */
-  double swirl;     /* largest velocity [L/T]; > 0: counterclockwise */
-} bw_scene_vortex;
-typedef struct {
-  double velocity[3];                          /* everywhere [L/T] */
-  bool developed;                              /* laminar profile of the inflow everywhere */
-  int n_vortices;                              /* how many of vortices */
-  bw_scene_vortex vortices[BW_SCENE_VORTICES]; /* added to it */
-  char file[BW_SCENE_PATH];                    /* a checkpoint to take the fluid from */
-} bw_scene_start;
-typedef struct {
-  int kind;     /* bw_ns_forcing */
-  int axis;     /* 0: x */
-  double value; /* bulk velocity [L/T], or -dp/dx over the density [L/T^2] */
-} bw_scene_forcing;
-typedef struct {
-  int model;                /* bw_scene_fluid_model */
-  double density;           /* [M/L^3] */
-  double viscosity;         /* kinematic [L^2/T] */
-  bw_scene_sides sides;     /* of the box */
-  bw_scene_start start;     /* the flow at the beginning */
-  bool has_forcing;         /* is it given? */
-  bw_scene_forcing forcing; /* what drives the flow */
-} bw_scene_fluid;
 
 /* A material. Keys of laws that this build does not have are read, and refused. */
 typedef struct {
@@ -117,53 +42,13 @@ typedef struct {
   double poisson_ratio;        /* [-]; NaN: the law's own */
   double fracture_energy;      /* [M/T^2]; NaN: it does not break */
   double cohesion, friction_angle, dilation_angle, yield_stress, hardening; /* of plastic laws */
+  int influence;        /* bw_pd_state_influence, of law ordinary; INT_MIN: its default */
+  int weight;           /* bw_pd_state_weight, of law correspondence, as all below */
+  int breaks;           /* bw_pd_state_breaks: what breaks a bond */
+  int cone;             /* bw_pd_material_cone; INT_MIN: by the plane and the dilation */
+  double stabilisation; /* against modes without energy, over mu; NaN: its default */
+  double limit;         /* what a pair bears, by `breaks` */
 } bw_scene_material;
-
-/* One shape of a body: exactly one of its blocks is given. */
-typedef struct {
-  double from[3], to[3]; /* [L] */
-} bw_scene_box;
-typedef struct {
-  int axis;         /* 0, 1, 2 */
-  double centre[2]; /* in the plane across the axis, in the order x, y, z [L] */
-  double radius;    /* [L] */
-  double from, to;  /* along the axis [L]; NaN: without end */
-} bw_scene_cylinder;
-typedef struct {
-  double centre[3]; /* [L] */
-  double radius;    /* [L] */
-} bw_scene_sphere;
-typedef struct {
-  int kind;             /* bw_shape_kind */
-  double centre[3];     /* of one pore [L] */
-  double radius, pitch; /* [L] */
-} bw_scene_pores;
-typedef struct {
-  char file[BW_SCENE_PATH]; /* .nrrd .nhdr .mhd .mha */
-  double low, high;         /* voxels of [low, high] are solid */
-  double at[3];             /* lower corner [L]; NaN: the file's */
-  double voxel;             /* edge of a voxel [L]; NaN: the file's */
-  int from[3], to[3];       /* voxels that count, first and behind the last; INT_MIN: all */
-  bool flip[3];             /* the last voxel along x, y, z comes first */
-  int coarsen[3];           /* voxels along x, y, z that make one */
-} bw_scene_image;
-typedef struct {
-  char file[BW_SCENE_PATH]; /* binary or text STL */
-  double unit;              /* of the file's lengths [L] */
-  double cell;              /* cells it is filled with [L]; NaN: half the spacing */
-} bw_scene_stl;
-typedef struct {
-  bool has_box, has_cylinder, has_sphere, has_pores, has_image, has_stl; /* which are given */
-  bw_scene_box box;                                                      /* particles in it */
-  bw_scene_cylinder cylinder;                                            /* when has_cylinder */
-  bw_scene_sphere sphere;                                                /* when has_sphere */
-  bw_scene_pores pores;                                                  /* when has_pores */
-  bw_scene_image image;                                                  /* when has_image */
-  bw_scene_stl stl;                                                      /* when has_stl */
-  char minus[BW_SCENE_NAME];    /* a body whose shapes are taken away */
-  bool remove;                  /* this shape is taken away */
-  char material[BW_SCENE_NAME]; /* of the sites of this shape; "": the body's */
-} bw_scene_shape;
 
 /* Where a body is held: particles in a box, those that stand in another body, or a side. */
 typedef struct {
@@ -283,21 +168,32 @@ typedef struct {
   int axis;  /* 0, 1, 2 */
   double at; /* [L] */
 } bw_scene_slice;
+/* What a body bears before it fails (bw_solid_failure.h); NaN: not given. */
 typedef struct {
-  char name[BW_SCENE_NAME];  /* how others call it */
-  char of[BW_SCENE_NAMES];   /* quantities: see bw_scene_quantity */
-  char body[BW_SCENE_NAMES]; /* bodies */
-  double nearest[3];         /* the particle of the body that is nearest to this place [L] */
-  bool has_region;           /* is it given? */
-  bw_scene_box region;       /* mean over the particles in it */
-  double point[3];           /* a place in the fluid [L] */
-  double minus[3];           /* another one, whose value is taken away [L] */
-  bool has_line;             /* is it given? */
-  bw_scene_line line;        /* places in a row */
-  bool has_slice;            /* is it given? */
-  bw_scene_slice slice;      /* a plane */
-  double origin[3];          /* where a crack begins [L] */
-  double every;              /* time between files of lines and slices [T] */
+  int by;                /* bw_solid_failure_gauge */
+  double tension, yield; /* [M/(L T^2)] */
+  double cohesion;       /* [M/(L T^2)] */
+  double friction_angle; /* [deg] */
+  double flaw;           /* [L] */
+} bw_scene_strength;
+typedef struct {
+  char name[BW_SCENE_NAME];   /* how others call it */
+  char of[BW_SCENE_NAMES];    /* quantities: see bw_scene_quantity */
+  char body[BW_SCENE_NAMES];  /* bodies */
+  double nearest[3];          /* the particle of the body that is nearest to this place [L] */
+  bool has_region;            /* is it given? */
+  bw_scene_box region;        /* mean over the particles in it */
+  bool has_strength;          /* is it given? */
+  bw_scene_strength strength; /* what the body bears, of failure */
+  double point[3];            /* a place in the fluid [L] */
+  double minus[3];            /* another one, whose value is taken away [L] */
+  bool has_line;              /* is it given? */
+  bw_scene_line line;         /* places in a row */
+  bool has_slice;             /* is it given? */
+  bw_scene_slice slice;       /* a plane */
+  double width;               /* half of that of a column of depth [L]; NaN: two spacings */
+  double origin[3];           /* where a crack begins [L] */
+  double every;               /* time between files of lines and slices [T] */
 } bw_scene_gauge_config;
 
 /* What is printed of a gauge at the end, and limits that stop a run. */
@@ -342,8 +238,13 @@ typedef struct {
   double virtual_mass;      /* of bodies in a flow, see bw_coupler.h and bw_coupler_rigid.h [-] */
   double contact_stiffness; /* of rigid bodies, see bw_rigid.h [M/(L^2 T^2)]; NaN: by the energy
                                that gravity and velocities bring */
-  double coupling_residual; /* at which the iterations of a step end [-] */
-  int coupling_iterations;  /* of a step, at most; 0: none */
+  double sound_speed;       /* of a fluid of particles [L/T]; NaN: 10 times the fastest */
+  double artificial_viscosity; /* of it, alpha [-] */
+  double wall_viscosity;       /* the same beside walls [-] */
+  double density_diffusion;    /* of it, delta [-] */
+  double shifting;             /* of it, against clustering [-] */
+  double coupling_residual;    /* at which the iterations of a step end [-] */
+  int coupling_iterations;     /* of a step, at most; 0: none */
   unsigned set; /* bits of the knobs that `accuracy` has set, by rows of its table; no key */
 } bw_scene_numerics;
 

@@ -12,9 +12,28 @@ bool bw_scene__has_fluid(const bw_scene_config *c)
   return c->has_fluid && c->fluid.model == BW_SCENE_INCOMPRESSIBLE;
 }
 
+bool bw_scene__has_particles(const bw_scene_config *c)
+{
+  return c->has_fluid && c->fluid.model == BW_SCENE_PARTICLES;
+}
+
+bool bw_scene__has_flow(const bw_scene_config *c)
+{
+  return bw_scene__has_fluid(c) || bw_scene__has_particles(c);
+}
+
 bool bw_scene__deforms(const bw_scene_body *b)
 {
   return b->motion == BW_SCENE_ELASTIC || b->motion == BW_SCENE_BREAKABLE;
+}
+
+bool bw_scene__joined(const bw_scene_config *c, int a, int b)
+{
+  const bw_scene_body *pair[2] = {&c->bodies[a], &c->bodies[b]};
+  for (int q = 0; q < 2; q++)
+    for (int k = 0; k < pair[q]->n_held; k++)
+      if (strcmp(pair[q]->held[k].by, pair[1 - q]->name) == 0) return true;
+  return false;
 }
 
 bool bw_scene__any_deforms(const bw_scene_config *c)
@@ -24,16 +43,43 @@ bool bw_scene__any_deforms(const bw_scene_config *c)
   return false;
 }
 
+/* Keys of a fluid of particles must not look as if they did something to a flow on a grid. */
+static bw_status check_no_water(const bw_scene_config *c)
+{
+  const bw_scene_fluid *f = &c->fluid;
+  const struct {
+    const char *key;
+    bool given;
+  } rows[] = {{"domain.open", c->domain.open[0] != '\0'},
+              {"domain.shake", c->domain.has_shake},
+              {"fluid.shape", f->n_shape > 0},
+              {"fluid.speed", !isnan(f->speed)},
+              {"fluid.walls", f->walls != INT_MIN},
+              {"fluid.start.hydrostatic", f->start.hydrostatic != INT_MIN}};
+  for (size_t q = 0; q < sizeof rows / sizeof *rows; q++)
+    BW_REQUIRE(!rows[q].given, BW_EINPUT,
+               "%s: it belongs to fluid.model: particles; leave it out, or give that model",
+               rows[q].key);
+  return BW_OK;
+}
+
 bw_status bw_scene__check_fluid(const bw_scene_config *c)
 {
   const bw_scene_fluid *f = &c->fluid;
-  BW_REQUIRE(!c->has_fluid || f->model != BW_SCENE_PARTICLES, BW_EINPUT,
-             "fluid.model = particles: not in this build; this build has: incompressible, none");
-  BW_REQUIRE(bw_scene__has_fluid(c) == c->has_domain, BW_EINPUT,
+  BW_REQUIRE(bw_scene__has_flow(c) == c->has_domain, BW_EINPUT,
              c->has_domain ? "domain is given without a fluid; leave it out for solids alone, or "
                              "give fluid"
                            : "fluid is given without its box; give domain: length and cells");
   if (!c->has_domain) return BW_OK;
+  const bool flat = c->domain.cells[2] == 1;
+  BW_REQUIRE(
+      flat == (c->plane == BW_SCENE_STRAIN) && c->plane != BW_SCENE_STRESS, BW_EINPUT,
+      "plane: a fluid in two dimensions (domain.cells[2] = 1) goes with plane: strain, one in "
+      "space with plane: none; leave plane out");
+  if (bw_scene__has_particles(c)) return bw_scene__check_water(c);
+  BW_TRY(check_no_water(c));
+  BW_REQUIRE(f->has_sides, BW_EINPUT,
+             "fluid.sides is missing: what the sides of the box are to a flow on a grid");
   BW_REQUIRE(f->start.file[0] == '\0', BW_EINPUT,
              "fluid.start.file = %s: not in this build; start from velocity and vortices",
              f->start.file);
@@ -45,11 +91,6 @@ bw_status bw_scene__check_fluid(const bw_scene_config *c)
              BW_EINPUT,
              "fluid.start.developed: there is no poiseuille inflow at the lower x side to take the "
              "profile of; leave it out");
-  const bool flat = c->domain.cells[2] == 1;
-  BW_REQUIRE(
-      flat == (c->plane == BW_SCENE_STRAIN) && c->plane != BW_SCENE_STRESS, BW_EINPUT,
-      "plane: a fluid in two dimensions (domain.cells[2] = 1) goes with plane: strain, one in "
-      "space with plane: none; leave plane out");
   BW_REQUIRE(
       c->domain.stretch == 0.0 || c->n_bodies == 0, BW_EINPUT,
       "domain.stretch = %g: bodies in a flow need a uniform grid; leave it out, or the bodies",
@@ -136,7 +177,7 @@ bw_status bw_scene__check_phases(const bw_scene_config *c)
     for (int b = 0; b < c->n_bodies; b++)
       all += bw_scene__deforms(&c->bodies[b]);
     BW_REQUIRE(
-        held == 0 || (held == all && bw_scene__has_fluid(c)), BW_EINPUT,
+        held == 0 || (held == all && bw_scene__has_flow(c)), BW_EINPUT,
         "phases.%d.hold = %s: this build holds all bodies that deform in a flow or none; name "
         "all of them, or leave it out",
         q, p->hold);
@@ -146,7 +187,7 @@ bw_status bw_scene__check_phases(const bw_scene_config *c)
 
 bw_status bw_scene_check(const bw_scene_config *c)
 {
-  BW_REQUIRE(c->n_bodies > 0 || bw_scene__has_fluid(c), BW_EINPUT,
+  BW_REQUIRE(c->n_bodies > 0 || bw_scene__has_flow(c), BW_EINPUT,
              "the scene holds neither a body nor a fluid; give bodies, or domain and fluid");
   BW_TRY(bw_scene__check_fluid(c));
   BW_TRY(bw_scene__check_materials(c));

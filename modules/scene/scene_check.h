@@ -3,6 +3,10 @@
 #include "scene_shapes.h"
 
 bw_status bw_scene__check_fluid(const bw_scene_config *c) BW_MUST_CHECK; /* and domain */
+/* scene_check_water.c: a fluid of particles, and bodies and gauges as far as they meet it. */
+bw_status bw_scene__check_water(const bw_scene_config *c) BW_MUST_CHECK;
+/* Has its box no wall at the lower (end 0) or upper (1) side along d? */
+bool bw_scene__is_open(const bw_scene_config *c, int d, int end);
 bw_status
 bw_scene__check_materials(const bw_scene_config *c) BW_MUST_CHECK;        /* laws of this build */
 bw_status bw_scene__check_bodies(const bw_scene_config *c) BW_MUST_CHECK; /* shapes, overlaps */
@@ -10,6 +14,12 @@ bw_status bw_scene__check_loads(const bw_scene_config *c) BW_MUST_CHECK;  /* and
 bw_status bw_scene__check_phases(const bw_scene_config *c) BW_MUST_CHECK; /* and output */
 bw_status bw_scene__check_gauges(const bw_scene_config *c) BW_MUST_CHECK; /* and watch */
 
+/* scene_failure.c: the numbers that a gauge of failure needs. */
+bw_status bw_scene__check_failure(const bw_scene_config *c,
+                                  const bw_scene_gauge_config *g) BW_MUST_CHECK;
+
+/* Do bonds of a material break by their stretch, of a fracture energy? */
+bool bw_scene__breaks_by_stretch(const bw_scene_material *m);
 /* Keys of state-based laws: those that the law of a material reads, and all that it needs. */
 bw_status bw_scene__check_state(const bw_scene_material *m) BW_MUST_CHECK;
 
@@ -24,9 +34,15 @@ bool bw_scene__in_rigid(const bw_scene_config *c, int b);
  * word is none of them, wrong (BW_SCENE_NAME) <- it. */
 bool bw_scene__held_bits(const char *held, unsigned *bits, char wrong[]);
 
-/* Does the scene have a fluid on a grid? */
+/* Does the scene have a fluid on a grid? One of particles? Any? */
 bool bw_scene__has_fluid(const bw_scene_config *c);
+bool bw_scene__has_particles(const bw_scene_config *c);
+bool bw_scene__has_flow(const bw_scene_config *c);
 /* Does the body deform? */
 bool bw_scene__deforms(const bw_scene_body *b);
+/* Does body a hold b, or b a? */
+bool bw_scene__joined(const bw_scene_config *c, int a, int b);
+/* Is body b a wall of a fluid of particles: fixed, and joined to nothing that deforms? */
+bool bw_scene__is_wall(const bw_scene_config *c, int b);
 /* Some body deforms. */
 bool bw_scene__any_deforms(const bw_scene_config *c);

@@ -12,7 +12,9 @@ static bw_status check_material(const bw_scene_config *c, const bw_scene_body *b
   BW_REQUIRE(m >= 0, BW_EINPUT,
              "bodies.%s.%s = %s: there is no such material; give it in materials", b->name, key,
              name[0] != '\0' ? name : "(nothing)");
-  BW_REQUIRE(b->motion != BW_SCENE_BREAKABLE || !isnan(c->materials[m].fracture_energy), BW_EINPUT,
+  BW_REQUIRE(b->motion != BW_SCENE_BREAKABLE || !isnan(c->materials[m].fracture_energy) ||
+                 !bw_scene__breaks_by_stretch(&c->materials[m]),
+             BW_EINPUT,
              "bodies.%s.motion = breakable, but materials.%s has no fracture_energy; give it, or "
              "make the body elastic",
              b->name, name);
@@ -31,7 +33,7 @@ static bw_status check_motion(const bw_scene_config *c, const bw_scene_body *b)
              "bodies.%s.velocity[2] = %g: the scene has two dimensions; give 0", b->name,
              b->velocity[2]);
   BW_REQUIRE(
-      b->turn == 0.0 || !bw_scene__has_fluid(c), BW_EINPUT,
+      b->turn == 0.0 || !bw_scene__has_flow(c), BW_EINPUT,
       "bodies.%s.turn = %g deg: lattices in a flow are not turned in this build; leave it out",
       b->name, b->turn);
   BW_TRY(bw_scene__check_rigid(c, b));
@@ -254,7 +256,7 @@ bw_status bw_scene__check_loads(const bw_scene_config *c)
     BW_REQUIRE(bw_scene__deforms(&c->bodies[b]), BW_EINPUT,
                "loads.%d.on = %s: that body is %s, no load moves it; leave the load out", q, l->on,
                bw_scene__word(bw_scene__motion_words, c->bodies[b].motion));
-    BW_REQUIRE(!bw_scene__has_fluid(c) || l->kind == BW_SCENE_VELOCITY, BW_EINPUT,
+    BW_REQUIRE(!bw_scene__has_flow(c) || l->kind == BW_SCENE_VELOCITY, BW_EINPUT,
                "loads.%d: in a flow this build has the loads of the fluid, gravity: and kind: "
                "velocity only; leave it out",
                q);

@@ -20,6 +20,7 @@ void bw_scene_destroy(bw_scene **scene)
   bw_scene__gauges_destroy(s);
   bw_scene__rigid_destroy(s);
   bw_scene__fluid_destroy(s);
+  bw_scene__water_destroy(s);
   bw_scene__solids_destroy(s);
   bw_release(scene);
 }
@@ -106,6 +107,7 @@ static bw_status build(bw_scene *s)
   find_speed(s);
   BW_TRY(bw_scene__rigid_create(s));
   BW_TRY(bw_scene__solids_create(s));
+  if (bw_scene__has_particles(c)) BW_TRY(bw_scene__water_create(s));
   if (s->fluid != NULL && s->n_solids > 0) BW_TRY(bw_scene__coupled_create(s));
   if (flow && s->n_solids == 0 && s->rigid == NULL && c->n_bodies > 0)
     BW_TRY(bw_scene__surfaces_create(s));
@@ -157,28 +159,38 @@ static void block(FILE *out, bool runs, const char *name, const char *yes, const
 
 void bw_scene_blocks(const bw_scene *s, FILE *out)
 {
-  const bool flow = s->grid != NULL, rigid = s->rigid != NULL, solids = s->n_solids > 0;
+  const bool flow = s->grid != NULL, water = s->water != NULL, rigid = s->rigid != NULL,
+             solids = s->n_solids > 0;
   const bool markers = flow && s->config.n_bodies > 0;
   const bool coupled = flow && solids, force = bw_scene__asked(s, "force");
-  bool contact = !flow && s->n_solids > 1 && strcmp(s->config.contact.between, "none") != 0;
+  bool contact =
+      !flow && !water && s->n_solids > 1 && strcmp(s->config.contact.between, "none") != 0;
   for (int q = 0; q < s->n_solids; q++)
     contact = contact || s->solid[q].contact;
   const bool meet = contact || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
   /* Fields and particles first: the other blocks stand on them. */
-  block(out, flow, "fluid, pressure", "the scene has a fluid", "no fluid");
+  block(out, flow, "fluid, pressure", "the scene has a fluid on a grid",
+        water ? "the fluid is of particles" : "no fluid");
+  block(out, water, "fluid of particles", "fluid.model: particles",
+        flow ? "the fluid is on a grid" : "no fluid");
   block(out, s->planar == false, "third dimension", "plane: none",
-        flow ? "one cell in z" : "plane: stress or strain");
+        flow || water ? "one cell in z" : "plane: stress or strain");
   block(out, solids, "particles, bonds",
-        rigid ? "a body deforms, others are what it meets"
-              : "a body deforms, or is an image in a flow",
-        s->config.n_bodies > 0 ? "no body deforms: they have true surfaces" : "no body");
+        rigid   ? "a body deforms, others are what it meets"
+        : water ? "a body moves in the fluid"
+                : "a body deforms, or is an image in a flow",
+        s->config.n_bodies == 0 ? "no body"
+        : water                 ? "no body moves: they are walls of the fluid"
+                                : "no body deforms: they have true surfaces");
   block(out, solids && s->alive, "solid steps", "a body deforms or is moved",
         "nothing of particles moves");
   block(out, rigid, "rigid bodies", "a body moves as one piece", "no body is rigid");
   block(out, meet, "contact", "bodies, or pieces of one, can meet",
         solids || rigid ? "contact: none, or nothing can meet" : "no particles");
   /* What is between fluid and bodies, and what gauges alone ask for. */
-  block(out, markers, "markers", "bodies are in a flow", "no body in a flow");
+  block(out, water && solids, "loads by particles", "a body is in a fluid of particles",
+        water ? "no body, or walls of the fluid alone" : "no fluid of particles");
+  block(out, markers, "markers", "bodies are in a flow", "no body in a flow on a grid");
   block(out, coupled || (markers && !rigid && force), "probes",
         coupled ? "they load the solid" : "a gauge reads the force",
         "nobody reads the force by them");

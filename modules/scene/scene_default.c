@@ -9,19 +9,8 @@
 #include <string.h>
 
 /* Item 0 of a list holds the defaults of all its items. */
-static void default_body(bw_scene_body *b)
+static void default_shape(bw_scene_shape *s)
 {
-  b->motion = INT_MIN;
-  b->spacing = NAN;
-  b->self_contact = INT_MIN;
-  b->rotation = (bw_scene_rotation){NAN, {0, 0, 1}, {NAN, NAN, NAN}};
-  b->swing = (bw_scene_swing){{NAN, NAN, NAN}, NAN};
-  b->rigid = (bw_scene_rigid){.mass = NAN, .centre = {NAN, NAN, NAN}, .inertia = {NAN, NAN, NAN}};
-  b->held[0].layers = 1;
-  b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
-  b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
-  b->levels[0] = (bw_scene_level){INT_MIN, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
-  bw_scene_shape *s = &b->shape[0];
   s->box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   s->cylinder = (bw_scene_cylinder){2, {NAN, NAN}, NAN, NAN, NAN};
   s->sphere = (bw_scene_sphere){{NAN, NAN, NAN}, NAN};
@@ -36,14 +25,30 @@ static void default_body(bw_scene_body *b)
   s->stl = (bw_scene_stl){"", 1.0, NAN};
 }
 
+static void default_body(bw_scene_body *b)
+{
+  b->motion = INT_MIN;
+  b->spacing = NAN;
+  b->self_contact = INT_MIN;
+  b->rotation = (bw_scene_rotation){NAN, {0, 0, 1}, {NAN, NAN, NAN}};
+  b->swing = (bw_scene_swing){{NAN, NAN, NAN}, NAN};
+  b->rigid = (bw_scene_rigid){.mass = NAN, .centre = {NAN, NAN, NAN}, .inertia = {NAN, NAN, NAN}};
+  b->held[0].layers = 1;
+  b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
+  b->levels[0] = (bw_scene_level){INT_MIN, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  default_shape(&b->shape[0]);
+}
+
 static void default_gauge(bw_scene_gauge_config *g)
 {
   for (int d = 0; d < 3; d++)
     g->nearest[d] = g->point[d] = g->minus[d] = g->origin[d] = NAN;
   g->region = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+  g->strength = (bw_scene_strength){INT_MIN, NAN, NAN, NAN, NAN, NAN};
   g->line = (bw_scene_line){{NAN, NAN, NAN}, {NAN, NAN, NAN}, 101};
   g->slice = (bw_scene_slice){INT_MIN, NAN};
-  g->every = NAN;
+  g->width = g->every = NAN;
 }
 
 static void default_fluid(bw_scene_config *c)
@@ -51,9 +56,13 @@ static void default_fluid(bw_scene_config *c)
   const bw_scene_side side = {
       .kind = INT_MIN, .profile = BW_PROFILE_UNIFORM, .mean = NAN, .ramp = 0.0};
   const bw_scene_pair pair = {side, side};
-  c->domain = (bw_scene_domain){{NAN, NAN, NAN}, {INT_MIN, INT_MIN, INT_MIN}, 0.0};
+  c->domain = (bw_scene_domain){.length = {NAN, NAN, NAN},
+                                .cells = {INT_MIN, INT_MIN, INT_MIN},
+                                .shake = {{NAN, NAN, NAN}, NAN}};
   c->fluid.model = BW_SCENE_INCOMPRESSIBLE;
-  c->fluid.density = c->fluid.viscosity = NAN;
+  c->fluid.density = c->fluid.viscosity = c->fluid.speed = NAN;
+  c->fluid.start.hydrostatic = c->fluid.walls = INT_MIN;
+  default_shape(&c->fluid.shape[0]);
   c->fluid.sides = (bw_scene_sides){pair, pair, pair, false};
   c->fluid.start.vortices[0] = (bw_scene_vortex){{NAN, NAN, NAN}, NAN, NAN};
   c->fluid.forcing = (bw_scene_forcing){INT_MIN, 0, NAN};
@@ -79,6 +88,11 @@ static void default_numerics(bw_scene_numerics *n)
                            .load_relaxation = NAN,
                            .virtual_mass = NAN,
                            .contact_stiffness = NAN,
+                           .sound_speed = NAN,
+                           .artificial_viscosity = NAN,
+                           .wall_viscosity = NAN,
+                           .density_diffusion = NAN,
+                           .shifting = NAN,
                            .coupling_residual = NAN,
                            .coupling_iterations = INT_MIN};
 }
@@ -93,6 +107,8 @@ void bw_scene_config_default(bw_scene_config *c)
   bw_scene_material *m = &c->materials[0];
   snprintf(m->law, sizeof m->law, "bond");
   m->density = m->young_modulus = m->poisson_ratio = m->fracture_energy = NAN;
+  m->influence = m->weight = m->breaks = m->cone = INT_MIN;
+  m->stabilisation = m->limit = NAN;
   m->cohesion = m->friction_angle = m->dilation_angle = m->yield_stress = m->hardening = NAN;
   default_body(&c->bodies[0]);
   c->loads[0] = (bw_scene_load){.kind = INT_MIN, .value = {NAN, NAN, NAN}};
@@ -108,8 +124,9 @@ void bw_scene_config_default(bw_scene_config *c)
   default_numerics(&c->numerics);
 }
 
-/* Who reads a knob: anybody, solids, bodies in a flow, those that move by it, solids in it. */
-enum { OF_ALL, OF_SOLIDS, OF_MARKERS, OF_MOVING, OF_COUPLING };
+/* Who reads a knob: a fluid of particles, solids in one (both are set first, where there is one),
+ * anybody, solids, bodies in a flow, those that move by it, solids in it. */
+enum { OF_PARTICLES, OF_WETTED, OF_ALL, OF_SOLIDS, OF_MARKERS, OF_MOVING, OF_COUPLING };
 
 /* What `accuracy` sets where the file leaves it open. */
 typedef struct {
@@ -122,6 +139,9 @@ typedef struct {
 #define D(m) #m, offsetof(bw_scene_numerics, m), false
 #define I(m) #m, offsetof(bw_scene_numerics, m), true
 static const knob knobs[] = {
+    {D(step_share), OF_PARTICLES, {0.95, 0.8, 0.6}},
+    {D(solid_share), OF_WETTED, {0.9, 0.8, 0.5}},
+    {D(virtual_mass), OF_WETTED, {0.5, 0.5, 0.5}},
     {D(step_share), OF_ALL, {0.8, 0.6, 0.4}},
     {D(solid_share), OF_COUPLING, {0.9, 0.8, 0.5}},
     {D(horizon_ratio), OF_SOLIDS, {3.0, 3.0, 3.0}},
@@ -176,7 +196,8 @@ void bw_scene_resolve(bw_scene_config *c)
 {
   set_families(c);
   for (int q = 0; q < KNOBS; q++)
-    set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);
+    if (knobs[q].of >= OF_ALL || bw_scene__has_particles(c))
+      set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);
   const bool flat = c->has_domain && c->domain.cells[2] == 1;
   if (c->plane == INT_MIN) c->plane = flat ? BW_SCENE_STRAIN : BW_SCENE_SPACE;
   if (isnan(c->thickness)) c->thickness = flat ? c->domain.length[2] : 1.0;
@@ -192,8 +213,10 @@ void bw_scene_resolve(bw_scene_config *c)
 /* Does the scene have somebody who reads it? */
 static bool is_read(const bw_scene_config *c, const knob *k)
 {
-  const bool flow = c->has_domain, deforms = bw_scene__any_deforms(c);
-  const bool read[] = {[OF_ALL] = true,
+  const bool flow = bw_scene__has_fluid(c), deforms = bw_scene__any_deforms(c);
+  const bool read[] = {[OF_PARTICLES] = true,
+                       [OF_WETTED] = deforms,
+                       [OF_ALL] = true,
                        [OF_SOLIDS] = deforms,
                        [OF_MARKERS] = flow && c->n_bodies > 0,
                        [OF_MOVING] = flow && (deforms || bw_scene__any_rigid(c)),

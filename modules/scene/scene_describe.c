@@ -79,6 +79,18 @@ static void describe_fluid(bw_scene *s, bw_log *log)
   }
 }
 
+static void describe_water(const bw_scene *s, bw_log *log)
+{
+  const bw_scene__water *w = s->water;
+  const double c0 = bw_ulph_c0(w->fluid);
+  bw_log_info(log, "fluid      %s%.0f particles %g apart, %.0f of walls",
+              w->sampled ? "about " : "", w->sites, w->config.dx, w->walls);
+  bw_log_info(log, "           sound %g, 1/%.3g of it is the largest speed expected, %g", c0,
+              c0 / w->config.speed, w->config.speed);
+  bw_log_info(log, "           kinematic viscosity: physical %.3g, artificial %.3g",
+              w->config.mu / w->config.rho0, bw_ulph_artificial_nu(w->fluid));
+}
+
 static void describe_rigid(bw_scene *s, bw_log *log)
 {
   for (int b = 0; b < s->config.n_bodies; b++) {
@@ -144,13 +156,14 @@ static bw_status check_step(bw_scene *s)
   const bool flow = s->grid != NULL;
   if (isnan(step)) return BW_OK;
   /* What the flow becomes may bear less; that is found where it happens. */
-  const double most = !flow        ? bw_scene__solid_limit(s)
-                      : s->planned ? s->flow_plan.dt_max
-                                   : bw_ns_channel_dt_max(s->fluid);
+  const double most = s->water != NULL ? bw_scene__water_limit(s)
+                      : !flow          ? bw_scene__solid_limit(s)
+                      : s->planned     ? s->flow_plan.dt_max
+                                       : bw_ns_channel_dt_max(s->fluid);
   BW_REQUIRE(step <= most * (1.0 + 1e-12), BW_EINPUT,
              "numerics.step = %g: the %s at the start bear at most %.3g; take a shorter one, or "
              "leave it out",
-             step, flow ? "fluid and its sides" : "bodies", most);
+             step, flow || s->water != NULL ? "fluid and its sides" : "bodies", most);
   return BW_OK;
 }
 
@@ -172,6 +185,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   bw_release(&text);
   /* Sizes and limits of what runs, then how many steps that makes. */
   if (s->grid != NULL) describe_fluid(s, log);
+  if (s->water != NULL) describe_water(s, log);
   describe_solids(s, log);
   if (s->rigid != NULL) describe_rigid(s, log);
   if (s->coupler != NULL && s->alive) {

@@ -21,6 +21,10 @@ static const bw_config_word plane_words[] = {
     {"strain", BW_SCENE_STRAIN, "a slice of something long, held across"},
     {NULL, 0, NULL}};
 
+static const bw_config_field shake_fields[] = {
+    V(bw_scene_shake, amplitude, BW_REQUIRED, BW_POINT, "L",
+      "the walls are at amplitude (cos(2 pi f t) - 1): they begin at rest"),
+    V(bw_scene_shake, frequency, BW_REQUIRED, BW_ABOVE(0), "1/T", "f"), BW_CONFIG_END};
 static const bw_config_field domain_fields[] = {
     V(bw_scene_domain, length, BW_REQUIRED, BW_ABOVE(0), "L",
       "edges of the box in x, y and z; its lower corner is the origin"),
@@ -28,6 +32,11 @@ static const bw_config_field domain_fields[] = {
       "cells in x, y and z; one cell in z: two dimensions"),
     V(bw_scene_domain, stretch, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
       "strength of the stretching in y by tanh, thin cells at both sides; 0: uniform"),
+    V(bw_scene_domain, open, BW_OPTIONAL, BW_TEXTS, "",
+      "around a fluid of particles: sides without a wall, x_lower ... z_upper, or none; left out: "
+      "the one against gravity"),
+    BW_CONFIG_MAP_IF(bw_scene_domain, shake, has_shake, shake_fields,
+                     "motion of the walls around a fluid of particles"),
     BW_CONFIG_END};
 
 static const bw_config_field contact_fields[] = {
@@ -93,6 +102,13 @@ const bw_config_field bw_scene__numerics_fields[] = {
       "pressure per depth between rigid bodies and at walls; left out: so that weight and "
       "velocities "
       "press them half a spacing in"),
+    V(OURS, sound_speed, BW_OPTIONAL, BW_ABOVE(0), "L/T",
+      "of a fluid of particles, at least 10 times its largest speed, which it is when left out"),
+    V(OURS, artificial_viscosity, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "of a fluid of particles"),
+    V(OURS, wall_viscosity, BW_OPTIONAL, BW_FROM_TO(0, 1), "", "the same beside walls"),
+    V(OURS, density_diffusion, BW_OPTIONAL, BW_FROM_TO(0, 0.3), "", "of a fluid of particles"),
+    V(OURS, shifting, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
+      "of particles of a fluid against clustering; 0: none"),
     V(OURS, coupling_residual, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "change of the surface's velocity that ends iterations"),
     V(OURS, coupling_iterations, BW_OPTIONAL, BW_FROM_TO(1, 1000), "",

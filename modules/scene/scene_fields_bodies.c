@@ -1,6 +1,7 @@
 /* The keys of materials, bodies and loads. */
 #include "bw_pd_body.h"
 #include "bw_shape.h"
+#include "bw_solid_words.h"
 #include "scene_internal.h"
 
 #define V    BW_CONFIG_VALUE
@@ -22,6 +23,18 @@ const bw_config_field bw_scene__material_fields[] = {
     V(OURS, dilation_angle, BW_OPTIONAL, BW_FROM_TO(0, 89), "deg", "of drucker_prager"),
     V(OURS, yield_stress, BW_OPTIONAL, BW_ABOVE(0), "M/(L T2)", "of j2"),
     V(OURS, hardening, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L T2)", "of j2"),
+    BW_CONFIG_WORD(bw_scene_material, influence, BW_OPTIONAL, bw_solid_influence_words,
+                   "law ordinary: how much a neighbour at a distance counts"),
+    BW_CONFIG_WORD(bw_scene_material, weight, BW_OPTIONAL, bw_solid_weight_words,
+                   "law correspondence: how much a neighbour at a distance counts"),
+    BW_CONFIG_WORD(bw_scene_material, breaks, BW_OPTIONAL, bw_solid_breaks_words,
+                   "law correspondence: what breaks a bond of a breakable body"),
+    V(OURS, limit, BW_OPTIONAL, BW_ABOVE(0), "M/(L T2) or 1",
+      "stress, cohesion or factor of flow that a pair bears, by breaks"),
+    BW_CONFIG_WORD(bw_scene_material, cone, BW_OPTIONAL, bw_solid_cone_words,
+                   "of drucker_prager: where the cone meets Mohr-Coulomb's pyramid"),
+    V(OURS, stabilisation, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "law correspondence: stiffness against modes without energy, over mu"),
     BW_CONFIG_END};
 #undef OURS
 
@@ -73,7 +86,7 @@ static const bw_config_field stl_fields[] = {
       "cells it is filled with; left out: half the spacing"),
     BW_CONFIG_END};
 #define S(m, flag, fields, help) BW_CONFIG_MAP_IF(bw_scene_shape, m, flag, fields, help)
-static const bw_config_field shape_fields[] = {
+const bw_config_field bw_scene__shape_fields[] = {
     S(box, has_box, bw_scene__box_fields, "a box along x, y, z"),
     S(cylinder, has_cylinder, cylinder_fields, "a cylinder along an axis"),
     S(sphere, has_sphere, sphere_fields, "a ball; in two dimensions a disc"),
@@ -82,6 +95,8 @@ static const bw_config_field shape_fields[] = {
     S(stl, has_stl, stl_fields, "what a surface encloses"),
     V(bw_scene_shape, minus, BW_OPTIONAL, BW_ANY, "", "take away the shapes of this body"),
     V(bw_scene_shape, remove, BW_OPTIONAL, BW_ANY, "", "take this shape away"),
+    V(bw_scene_shape, held, BW_OPTIONAL, BW_ANY, "",
+      "of a body that deforms: the particles of this shape are held"),
     V(bw_scene_shape, material, BW_OPTIONAL, BW_ANY, "", "of this shape; left out: the body's"),
     BW_CONFIG_END};
 #undef S
@@ -142,7 +157,7 @@ static const bw_config_word self_words[] = {{"false", 0, NULL}, {"true", 1, NULL
 #define OURS bw_scene_body
 const bw_config_field bw_scene__body_fields[] = {
     V(OURS, name, BW_REQUIRED, BW_ANY, "", "by which the rest of the scene calls it"),
-    BW_CONFIG_LIST(bw_scene_body, shape, n_shape, BW_REQUIRED, shape_fields,
+    BW_CONFIG_LIST(bw_scene_body, shape, n_shape, BW_REQUIRED, bw_scene__shape_fields,
                    "shapes in order: added, or taken away"),
     V(OURS, material, BW_OPTIONAL, BW_ANY, "",
       "what it is made of; not needed: fixed, prescribed, rigid with a mass"),

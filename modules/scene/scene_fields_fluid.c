@@ -9,6 +9,11 @@ static const bw_config_word model_words[] = {
     {"particles", BW_SCENE_PARTICLES, "particles with a free surface"},
     {"none", BW_SCENE_NO_FLUID, NULL},
     {NULL, 0, NULL}};
+static const bw_config_word truth_words[] = {
+    {"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
+static const bw_config_word walls_words[] = {{"slip", BW_SCENE_SLIP, "the fluid slips along them"},
+                                             {"stick", BW_SCENE_STICK, "it sticks to them"},
+                                             {NULL, 0, NULL}};
 static const bw_config_field side_fields[] = {
     BW_CONFIG_WORD(bw_scene_side, kind, BW_REQUIRED, bw_ns_side_words,
                    "what the side is to the fluid"),
@@ -42,6 +47,9 @@ static const bw_config_field start_fields[] = {
       "the profile of a poiseuille inflow at the lower x side, everywhere"),
     BW_CONFIG_LIST(bw_scene_start, vortices, n_vortices, BW_OPTIONAL, vortex_fields,
                    "vortices added to it"),
+    BW_CONFIG_WORD(bw_scene_start, hydrostatic, BW_OPTIONAL, truth_words,
+                   "of particles: under the pressure of rest below the top of each shape; left "
+                   "out: true"),
     V(bw_scene_start, file, BW_OPTIONAL, BW_FILE, "",
       "checkpoint of a scene with the same cells, whose fluid is taken"),
     BW_CONFIG_END};
@@ -58,9 +66,16 @@ const bw_config_field bw_scene__fluid_fields[] = {
     V(bw_scene_fluid, density, BW_REQUIRED, BW_ABOVE(0), "M/L3", "density of the fluid"),
     V(bw_scene_fluid, viscosity, BW_REQUIRED, BW_ABOVE(0), "L2/T",
       "kinematic viscosity of the fluid"),
-    BW_CONFIG_MAP(bw_scene_fluid, sides, sides_fields, "the sides of the box"),
+    BW_CONFIG_MAP_IF(bw_scene_fluid, sides, has_sides, sides_fields,
+                     "the sides of the box; a fluid of particles has walls there (domain.open)"),
     BW_CONFIG_MAP(bw_scene_fluid, start, start_fields, "the first velocity"),
     BW_CONFIG_MAP_IF(bw_scene_fluid, forcing, has_forcing, forcing_fields,
                      "what drives a flow that is periodic"),
+    BW_CONFIG_LIST(bw_scene_fluid, shape, n_shape, BW_OPTIONAL, bw_scene__shape_fields,
+                   "of particles: where it is at first; bodies are taken away from it"),
+    V(bw_scene_fluid, speed, BW_OPTIONAL, BW_ABOVE(0), "L/T",
+      "of particles: largest speed that is expected; left out: 2 sqrt(gravity depth)"),
+    BW_CONFIG_WORD(bw_scene_fluid, walls, BW_OPTIONAL, walls_words,
+                   "of particles: what walls and bodies are to it; left out: slip"),
     BW_CONFIG_END};
 #undef V

@@ -196,8 +196,9 @@ static bw_status measure(bw_scene *s, int gauge, const bw_scene__quantity *what,
     value[k] = NAN;
   if (bw_scene__of_rigid(&s->config, &s->config.gauges[gauge], what))
     return bw_scene__measure_rigid(s, gauge, what, value);
-  if (what->source >= BW_SCENE__OF_POINT || strcmp(what->word, "force") == 0)
-    return bw_scene__measure_fluid(s, gauge, what, value);
+  const bool fluid = what->source >= BW_SCENE__OF_POINT || strcmp(what->word, "force") == 0;
+  if (fluid && s->water != NULL) return bw_scene__measure_water(s, gauge, what, value);
+  if (fluid) return bw_scene__measure_fluid(s, gauge, what, value);
   return bw_scene__measure_solid(s, gauge, what, value);
 }
 
@@ -211,6 +212,11 @@ bw_status bw_scene_measure(bw_scene *s, double row[])
     if (k == 1 || before->gauge != c->gauge || before->what != c->what)
       BW_TRY(measure(s, c->gauge, c->what, value));
     row[k] = value[c->component];
+  }
+  /* Wall pressures are means from row to row. */
+  if (s->water != NULL) {
+    memset(s->water->patch, 0, sizeof s->water->patch);
+    s->water->covered = 0.0;
   }
   return BW_OK;
 }

@@ -109,6 +109,21 @@ static bw_status coupled_force(bw_scene *s, double value[BW_SCENE__COMPONENTS])
   return BW_OK;
 }
 
+/* Of the flow along each axis, in the region or the whole box; empty along an axis in which nothing
+ * but rounding flows. Collective. */
+static void tortuosity(bw_scene *s, const bw_scene_gauge_config *g, double value[3])
+{
+  static const double origin[3] = {0};
+  const double *lower = g->has_region ? g->region.from : origin;
+  double upper[3];
+  memcpy(upper, g->has_region ? g->region.to : s->config.domain.length, sizeof upper);
+  if (s->planar) upper[2] = s->config.domain.length[2];
+  for (int axis = 0; axis < (s->planar ? 2 : 3); axis++)
+    value[axis] = bw_ns_channel_tortuosity(s->fluid, axis, lower, upper);
+  for (int axis = 0; axis < 3; axis++)
+    if (fabs(value[axis]) > 1e6) value[axis] = NAN;
+}
+
 bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,
                                   double value[BW_SCENE__COMPONENTS])
 {
@@ -122,6 +137,10 @@ bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quanti
   if (strcmp(what->word, "force") == 0)
     return s->coupler != NULL ? coupled_force(s, value)
                               : bw_scene__surface_force(s, g->body, value);
+  if (strcmp(what->word, "tortuosity") == 0) {
+    tortuosity(s, g, value);
+    return BW_OK;
+  }
   if (strcmp(what->word, "divergence") == 0) {
     value[0] = bw_ns_channel_divergence(s->fluid);
     return BW_OK;

@@ -208,6 +208,8 @@ bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quanti
   const bw_scene_gauge_config *g = &s->config.gauges[gauge];
   const bw_scene__aim *aim = &s->aim[gauge];
   bw_solid_ledger book;
+  if (strcmp(what->word, "failure") == 0) return bw_scene__failure(s, g, aim, value, NULL);
+  if (strcmp(what->word, "failure_place") == 0) return bw_scene__failure(s, g, aim, NULL, value);
   if (what->source == BW_SCENE__OF_PLACE && what->vector) {
     mean_vector(s, aim, what->word, value);
     return BW_OK;

@@ -1,12 +1,14 @@
 /* scene_impl.h -- the objects of a scene; shared inside `scene` only. */
 #pragma once
 #include "bw_coupler.h"
+#include "bw_coupler_particles.h"
 #include "bw_coupler_rigid.h"
 #include "bw_pd_state_law.h"
 #include "bw_rigid.h"
 #include "bw_scene.h"
 #include "bw_solid_assembly.h"
 #include "bw_solid_load.h"
+#include "bw_ulph.h"
 #include "scene_check.h"
 #include "scene_quantity.h"
 
@@ -44,6 +46,18 @@ typedef struct {
   double *area;          /* (n) [L^2] */
   double *X, *N, *V, *M; /* (n,3) place, normal, velocity; memory of markers, traction on walls */
 } bw_scene__points;
+
+/* A fluid of particles. */
+typedef struct {
+  bw_ulph_config config;
+  bw_ulph *fluid;             /* of a plan too large to be made: a sample of it */
+  bw_coupler_particles *both; /* with the solid; NULL: none, or planned */
+  bool sampled;
+  double sites, walls; /* particles of it, of its walls */
+  double bytes;        /* of a rank, where planned */
+  /* Wall pressures of gauges, integrated since the last row, and the time that they cover. */
+  double patch[BW_SCENE_GAUGES], covered;
+} bw_scene__water;
 
 /* A column of the history. */
 typedef struct {
@@ -102,6 +116,8 @@ struct bw_scene {
   double speed;       /* the fastest that the file names [L/T] */
   void *ramped[3][2]; /* of sides whose velocity rises, owned */
 
+  bw_scene__water *water; /* a fluid of particles; NULL: none */
+
   /* interfaces of solids, for fragments; made when asked for */
   bw_pd_interface *interface[BW_SCENE_BODIES];
 
@@ -127,7 +143,11 @@ enum { BW_SCENE__MADE = 200000 };
 bw_status bw_scene__create(const bw_comm *comm, const bw_scene_config *config, bw_log *log,
                            bool planned, bw_scene **out) BW_MUST_CHECK;
 
-/* scene_plan.c: the sites of a solid, counted or, beyond some ten millions, by a sample. */
+/* scene_plan.c: sites of one body or of the fluid (BW_SCENE__FLUID) on a lattice; of one too large
+ * to be walked through, those of some of its rows. Local. */
+bw_status bw_scene__count_body(bw_scene *s, int b, const bw_shape_lattice *lattice,
+                               double *n) BW_MUST_CHECK;
+/* The sites of a solid, counted or, beyond some ten millions, by a sample. */
 bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
                                 const bw_solid_config *config, double *n) BW_MUST_CHECK;
 /* Lines of memory and pores; refuses steps beyond a limit. Collective. */
@@ -144,6 +164,7 @@ double bw_scene__share(const bw_scene__solid *q, size_t i);
  * ask for what one solid cannot have. Local. */
 typedef struct {
   bw_pd_state_correspondence_options correspondence;
+  bw_pd_state_ordinary_options ordinary;
 } bw_scene__options;
 bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
                                 bw_scene__options *room, const void **options) BW_MUST_CHECK;
@@ -210,6 +231,24 @@ bw_status bw_scene__surfaces_restore(bw_scene *s) BW_MUST_CHECK;
 bw_status bw_scene__surface_force(bw_scene *s, const char *names,
                                   double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
 
+/* scene_water.c: a fluid of particles, with the solid of the scene where it has one */
+bw_status bw_scene__water_create(bw_scene *s) BW_MUST_CHECK;
+void bw_scene__water_destroy(bw_scene *s);
+double bw_scene__water_limit(bw_scene *s); /* longest step now [T]. Collective. */
+bw_status bw_scene__water_step(bw_scene *s, double dt) BW_MUST_CHECK;
+bw_status bw_scene__water_save(bw_scene *s, bw_checkpoint *ck) BW_MUST_CHECK;
+bw_status bw_scene__water_restore(bw_scene *s, bw_checkpoint *ck) BW_MUST_CHECK;
+/* scene_water_make.c: its walls and particles. A planned one that is large becomes a sample. */
+bw_status bw_scene__water_make(bw_scene *s) BW_MUST_CHECK;
+/* scene_water_gauges.c: what gauges see of it, forces on the solid among them. Collective. */
+bw_status bw_scene__measure_water(bw_scene *s, int gauge, const bw_scene__quantity *what,
+                                  double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+void bw_scene__water_where(const bw_scene *s, double x[3]); /* place of its walls now. Local. */
+void bw_scene__water_gather(bw_scene *s, double dt);        /* wall pressures over a step of dt */
+/* scene_water_picture.c: fluid.pvd, walls.pvd. */
+bw_status bw_scene__water_picture(bw_scene *s, int solid, const char *path) BW_MUST_CHECK;
+bw_status bw_scene__walls_picture(bw_scene *s, int solid, const char *path) BW_MUST_CHECK;
+
 /* scene_coupled.c */
 bw_status bw_scene__coupled_create(bw_scene *s) BW_MUST_CHECK;
 
@@ -232,6 +271,11 @@ bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quanti
                                   double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
 bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,
                                   double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
+/* scene_failure.c: by what the load has to grow until the first particle of a gauge fails, and
+ * where that was at the start (3); NULL: not wanted; unchanged where nothing is loaded.
+ * Collective. */
+bw_status bw_scene__failure(bw_scene *s, const bw_scene_gauge_config *g, const bw_scene__aim *aim,
+                            double *load, double place[3]) BW_MUST_CHECK;
 /* value (3 or 1) <- velocity or pressure at x (3), all ranks. */
 void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], double value[]);
 

@@ -7,6 +7,7 @@ extern const bw_config_field bw_scene__fluid_fields[];
 extern const bw_config_field bw_scene__material_fields[];
 extern const bw_config_field bw_scene__body_fields[];
 extern const bw_config_field bw_scene__box_fields[];
+extern const bw_config_field bw_scene__shape_fields[];
 extern const bw_config_field bw_scene__load_fields[];
 extern const bw_config_field bw_scene__phase_fields[];
 extern const bw_config_field bw_scene__gauge_fields[];

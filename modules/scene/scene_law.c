@@ -1,6 +1,7 @@
 /* Materials of state-based laws: their words, and what a law is asked for. */
 #include "scene_impl.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,6 +24,12 @@ static bool find_elastic(const char *word, bw_pd_material_elastic *out)
 
 enum { NUMBERS = 5 };
 
+/* Does something of the material know friction: its flow, or what breaks its bonds? */
+static bool breaks_by_friction(const bw_scene_material *m)
+{
+  return m->breaks == BW_PD_STATE_BREAKS_BY_MOHR_COULOMB || m->breaks == BW_PD_STATE_BREAKS_BY_CONE;
+}
+
 /* Numbers that belong to one plastic law must not look as if they did something for another. */
 static bw_status check_numbers(const bw_scene_material *m)
 {
@@ -37,7 +44,8 @@ static bw_status check_numbers(const bw_scene_material *m)
   const double numbers[NUMBERS] = {m->cohesion, m->friction_angle, m->dilation_angle,
                                    m->yield_stress, m->hardening};
   for (int q = 0; q < NUMBERS; q++) {
-    const bool read = strcmp(m->plastic, rows[q].of) == 0;
+    const bool read = strcmp(m->plastic, rows[q].of) == 0 ||
+                      (breaks_by_friction(m) && strcmp(rows[q].key, "friction_angle") == 0);
     BW_REQUIRE(read || isnan(numbers[q]), BW_EINPUT,
                "materials.%s.%s = %g: it belongs to plastic: %s; leave it out", m->name,
                rows[q].key, numbers[q], rows[q].of);
@@ -45,6 +53,33 @@ static bw_status check_numbers(const bw_scene_material *m)
                "materials.%s.%s is missing: plastic: %s needs it", m->name, rows[q].key,
                rows[q].of);
   }
+  return BW_OK;
+}
+
+bool bw_scene__breaks_by_stretch(const bw_scene_material *m)
+{
+  return m->breaks == INT_MIN || m->breaks == BW_PD_STATE_BREAKS_BY_STRETCH;
+}
+
+/* Keys of one law must not look as if they did something in another. */
+static bw_status check_keys(const bw_scene_material *m)
+{
+  const bool stretch = bw_scene__breaks_by_stretch(m);
+  const struct {
+    const char *key, *of;
+    bool given;
+  } rows[] = {{"influence", "ordinary", m->influence != INT_MIN},
+              {"weight", "correspondence", m->weight != INT_MIN},
+              {"breaks", "correspondence", m->breaks != INT_MIN},
+              {"cone", "correspondence", m->cone != INT_MIN},
+              {"stabilisation", "correspondence", !isnan(m->stabilisation)}};
+  for (size_t q = 0; q < sizeof rows / sizeof *rows; q++)
+    BW_REQUIRE(!rows[q].given || strcmp(m->law, rows[q].of) == 0, BW_EINPUT,
+               "materials.%s.%s: it belongs to law: %s, this is %s; leave it out", m->name,
+               rows[q].key, rows[q].of, m->law);
+  BW_REQUIRE(stretch == isnan(m->limit), BW_EINPUT,
+             "materials.%s.limit is %s: it belongs to breaks other than stretch, and they to it",
+             m->name, stretch ? "given" : "missing");
   return BW_OK;
 }
 
@@ -70,6 +105,7 @@ bw_status bw_scene__check_state(const bw_scene_material *m)
   BW_REQUIRE(!correspondence || !isnan(m->poisson_ratio), BW_EINPUT,
              "materials.%s.poisson_ratio is missing: law: correspondence has none of its own",
              m->name);
+  BW_TRY(check_keys(m));
   return check_numbers(m);
 }
 
@@ -79,7 +115,8 @@ static bw_pd_material_yield yield_of(const bw_scene *s, const bw_scene_material 
   const double degree = acos(-1.0) / 180.0;
   const double dilation = isnan(m->dilation_angle) ? 0.0 : m->dilation_angle;
   /* In plane strain the cones that are Mohr-Coulomb's there. */
-  const bw_pd_material_cone cone = s->config.plane != BW_SCENE_STRAIN
+  const bw_pd_material_cone cone = m->cone != INT_MIN ? (bw_pd_material_cone)m->cone
+                                   : s->config.plane != BW_SCENE_STRAIN
                                        ? BW_PD_MATERIAL_COMPRESSION_CONE
                                    : dilation > 0.0 ? BW_PD_MATERIAL_PLANE_ASSOCIATED
                                                     : BW_PD_MATERIAL_PLANE_ISOCHORIC;
@@ -89,25 +126,50 @@ static bw_pd_material_yield yield_of(const bw_scene *s, const bw_scene_material 
                                        dilation * degree);
 }
 
+/* Options that a lattice has one of: those of its first material that deforms. */
+static void set_options(const bw_scene_material *m, bw_scene__options *room)
+{
+  bw_pd_state_correspondence_options *o = &room->correspondence;
+  if (m->influence != INT_MIN) room->ordinary.influence = (bw_pd_state_influence)m->influence;
+  if (m->weight != INT_MIN) o->weight = (bw_pd_state_weight)m->weight;
+  if (m->breaks != INT_MIN) o->breaks = (bw_pd_state_breaks)m->breaks;
+  if (!isnan(m->limit)) o->limit = m->limit;
+  if (!isnan(m->stabilisation)) o->stabilisation = m->stabilisation;
+  if (breaks_by_friction(m)) o->friction = m->friction_angle * acos(-1.0) / 180.0;
+}
+
+/* Have two materials of a lattice the same of them? */
+static bool agree(const bw_scene_material *a, const bw_scene_material *b)
+{
+  const bool limits = (isnan(a->limit) && isnan(b->limit)) || a->limit == b->limit;
+  const bool same =
+      (isnan(a->stabilisation) && isnan(b->stabilisation)) || a->stabilisation == b->stabilisation;
+  const bool friction = !breaks_by_friction(a) || a->friction_angle == b->friction_angle;
+  return a->influence == b->influence && a->weight == b->weight && a->breaks == b->breaks &&
+         strcmp(a->elastic, b->elastic) == 0 && limits && same && friction;
+}
+
 bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
                                 bw_scene__options *room, const void **options)
 {
-  const char *elastic = NULL;
+  const bw_scene_material *first = NULL;
   *options = NULL;
   room->correspondence = bw_pd_state_correspondence_options_default();
+  room->ordinary = bw_pd_state_ordinary_options_default();
   for (int g = 0; g < q->n_groups; g++) {
     /* What does not deform is as stiff as what it holds, and does not yield. */
     if (!bw_scene__deforms(&s->config.bodies[q->body_of[g]])) continue;
     const bw_scene_material *m = &s->config.materials[q->material_of[g]];
-    if (strcmp(m->law, "correspondence") != 0) return BW_OK;
-    BW_REQUIRE(elastic == NULL || strcmp(elastic, m->elastic) == 0, BW_EINPUT,
-               "materials.%s.elastic = %s: another material of the same lattice has %s; a lattice "
-               "has one",
-               m->name, m->elastic, elastic);
-    elastic = m->elastic;
-    if (elastic[0] != '\0') (void)find_elastic(elastic, &room->correspondence.elastic);
+    const bool ordinary = strcmp(m->law, "ordinary") == 0;
+    if (!ordinary && strcmp(m->law, "correspondence") != 0) return BW_OK;
+    if (first == NULL) set_options(first = m, room);
+    BW_REQUIRE(agree(first, m), BW_EINPUT,
+               "materials.%s: another material of the same lattice, %s, differs in elastic, "
+               "influence, weight, breaks, limit or stabilisation; a lattice has one of each",
+               m->name, first->name);
+    if (m->elastic[0] != '\0') (void)find_elastic(m->elastic, &room->correspondence.elastic);
     if (m->plastic[0] != '\0') room->correspondence.yield[g] = yield_of(s, m);
-    *options = &room->correspondence;
+    *options = ordinary ? (const void *)&room->ordinary : &room->correspondence;
   }
   return BW_OK;
 }

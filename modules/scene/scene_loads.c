@@ -134,7 +134,7 @@ bw_status bw_scene__loads_create(bw_scene *s)
   }
   /* In a flow the weight is the coupler's, which knows that of the fluid displaced. */
   for (int q = 0; q < s->n_solids; q++) {
-    s->solid[q].pushed = (s->solid[q].pushed || heavy) && !bw_scene__has_fluid(&s->config);
+    s->solid[q].pushed = (s->solid[q].pushed || heavy) && !bw_scene__has_flow(&s->config);
     for (int k = 0; k < s->solid[q].n_bodies; k++)
       if (s->config.bodies[s->solid[q].body[k]].motion == BW_SCENE_PRESCRIBED ||
           s->rigid_of[s->solid[q].body[k]] >= 0)

@@ -173,8 +173,19 @@ static bw_status look(bw_scene *s, shown *p, int *n, double lower[3], double upp
     for (int d = 0; d < 3; d++)
       lower[d] = 0.0, upper[d] = s->config.domain.length[d];
   }
+  if (s->water != NULL) {
+    /* Points of the fluid; its walls are a series that is opened by hand. */
+    p[*n] = (shown){.file = "fluid",
+                    .kind = "GeometryRepresentation",
+                    .look = "Points",
+                    .array = "velocity",
+                    .most = s->water->config.speed};
+    (*n)++;
+    for (int d = 0; d < 3; d++)
+      lower[d] = 0.0, upper[d] = s->planar && d == 2 ? 0.0 : s->config.domain.length[d];
+  }
   /* Without one it is the box of all bodies. */
-  for (int b = 0; b < s->config.n_bodies && s->fluid == NULL; b++) {
+  for (int b = 0; b < s->config.n_bodies && *n == 0; b++) {
     bw_scene__shapes shapes;
     const bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
     for (int d = 0; d < 3; d++) {

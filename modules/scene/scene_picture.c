@@ -113,10 +113,13 @@ static bw_status write_fluid(bw_scene *s, int solid, const char *path)
 static bw_status write_solid(bw_scene *s, int solid, const char *path)
 {
   bw_scene__solid *q = &s->solid[solid];
-  double *X = NULL, *U = NULL, *damage = NULL;
+  const bw_coupler_particles *both = s->water != NULL ? s->water->both : NULL;
+  double *X = NULL, *U = NULL, *damage = NULL, *F = NULL, *p = NULL;
   int32_t *body = NULL;
   bw_status st = BW_ALLOCATE(&X, 3 * q->n);
   BW_THEN(st, BW_ALLOCATE(&U, 3 * q->n));
+  if (both != NULL) BW_THEN(st, BW_ALLOCATE(&F, 3 * q->n));
+  if (both != NULL) BW_THEN(st, BW_ALLOCATE(&p, q->n));
   BW_THEN(st, BW_ALLOCATE(&damage, q->n));
   BW_THEN(st, BW_ALLOCATE(&body, q->n));
   st = bw_comm_agree(s->comm, st);
@@ -129,14 +132,19 @@ static bw_status write_solid(bw_scene *s, int solid, const char *path)
       U[i] = X[i] - q->X0[i];
     for (size_t i = 0; i < q->n; i++)
       body[i] = bw_scene__body_of(q, i) + 1;
-    const bw_vtk_array arrays[] = {{"damage", BW_VTK_FLOAT64, 1, damage},
-                                   {"displacement", BW_VTK_FLOAT64, 3, U},
-                                   {"velocity", BW_VTK_FLOAT64, 3, q->V},
-                                   {"body", BW_VTK_INT32, 1, body}};
-    st = bw_vtk_write_points(s->comm, path, s->time, q->n, X, 4, arrays);
+    const bw_vtk_array arrays[] = {
+        {"damage", BW_VTK_FLOAT64, 1, damage}, {"displacement", BW_VTK_FLOAT64, 3, U},
+        {"velocity", BW_VTK_FLOAT64, 3, q->V}, {"body", BW_VTK_INT32, 1, body},
+        {"force", BW_VTK_FLOAT64, 3, F},       {"pressure", BW_VTK_FLOAT64, 1, p}};
+    /* The last two are those of a fluid of particles. */
+    if (both != NULL) bw_coupler_particles_load(both, F);
+    if (both != NULL) bw_coupler_particles_pressure(both, p);
+    st = bw_vtk_write_points(s->comm, path, s->time, q->n, X, both != NULL ? 6 : 4, arrays);
   }
   bw_release(&X);
   bw_release(&U);
+  bw_release(&F);
+  bw_release(&p);
   bw_release(&damage);
   bw_release(&body);
   return st;
@@ -197,7 +205,8 @@ void bw_scene__series_name(const bw_scene *s, int solid, char name[2 * BW_SCENE_
 {
   /* A solid of several bodies has the name of the first. */
   const char *body = solid < 0 ? "" : s->config.bodies[s->solid[solid].body[0]].name;
-  const bool taken = strcmp(body, "fluid") == 0 || strcmp(body, "rigid-surfaces") == 0;
+  const bool taken = strcmp(body, "fluid") == 0 || strcmp(body, "walls") == 0 ||
+                     strcmp(body, "rigid-surfaces") == 0;
   snprintf(name, 2 * BW_SCENE_NAME, "%s%s", taken ? "body-" : "",
            solid < 0 ? "rigid-surfaces" : body);
 }
@@ -207,6 +216,10 @@ bw_status bw_scene_picture(bw_scene *s, const bw_case *run)
   char what[2 * BW_SCENE_NAME];
   if (s->fluid != NULL)
     BW_TRY(add_to_series(s, run, "fluid", bw_vtk_grid_extension(s->grid), 0, write_fluid));
+  if (s->water != NULL) {
+    BW_TRY(add_to_series(s, run, "fluid", ".vtp", 0, bw_scene__water_picture));
+    BW_TRY(add_to_series(s, run, "walls", ".vtp", 0, bw_scene__walls_picture));
+  }
   bw_scene__series_name(s, -1, what);
   if (s->rigid != NULL && s->n_solids == 0)
     BW_TRY(add_to_series(s, run, what, ".vtp", 0, write_surfaces));

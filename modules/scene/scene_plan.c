@@ -17,8 +17,7 @@ static void lattice_of(const bw_scene *s, const bw_solid_config *config, bw_shap
 
 /* ---- particles ---- */
 
-/* Sites of one body; of a lattice too large to be walked through, those of some of its rows. */
-static bw_status count_body(bw_scene *s, int b, const bw_shape_lattice *lattice, double *n)
+bw_status bw_scene__count_body(bw_scene *s, int b, const bw_shape_lattice *lattice, double *n)
 {
   static const double walked = 2e7; /* sites of the range: a second */
   enum { SAMPLES = 64 };
@@ -53,7 +52,7 @@ bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
   *n = 0.0;
   for (int k = 0; k < q->n_bodies && st == BW_OK; k++) {
     double one = 0.0;
-    st = count_body(s, q->body[k], &lattice, &one);
+    st = bw_scene__count_body(s, q->body[k], &lattice, &one);
     *n += one;
   }
   return bw_comm_agree(s->comm, st);
@@ -117,7 +116,7 @@ static bw_status find_pores(bw_scene *s, int b, bw_log *log)
   uint8_t *kind = NULL, *group = NULL;
   bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
   for (int d = 0; st == BW_OK && d < 3; d++)
-    lattice.origin[d] = s->grid != NULL ? 0.0 : shapes.lower[d];
+    lattice.origin[d] = s->config.has_domain ? 0.0 : shapes.lower[d];
   BW_THEN(st, bw_shape_range(shapes.n, shapes.shape, &lattice, lo, hi));
   for (int d = 0; st == BW_OK && d < 3; d++) {
     /* The box is that of the shapes: its centres between the two ends. */
@@ -163,17 +162,20 @@ static bw_status check_substeps(bw_scene *s, bw_log *log)
 bw_status bw_scene__plan_describe(bw_scene *s, bw_log *log)
 {
   const int ranks = bw_comm_size(s->comm);
-  double bytes = s->grid != NULL ? s->flow_plan.bytes : 0.0;
+  double bytes = s->grid != NULL ? s->flow_plan.bytes : s->water != NULL ? s->water->bytes : 0.0;
+  /* The scene, and what was read of it. */
+  bytes += 2.0 * sizeof *s;
   const double field =
       s->grid != NULL ? sizeof(bw_real) * (double)bw_grid_look(s->grid)->size : 0.0;
   for (int q = 0; q < s->n_solids; q++)
-    bytes += s->solid[q].sites * s->solid[q].sample.bytes / ranks;
+    bytes += (s->sketched ? s->solid[q].sites : (double)bw_solid_total(s->solid[q].solid)) *
+             s->solid[q].sample.bytes / ranks;
   /* The coupler holds two fields, and what acts at the particles' surface; markers one. */
   if (s->grid != NULL && s->config.n_bodies > 0) bytes += (s->n_solids > 0 ? 2.0 : 1.0) * field;
   bw_comm_max(s->comm, 1, &bytes);
   for (int b = 0; b < s->config.n_bodies && !s->planar; b++)
     if (has_pores(&s->config.bodies[b])) BW_TRY(find_pores(s, b, log));
-  if (s->grid != NULL && s->n_solids > 0 && s->alive) BW_TRY(check_substeps(s, log));
+  if (bw_scene__has_flow(&s->config) && s->n_solids > 0 && s->alive) BW_TRY(check_substeps(s, log));
   bw_log_info(log,
               "memory     about %.3g MiB for each of %d ranks, a third more while it is built and "
               "written",

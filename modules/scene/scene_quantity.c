@@ -37,11 +37,30 @@ const bw_scene__quantity bw_scene__quantities[] = {
      false,
      {"kinetic", "elastic", "contact", "fracture", "damping", "external"},
      "M L2/T2"},
+    {"failure", BW_SCENE__OF_PLACE, 1, false, false, {""}, "-"},
+    {"failure_place", BW_SCENE__OF_PLACE, 3, true, false, XYZ, "L"},
     {"pressure", BW_SCENE__OF_POINT, 1, false, false, {""}, "M/(L T2)"},
     {"flow_rate", BW_SCENE__OF_FLUID, 2, false, false, {"in", "out"}, "L3/T"},
     {"bulk_velocity", BW_SCENE__OF_FLUID, 1, false, false, {""}, "L/T"},
     {"kinetic_energy", BW_SCENE__OF_FLUID, 1, false, false, {""}, "M L2/T2"},
+    {"tortuosity", BW_SCENE__OF_FLUID, 3, true, false, XYZ, "-"},
     {"divergence", BW_SCENE__OF_FLUID, 1, false, false, {""}, "-"},
+    {"depth", BW_SCENE__OF_COLUMN, 1, false, false, {""}, "L"},
+    {"front", BW_SCENE__OF_WATER, 1, false, false, {""}, "L"},
+    {"height", BW_SCENE__OF_WATER, 1, false, false, {""}, "L"},
+    {"wall_pressure", BW_SCENE__OF_WATER, 1, false, false, {""}, "M/(L T2)"},
+    {"wall_force", BW_SCENE__OF_WATER, 3, true, false, XYZ, "M L/T2"},
+    {"mass", BW_SCENE__OF_WATER, 1, false, false, {""}, "M"},
+    {"outside", BW_SCENE__OF_WATER, 1, false, false, {""}, "-"},
+    {"work", BW_SCENE__OF_WATER, 3, false, false, {"given", "late", "received"}, "M L2/T2"},
+    {"fluid_energy",
+     BW_SCENE__OF_WATER,
+     12,
+     false,
+     false,
+     {"kinetic", "potential", "compression", "walls", "viscosity", "artificial", "diffusion",
+      "tension", "shifting", "images", "bodies", "gap"},
+     "M L2/T2"},
     {NULL, BW_SCENE__OF_FLUID, 0, false, false, {NULL}, NULL}};
 
 bool bw_scene__names_all(const bw_scene_config *c, const bw_scene_gauge_config *g)
@@ -55,7 +74,7 @@ bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config
                            bw_scene__route route)
 {
   if (route == BW_SCENE__BY_REACTION) return true;
-  if (bw_scene__any_rigid(c)) return false;
+  if (bw_scene__any_rigid(c) || bw_scene__has_particles(c)) return false;
   return route == BW_SCENE__BY_PROBES || bw_scene__names_all(c, g);
 }
 
@@ -85,7 +104,8 @@ static bool in_fluid(const bw_scene_gauge_config *g)
 const bw_scene__quantity *bw_scene__quantity_named(const bw_scene_gauge_config *g, const char *word)
 {
   for (const bw_scene__quantity *q = bw_scene__quantities; q->word != NULL; q++)
-    if (strcmp(q->word, word) == 0 && (q->source == BW_SCENE__OF_POINT || !in_fluid(g)) &&
+    if (strcmp(q->word, word) == 0 &&
+        (q->source == BW_SCENE__OF_POINT || q->source == BW_SCENE__OF_COLUMN || !in_fluid(g)) &&
         !(q->source == BW_SCENE__OF_POINT && strcmp(word, "velocity") == 0 && !in_fluid(g)))
       return q;
   return NULL;
@@ -112,11 +132,44 @@ static bw_status check_bodies(const bw_scene_config *c, const bw_scene_gauge_con
   BW_REQUIRE(!bw_scene__of_rigid(c, g, q) || rigid == 1 || support, BW_EINPUT,
              "gauges.%s.body = %s: %s is that of one rigid body; give each a gauge of its own",
              g->name, g->body, q->word);
-  BW_REQUIRE(!force || any_rigid || !(bw_scene__any_deforms(c)) || bw_scene__names_all(c, g),
+  BW_REQUIRE(!force || any_rigid || !bw_scene__any_deforms(c) || bw_scene__names_all(c, g) ||
+                 bw_scene__has_particles(c),
              BW_EINPUT,
              "gauges.%s.body = %s: this build knows the force on all bodies of a flow together "
              "where one deforms, not on some of them; name all",
              g->name, g->body);
+  return BW_OK;
+}
+
+/* Quantities of a fluid on a grid and of one of particles are not those of the other. */
+static bw_status check_model(const bw_scene_config *c, const bw_scene_gauge_config *g,
+                             const bw_scene__quantity *q)
+{
+  const bool water = bw_scene__has_particles(c), both = strcmp(q->word, "kinetic_energy") == 0;
+  char name[BW_SCENE_NAME];
+  if (q->source < BW_SCENE__OF_POINT && strcmp(q->word, "force") != 0) return BW_OK;
+  BW_REQUIRE(both || q->source < BW_SCENE__OF_POINT || water == (q->source >= BW_SCENE__OF_COLUMN),
+             BW_EINPUT, "gauges.%s.of = %s: that of a fluid %s; leave it out", g->name, q->word,
+             water ? "on a grid, and this one is of particles"
+                   : "of particles, and this one is on a grid");
+  BW_REQUIRE(q->source != BW_SCENE__OF_COLUMN || bw_scene__given(g->point), BW_EINPUT,
+             "gauges.%s.point is missing: %s is that of the column at a place", g->name, q->word);
+  BW_REQUIRE(strcmp(q->word, "wall_pressure") != 0 || g->has_region, BW_EINPUT,
+             "gauges.%s.region is missing: the part of a wall whose mean pressure is asked for",
+             g->name);
+  BW_REQUIRE(
+      strcmp(q->word, "work") != 0 || bw_scene__any_deforms(c), BW_EINPUT,
+      "gauges.%s.of = work: that of the fluid on bodies that deform, of which there is none; "
+      "leave it out",
+      g->name);
+  for (const char *rest = g->body; water && bw_scene__next_name(&rest, name);) {
+    const int b = bw_scene__body_named(c, name);
+    BW_REQUIRE(
+        b < 0 || !bw_scene__is_wall(c, b), BW_EINPUT,
+        "gauges.%s.body = %s: a fixed body is a wall of a fluid of particles, whose force is "
+        "not told apart; ask for wall_force, of all walls together",
+        g->name, name);
+  }
   return BW_OK;
 }
 
@@ -128,7 +181,7 @@ static bw_status check_quantity(const bw_scene_config *c, const bw_scene_gauge_c
              "gauges.%s.of = %s: there is no such quantity%s; `--help gauges` lists them", g->name,
              word, in_fluid(g) ? " of a place in the fluid" : "");
   const bool bodies = q->source <= BW_SCENE__OF_SOLIDS;
-  BW_REQUIRE(bodies ? c->n_bodies > 0 : bw_scene__has_fluid(c), BW_EINPUT,
+  BW_REQUIRE(bodies ? c->n_bodies > 0 : bw_scene__has_flow(c), BW_EINPUT,
              "gauges.%s.of = %s: the scene has no %s; leave the gauge out", g->name, word,
              bodies ? "body" : "fluid");
   BW_REQUIRE(q->source > BW_SCENE__OF_BODIES || g->body[0] != '\0', BW_EINPUT,
@@ -136,9 +189,11 @@ static bw_status check_quantity(const bw_scene_config *c, const bw_scene_gauge_c
   BW_REQUIRE(q->source != BW_SCENE__OF_POINT || in_fluid(g), BW_EINPUT,
              "gauges.%s.point is missing: %s is that of a place; give point, line or slice",
              g->name, word);
-  BW_REQUIRE(strcmp(word, "force") != 0 || bw_scene__has_fluid(c), BW_EINPUT,
+  BW_REQUIRE(strcmp(word, "force") != 0 || bw_scene__has_flow(c), BW_EINPUT,
              "gauges.%s.of = force: that of a fluid, of which there is none; use force_on_support",
              g->name);
+  BW_TRY(check_model(c, g, q));
+  if (strncmp(word, "failure", strlen("failure")) == 0) BW_TRY(bw_scene__check_failure(c, g));
   BW_TRY(check_bodies(c, g, q));
   BW_REQUIRE(strcmp(word, "crack_tip") != 0 || bw_scene__given(g->origin), BW_EINPUT,
              "gauges.%s.origin is missing: where the crack begins, from which its reach counts",

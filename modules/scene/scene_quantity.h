@@ -9,10 +9,12 @@ typedef enum {
   BW_SCENE__OF_BODIES, /* one or more bodies as a whole */
   BW_SCENE__OF_SOLIDS, /* bodies or, without `body`, all solids */
   BW_SCENE__OF_POINT,  /* a place in the fluid: point, line or slice */
-  BW_SCENE__OF_FLUID   /* all of the fluid */
+  BW_SCENE__OF_FLUID,  /* all of the fluid on a grid */
+  BW_SCENE__OF_COLUMN, /* a column of a fluid of particles: point */
+  BW_SCENE__OF_WATER   /* all of a fluid of particles, or what is in a region */
 } bw_scene__source;
 
-enum { BW_SCENE__COMPONENTS = 9 }; /* of a quantity, at most */
+enum { BW_SCENE__COMPONENTS = 12 }; /* of a quantity, at most */
 
 /* Ways to the force of the flow: components 0 .. 2, 3 .. 5, 6 .. 8 of it. */
 typedef enum {

@@ -73,7 +73,7 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
              bw_scene__word(bw_scene__motion_words, b->motion));
   if (b->motion != BW_SCENE_RIGID) return BW_OK;
   /* What this build cannot do together. */
-  BW_REQUIRE(!bw_scene__has_fluid(c) || !bw_scene__any_deforms(c), BW_EINPUT,
+  BW_REQUIRE(!bw_scene__has_flow(c) || !bw_scene__any_deforms(c), BW_EINPUT,
              "bodies.%s.motion = rigid: rigid bodies beside others that deform, in a flow: not in "
              "this build; make all that moves rigid, or leave the fluid out",
              b->name);

@@ -195,8 +195,8 @@ static bw_status advance(driver *r)
     const int phase = s->phase;
     /* Probes are read only in steps that are measured: the last one before a row, or any that may
      * end a phase. */
-    bw_scene_expect(s, s->time + 1.0001 * bw_scene__limit(s) >= event || isnan(end) ||
-                           s->time + 1.0001 * bw_scene__limit(s) >= end);
+    const double next = s->time + 1.0001 * bw_scene__limit(s);
+    bw_scene_expect(s, next >= event || isnan(end) || next >= end);
     st = bw_scene_step(s, event);
     BW_THEN(st, after_step(r));
     if (st == BW_OK && s->phase != phase && !bw_scene_done(s))

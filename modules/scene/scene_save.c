@@ -109,6 +109,7 @@ bw_status bw_scene_save(bw_scene *s, bw_checkpoint *ck)
                                    s->dt};
   BW_TRY(bw_checkpoint_put_numbers(ck, "scene/time", NUMBERS, numbers));
   if (s->coupler != NULL) return bw_coupler_save(s->coupler, ck);
+  if (s->water != NULL) return bw_scene__water_save(s, ck);
   if (s->fluid != NULL) BW_TRY(save_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_save(s, ck));
   for (int q = 0; q < s->n_solids; q++)
@@ -138,6 +139,7 @@ bw_status bw_scene_restore(bw_scene *s, bw_checkpoint *ck)
   BW_TRY(bw_scene__phase_begin(s));
   s->settled_energy = numbers[5];
   if (s->coupler != NULL) return bw_coupler_load(s->coupler, ck);
+  if (s->water != NULL) return bw_scene__water_restore(s, ck);
   if (s->fluid != NULL) BW_TRY(restore_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_restore(s, ck));
   for (int q = 0; q < s->n_solids; q++)

@@ -17,11 +17,17 @@ typedef struct {
   bool analytic;             /* no masks: it has a true surface */
 } bw_scene__shapes;
 
-/* Shapes of body b; images are opened (their headers read), surfaces read. BW_EINPUT names the key;
- * BW_EIO, BW_EMEM. Release also after a failure. Local. */
+/* In place of the number of a body: the fluid of particles. */
+enum { BW_SCENE__FLUID = -1 };
+
+/* Shapes of body b, or of the fluid; images are opened (their headers read), surfaces read.
+ * BW_EINPUT names the key; BW_EIO, BW_EMEM. Release also after a failure. Local. */
 bw_status bw_scene__shapes_make(const bw_scene_config *c, int b,
                                 bw_scene__shapes *out) BW_MUST_CHECK;
 void bw_scene__shapes_release(bw_scene__shapes *s);
+
+/* Where one shape ends (3), (3); infinite where it does not. Local. */
+void bw_scene__shape_extent(const bw_shape *s, double lower[3], double upper[3]);
 
 /* Is the scene flat? */
 static inline bool bw_scene__planar(const bw_scene_config *c)

@@ -79,7 +79,7 @@ static void set_kinds(bw_scene *s, int b, const bw_scene__solid *q, const bw_sol
   for (int64_t i = 0; i < sites->n; i++) {
     double x[3];
     place_of(config, sites->site + 3 * i, x);
-    uint8_t kind = BW_PD_FREE;
+    uint8_t kind = sites->kind[i];
     if (!bw_scene__deforms(body) || is_held(q, c, body, config->ds, lower, upper, x))
       kind |= BW_PD_PRESCRIBED;
     for (int k = 0; k < c->n_loads; k++) {
@@ -119,6 +119,7 @@ static bw_status set_groups(bw_scene *s, bw_scene__solid *q, int b, bw_scene__sh
                "and bodies together, which this build cannot tell apart",
                body->name, BW_PD_GROUPS);
     shapes->shape[k].particle_group = (uint8_t)group;
+    shapes->shape[k].particle_kind = part->held ? BW_PD_PRESCRIBED : BW_PD_FREE;
   }
   return BW_OK;
 }

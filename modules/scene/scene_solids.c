@@ -25,16 +25,6 @@ int bw_scene__body_of(const bw_scene__solid *q, size_t i)
   return q->body_of[bw_solid_group(q->solid, i)];
 }
 
-/* Does body a hold b, or b a? */
-static bool joined(const bw_scene_config *c, int a, int b)
-{
-  const bw_scene_body *pair[2] = {&c->bodies[a], &c->bodies[b]};
-  for (int q = 0; q < 2; q++)
-    for (int k = 0; k < pair[q]->n_held; k++)
-      if (strcmp(pair[q]->held[k].by, pair[1 - q]->name) == 0) return true;
-  return false;
-}
-
 static bool any_image(const bw_scene_config *c)
 {
   for (int b = 0; b < c->n_bodies; b++)
@@ -47,11 +37,12 @@ static bool any_image(const bw_scene_config *c)
 static bool has_particles(const bw_scene_config *c, int b)
 {
   if (bw_scene__deforms(&c->bodies[b])) return true;
+  if (bw_scene__has_particles(c)) return !bw_scene__is_wall(c, b);
   if (bw_scene__has_fluid(c) && any_image(c)) return true; /* no true surface */
   if (!bw_scene__any_deforms(c)) return false;
   if (bw_scene__has_fluid(c) || strcmp(c->contact.between, "none") != 0) return true;
   for (int a = 0; a < c->n_bodies; a++)
-    if (joined(c, a, b)) return true;
+    if (bw_scene__joined(c, a, b)) return true;
   return false;
 }
 
@@ -63,12 +54,12 @@ static void divide(bw_scene *s)
     s->solid_of[b] = -1;
   for (int b = 0; b < c->n_bodies; b++) {
     if (!has_particles(c, b)) continue;
-    if (s->solid_of[b] < 0) s->solid_of[b] = bw_scene__has_fluid(c) ? 0 : s->n_solids;
+    if (s->solid_of[b] < 0) s->solid_of[b] = bw_scene__has_flow(c) ? 0 : s->n_solids;
     const int mine = s->solid_of[b];
     s->n_solids = mine + 1 > s->n_solids ? mine + 1 : s->n_solids;
     /* Whoever is joined to this body comes to it, with all that it has already. */
     for (int a = 0; a < c->n_bodies; a++) {
-      if (!has_particles(c, a) || !joined(c, a, b) || s->solid_of[a] == mine) continue;
+      if (!has_particles(c, a) || !bw_scene__joined(c, a, b) || s->solid_of[a] == mine) continue;
       const int other = s->solid_of[a];
       for (int k = 0; k < c->n_bodies; k++)
         if (k == a || (other >= 0 && s->solid_of[k] == other)) s->solid_of[k] = mine;
@@ -120,7 +111,7 @@ static bw_status lattice_of(const bw_scene *s, const bw_scene__solid *q, bw_soli
   c->ds = b->spacing;
   const double z[3] = {0.0, 0.0, 1.0};
   if (b->turn != 0.0) bw_shape_turn(z, b->turn * acos(-1.0) / 180.0, c->axes);
-  if (bw_scene__has_fluid(scene)) return BW_OK; /* that of the fluid: from its corner */
+  if (bw_scene__has_flow(scene)) return BW_OK; /* that of the fluid: from its corner */
   bw_scene__shapes shapes;
   const bw_status st = bw_scene__shapes_make(scene, own, &shapes);
   /* A box of whole spacings is filled from corner to corner. */
@@ -138,7 +129,8 @@ static void set_material(const bw_scene *s, int b, int m, bw_pd_material *out)
   *out = (bw_pd_material){.rho = from->density,
                           .E = from->young_modulus,
                           .nu = from->poisson_ratio,
-                          .G0 = breaks ? from->fracture_energy : INFINITY};
+                          .G0 = breaks && !isnan(from->fracture_energy) ? from->fracture_energy
+                                                                        : INFINITY};
 }
 
 static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *c)
@@ -148,7 +140,7 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
   /* Nothing deforms: the numbers only have to be some. */
   if (!bw_scene__deforms(&s->config.bodies[model])) {
     c->rho = s->config.fluid.density;
-    c->E = 1e-3 * c->rho * s->speed * s->speed;
+    c->E = 1e-3 * c->rho * (s->speed > 0.0 ? s->speed * s->speed : 1.0);
     for (int g = 1; g < q->n_groups; g++)
       c->more.material[g - 1] = (bw_pd_material){c->rho, c->E, NAN, INFINITY};
     c->more.n = q->n_groups - 1;
@@ -189,7 +181,7 @@ static bool meets_itself(const bw_scene *s, const bw_scene__solid *q)
     if (!bw_scene__deforms(b)) continue;
     if (b->self_contact) return true;
     for (int r = 0; r < q->n_bodies; r++)
-      if (r != k && !joined(c, q->body[k], q->body[r])) return true;
+      if (r != k && !bw_scene__joined(c, q->body[k], q->body[r])) return true;
   }
   return false;
 }
@@ -276,7 +268,7 @@ static bw_status check_bonds(bw_scene *s, bw_scene__solid *q)
     for (int k = 0; k < n; k++) {
       const int a = q->body_of[own[i]], b = q->body_of[group[link[k].neighbour]];
       const bool fine =
-          a == b || joined(&s->config, a, b) ||
+          a == b || bw_scene__joined(&s->config, a, b) ||
           (!bw_scene__deforms(&s->config.bodies[a]) && !bw_scene__deforms(&s->config.bodies[b]));
       if (!fine && link[k].intact) strangers[0] = a, strangers[1] = b;
     }

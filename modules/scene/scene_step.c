@@ -61,7 +61,9 @@ bw_status bw_scene__phase_begin(bw_scene *s)
                          n->damping_absolute + p->damp);
   }
   /* Nothing that deforms: the solid of the coupler stands as it is. */
-  if (s->coupler != NULL) bw_coupler_hold_solid(s->coupler, p->hold[0] != '\0' || !s->alive);
+  const bool held = p->hold[0] != '\0' || !s->alive;
+  if (s->coupler != NULL) bw_coupler_hold_solid(s->coupler, held);
+  if (s->water != NULL && s->water->both != NULL) bw_coupler_particles_hold(s->water->both, held);
   return BW_OK;
 }
 
@@ -108,7 +110,9 @@ double bw_scene__limit(bw_scene *s)
 {
   const bw_scene_numerics *n = &s->config.numerics;
   if (!isnan(n->step)) return n->step;
-  return n->step_share * (s->grid != NULL ? fluid_limit(s) : solid_limit(s));
+  return n->step_share * (s->water != NULL  ? bw_scene__water_limit(s)
+                          : s->grid != NULL ? fluid_limit(s)
+                                            : solid_limit(s));
 }
 
 /* Where the step has to end at the latest. */
@@ -157,6 +161,7 @@ static bw_status solids_step(bw_scene *s, double dt)
 
 static bw_status advance(bw_scene *s, double dt)
 {
+  if (s->water != NULL) return bw_scene__water_step(s, dt);
   if (s->coupler != NULL) {
     bw_scene__loads_apply(s, dt);
     return bw_coupler_step(s->coupler, dt);
@@ -179,6 +184,11 @@ static bw_status settled(bw_scene *s, double level, bool *rest)
     const double energy = bw_ns_channel_summary(s->fluid).kinetic_energy;
     *rest = fabs(energy - s->settled_energy) <= level * fabs(energy);
     s->settled_energy = energy;
+    return BW_OK;
+  }
+  if (s->water != NULL) {
+    const bw_ulph_ledger l = bw_ulph_account(s->water->fluid);
+    *rest = l.kinetic <= level * fabs(l.potential);
     return BW_OK;
   }
   double kinetic = 0.0, elastic = 0.0;
@@ -221,6 +231,7 @@ bw_status bw_scene_step(bw_scene *s, double until)
   /* Exactly the end: rounding does not add up. */
   s->time = last ? end : s->time + dt;
   if (s->fluid != NULL) bw_ns_channel_set_time(s->fluid, s->time);
+  if (s->water != NULL) bw_ulph_set_time(s->water->fluid, s->time);
   s->steps++;
   s->phase_steps++;
   return turn_phase(s);

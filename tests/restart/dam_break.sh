@@ -14,7 +14,7 @@ same() {
   run="mpirun -n $ranks $build/bin/dam_break $file --quiet"
   $run --out "$out/$name-whole" --set time.end="$end" "$@"
   $run --out "$out/$name-half" --set time.end="$half" "$@"
-  $run --out "$out/$name-half" --set time.end="$end" --restart "$out/$name-half/checkpoint.h5" "$@"
+  $run --out "$out/$name-half" --set time.end="$end" --restart "$out/$name-half/checkpoint-last.h5" "$@"
   cmp "$out/$name-whole/history.csv" "$out/$name-half/history.csv"
 }
 same dam 2 dam_break 0.1 0.04 --set fluid.spacing=0.0321 --set tank.size='[1.605, 0.642, 0]' \
@@ -23,10 +23,9 @@ same sloshing 1 sloshing 0.2 0.1 --set fluid.spacing=0.075 --set tank.size='[1.7
   --set output.picture_every=0
 same gate 1 gate 0.01 0.005 --set output.picture_every=0
 
-# Another number of ranks: the step, the front, the depth and the pressure are the same numbers.
+# Another number of ranks: the front and the height are the same numbers, at the same times.
 mpirun -n 3 "$build/bin/dam_break" "$source/cases/dam_break/dam_break.yaml" --quiet --out "$out/three" \
   --set time.end=0.1 --set fluid.spacing=0.0321 --set tank.size='[1.605, 0.642, 0]' \
   --set output.picture_every=0
-for run in dam-whole three; do cut -d, -f1,15-19 "$out/$run/history.csv" > "$out/$run.csv"; done
-cut -d, -f1-4 "$out/dam-whole.csv" > "$out/a" && cut -d, -f1-4 "$out/three.csv" > "$out/b"
-cmp "$out/a" "$out/b"
+for run in dam-whole three; do cut -d, -f1,14,15 "$out/$run/history.csv" > "$out/$run.csv"; done
+cmp "$out/dam-whole.csv" "$out/three.csv"

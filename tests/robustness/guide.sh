@@ -36,6 +36,20 @@ load, end = float(rows[-1]["load.x[M L/T2]"]), float(rows[-1]["end.x[L]"])
 # the rest of the swing after three decay times; two digits as printed
 assert abs(load - 40e3) < 100 and abs(end - 9.5e-5) < 0.1e-5, (load, end)
 END
+# What the page of free surfaces says: where the water is at one time, and when it is at one place.
+/usr/bin/python3 - out/water/history.csv <<'END'
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+a, g = 0.05715, 9.81
+time, front, height = ([float(row[name]) for row in rows] for name in ("time[T]", "water.front[L]", "water.height[L]"))
+def between(x, y, at):  # y where x, which grows, is `at`
+    q = next(q for q in range(1, len(x)) if x[q] >= at)
+    return y[q - 1] + (at - x[q - 1]) / (x[q] - x[q - 1]) * (y[q] - y[q - 1])
+high, when = between(time, height, 2 * (a / g) ** 0.5), between(front, time, 3 * a)
+# two and three digits as printed
+assert abs(high / (2 * a) - 0.50) < 0.006, high
+assert abs(when * (2 * g / a) ** 0.5 - 2.38) < 0.006, when
+END
 # Energy is kept: Verlet's order of the step.
 /usr/bin/python3 - out/hammer/history.csv <<'END'
 import csv, sys

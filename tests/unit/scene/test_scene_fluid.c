@@ -217,8 +217,29 @@ START_TEST(ramps_beside_free_slip)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(places),   BW_TEST(driven),
-                                      BW_TEST(ramp),     BW_TEST(force),
-                                      BW_TEST(flap),     BW_TEST(a_post_leans_on_its_wall),
-                                      BW_TEST(too_near), BW_TEST(ramps_beside_free_slip)};
+/* Straight flow along (3, 4): the way over that along x is 5/3, along y 5/4. */
+START_TEST(straight)
+{
+  bw_scene *s =
+      made(CHANNEL "fluid:\n  density: 2\n  viscosity: 0.1\n  start: {velocity: [3, 4]}\n"
+                   "  sides:\n    x: {lower: {kind: periodic}, upper: {kind: periodic}}\n"
+                   "    y: {lower: {kind: periodic}, upper: {kind: periodic}}\n"
+                   "phases: {until: {steps: 1}}\n"
+                   "gauges: {all: {of: tortuosity}, half: {of: tortuosity, region: {from: [0, 0], "
+                   "to: [1, 1]}}}\n");
+  bw_check_near(gauge(s, "all.x"), 5.0 / 3.0, 10 * BW_REAL_EPSILON);
+  bw_check_near(gauge(s, "half.y"), 5.0 / 4.0, 10 * BW_REAL_EPSILON);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(straight),
+                                      BW_TEST(places),
+                                      BW_TEST(driven),
+                                      BW_TEST(ramp),
+                                      BW_TEST(force),
+                                      BW_TEST(flap),
+                                      BW_TEST(a_post_leans_on_its_wall),
+                                      BW_TEST(too_near),
+                                      BW_TEST(ramps_beside_free_slip)};
 BW_CHECK_MAIN("scene.fluid", tests)

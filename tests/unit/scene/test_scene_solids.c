@@ -217,8 +217,48 @@ START_TEST(levels)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(a_metal_yields), BW_TEST(weight),
-                                      BW_TEST(loads),          BW_TEST(prescribed),
-                                      BW_TEST(collision),      BW_TEST(materials_and_holes),
-                                      BW_TEST(phases),         BW_TEST(levels)};
+/* A strip in tension, sigma = 1: its middle fails at the strength over sigma; nothing is told
+ * before it is loaded. */
+START_TEST(fails_at)
+{
+#define STRENGTH(by)                                                                               \
+  "body: a, of: [failure, failure_place], region: {from: [0.8, 0], to: [1.2, 0.4]}, strength: "    \
+  "{" by "}}"
+  bw_scene *s = made(
+      "plane: strain\nmaterials: {m: {density: 1, young_modulus: 1000}}\n"
+      "bodies: {a: {shape: {box: {from: [0, 0], to: [2, 0.4]}}, material: m,"
+      " motion: elastic, spacing: 0.05}}\nnumerics: {horizon_ratio: 3}\n"
+      "loads:\n  - {on: a, kind: traction, where: x_lower, value: [-1, 0]}\n"
+      "  - {on: a, kind: traction, where: x_upper, value: [1, 0]}\n"
+      "phases: {until: 2, damp: 40}\ngauges:\n"
+      "  r: {" STRENGTH(
+          "by: rankine, tension: 3") "\n"
+                                     "  m: {" STRENGTH(
+                                         "by: mises, yield: 3") "\n"
+                                                                "  c: {" STRENGTH(
+                                                                    "by: mohr_coulomb, cohesion: "
+                                                                    "3, friction_angle: 0") "\n");
+  double start;
+  bw_check_ok(bw_scene_gauge(s, "r.failure", &start));
+  ck_assert(isnan(start));
+  run(s);
+  /* Across the plane nu sigma: von Mises sqrt(1 - nu + nu^2) sigma; the shear is half of sigma. */
+  ck_assert_msg(fabs(gauge(s, "r.failure") / 3.0 - 1.0) < 0.02, "%g", gauge(s, "r.failure"));
+  ck_assert_msg(fabs(gauge(s, "m.failure") * sqrt(0.8125) / 3.0 - 1.0) < 0.02, "%g",
+                gauge(s, "m.failure"));
+  ck_assert_msg(fabs(gauge(s, "c.failure") / 6.0 - 1.0) < 0.02, "%g", gauge(s, "c.failure"));
+  ck_assert(fabs(gauge(s, "r.failure_place.x") - 1.0) < 0.2);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
+static const bw_check_test tests[] = {BW_TEST(fails_at),
+                                      BW_TEST(a_metal_yields),
+                                      BW_TEST(weight),
+                                      BW_TEST(loads),
+                                      BW_TEST(prescribed),
+                                      BW_TEST(collision),
+                                      BW_TEST(materials_and_holes),
+                                      BW_TEST(phases),
+                                      BW_TEST(levels)};
 BW_CHECK_MAIN("scene.solids", tests)

@@ -216,15 +216,31 @@ bw_status bw_scene__check_bodies(const bw_scene_config *c)
   return BW_OK;
 }
 
+/* A load that fills cracks. */
+static bw_status check_filled(const bw_scene_load *l, const bw_scene_body *b, int q)
+{
+  BW_REQUIRE(
+      l->kind == BW_SCENE_PRESSURE, BW_EINPUT,
+      "loads.%d.where = crack: a pressure alone fills cracks; give kind: pressure, or a side", q);
+  BW_REQUIRE(b->n_cracks > 0, BW_EINPUT,
+             "loads.%d.where = crack: %s has none to begin with; give bodies.%s.cracks", q, b->name,
+             b->name);
+  BW_REQUIRE(
+      b->n_levels == 0, BW_EINPUT,
+      "loads.%d.where = crack: it needs particles of one spacing; leave out bodies.%s.levels", q,
+      b->name);
+  return BW_OK;
+}
+
 static bw_status check_where(const bw_scene_config *c, const bw_scene_load *l, int q, int body)
 {
   int d, end;
   const bw_scene_where *w = &l->where;
-  const bool side = l->has_where && w->side[0] != '\0';
-  BW_REQUIRE(!side || strcmp(w->side, "crack") != 0, BW_EINPUT,
-             "loads.%d.where = crack: not in this build; load a side", q);
+  const bool side = l->has_where && w->side[0] != '\0',
+             crack = side && strcmp(w->side, "crack") == 0;
+  if (crack) BW_TRY(check_filled(l, &c->bodies[body], q));
   BW_REQUIRE(
-      !side || bw_scene__side_named(w->side, &d, &end), BW_EINPUT,
+      !side || crack || bw_scene__side_named(w->side, &d, &end), BW_EINPUT,
       "loads.%d.where.side = %s: must be one of x_lower, x_upper, y_lower, y_upper, z_lower, "
       "z_upper",
       q, w->side);

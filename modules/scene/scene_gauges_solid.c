@@ -202,6 +202,16 @@ static bw_status book_of(bw_scene *s, const bw_scene_gauge_config *g, bw_solid_l
   return BW_OK;
 }
 
+/* Area and volume of the cracks that loads fill. Collective. */
+static bw_status filled_of(bw_scene *s, const bw_scene_gauge_config *g,
+                           const bw_scene__quantity *what, double value[])
+{
+  bw_solid_crack_size size;
+  BW_TRY(bw_scene__measure_cracks(s, g->body, &size));
+  value[0] = strcmp(what->word, "filled_area") == 0 ? size.area : size.volume;
+  return BW_OK;
+}
+
 bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quantity *what,
                                   double value[BW_SCENE__COMPONENTS])
 {
@@ -217,6 +227,7 @@ bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quanti
   if (strcmp(what->word, "damage") == 0) return damage_of(s, aim, value);
   if (strcmp(what->word, "force_on_support") == 0) return support_of(s, aim, value);
   if (strcmp(what->word, "crack_tip") == 0) return tip_of(s, g, aim, value);
+  if (strncmp(what->word, "filled_", 7) == 0) return filled_of(s, g, what, value);
   if (strcmp(what->word, "fragments") == 0) return fragments_of(s, g, value);
   /* What is left comes from the books. */
   BW_TRY(book_of(s, g, &book));

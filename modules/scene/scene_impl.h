@@ -7,6 +7,7 @@
 #include "bw_rigid.h"
 #include "bw_scene.h"
 #include "bw_solid_assembly.h"
+#include "bw_solid_crack.h"
 #include "bw_solid_load.h"
 #include "bw_ulph.h"
 #include "scene_check.h"
@@ -34,8 +35,9 @@ typedef struct {
 typedef struct {
   int load, solid;
   size_t n;
-  int32_t *particle; /* (n) */
-  double push[3];    /* force density of all of it [M/(L^2 T^2)] */
+  int32_t *particle;     /* (n) */
+  double push[3];        /* force density of all of it [M/(L^2 T^2)] */
+  bw_solid_crack *crack; /* what it fills instead; NULL: it acts on particles */
 } bw_scene__acting;
 
 /* Points on the surfaces of bodies that do not deform, in a fluid alone: all on rank 0. */
@@ -185,7 +187,16 @@ bool bw_scene__in_where(const bw_scene_where *w, bool planar, double ds, const d
 
 /* scene_loads.c */
 bw_status bw_scene__loads_create(bw_scene *s) BW_MUST_CHECK;
-void bw_scene__loads_apply(bw_scene *s, double dt); /* for the step from s->time */
+void bw_scene__loads_destroy(bw_scene *s);
+bw_status bw_scene__loads_apply(bw_scene *s,
+                                double dt) BW_MUST_CHECK; /* for the step from s->time */
+/* scene_loads_crack.c: does it act in cracks? Local. */
+bool bw_scene__in_cracks(const bw_scene_load *l);
+/* a->crack from the cracks that a body has at the start. Collective. */
+bw_status bw_scene__fill_cracks(bw_scene *s, bw_scene__acting *a) BW_MUST_CHECK;
+/* What loads fill in the bodies of a list of names. Collective. */
+bw_status bw_scene__measure_cracks(bw_scene *s, const char *names,
+                                   bw_solid_crack_size *out) BW_MUST_CHECK;
 /* Share of a load at a time [T]. */
 double bw_scene__load_share(const bw_scene_load *l, double time);
 /* Where a point of a prescribed body is at a time. */

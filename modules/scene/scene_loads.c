@@ -125,8 +125,12 @@ bw_status bw_scene__loads_create(bw_scene *s)
     const int b = bw_scene__body_named(&s->config, s->config.loads[k].on);
     double volume = 0.0;
     *a = (bw_scene__acting){.load = k, .solid = s->solid_of[b]};
-    BW_TRY(aim(s, a, &volume));
-    set_push(s, a, volume);
+    if (bw_scene__in_cracks(&s->config.loads[k])) {
+      BW_TRY(bw_scene__fill_cracks(s, a));
+    } else {
+      BW_TRY(aim(s, a, &volume));
+      set_push(s, a, volume);
+    }
     if (s->config.loads[k].kind == BW_SCENE_VELOCITY)
       s->solid[a->solid].moved = true;
     else
@@ -143,10 +147,19 @@ bw_status bw_scene__loads_create(bw_scene *s)
   return BW_OK;
 }
 
-static void push(bw_scene *s, int solid, double time)
+void bw_scene__loads_destroy(bw_scene *s)
+{
+  for (int q = 0; q < s->n_acting; q++) {
+    bw_release(&s->acting[q].particle);
+    bw_solid_crack_destroy(&s->acting[q].crack);
+  }
+}
+
+/* Collective. */
+static bw_status push(bw_scene *s, int solid, double time)
 {
   bw_scene__solid *q = &s->solid[solid];
-  if (q->steady) return;
+  if (q->steady) return BW_OK;
   memset(q->F, 0, 3 * q->n * sizeof *q->F);
   q->steady = true;
   bw_solid_load_gravity(q->solid, s->config.gravity, q->F);
@@ -155,7 +168,9 @@ static void push(bw_scene *s, int solid, double time)
     const bw_scene_load *l = &s->config.loads[a->load];
     if (a->solid != solid || l->kind == BW_SCENE_VELOCITY) continue;
     const double share = bw_scene__load_share(l, time);
-    q->steady = q->steady && time >= l->start + l->ramp;
+    /* A crack goes on and opens: what fills it never rests. */
+    q->steady = q->steady && time >= l->start + l->ramp && a->crack == NULL;
+    if (a->crack != NULL) BW_TRY(bw_solid_crack_push(a->crack, share * l->value[0], q->F));
     for (size_t i = 0; i < a->n; i++) {
       const size_t p = (size_t)a->particle[i];
       const double weight = l->kind == BW_SCENE_GRAVITY ? bw_solid_density(q->solid, p) : 1.0;
@@ -164,6 +179,7 @@ static void push(bw_scene *s, int solid, double time)
     }
   }
   bw_solid_set_force(q->solid, q->F);
+  return BW_OK;
 }
 
 /* The velocity that brings prescribed particles where they belong at the end of the step. */
@@ -200,11 +216,12 @@ static void move(bw_scene *s, int solid, double dt)
   bw_solid_set_prescribed(q->solid, q->V);
 }
 
-void bw_scene__loads_apply(bw_scene *s, double dt)
+bw_status bw_scene__loads_apply(bw_scene *s, double dt)
 {
   for (int q = 0; q < s->n_solids; q++) {
     /* Forces at the end of the step's first kick are those of its middle, to second order. */
-    if (s->solid[q].pushed) push(s, q, s->time + 0.5 * dt);
+    if (s->solid[q].pushed) BW_TRY(push(s, q, s->time + 0.5 * dt));
     if (s->solid[q].moved) move(s, q, dt);
   }
+  return BW_OK;
 }

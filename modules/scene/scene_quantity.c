@@ -28,6 +28,8 @@ const bw_scene__quantity bw_scene__quantities[] = {
      "M L/T2"},
     {"force_on_support", BW_SCENE__OF_BODIES, 3, true, false, XYZ, "M L/T2"},
     {"crack_tip", BW_SCENE__OF_BODIES, 4, false, false, {"x", "y", "z", "reach"}, "L"},
+    {"filled_area", BW_SCENE__OF_BODIES, 1, false, false, {""}, "L2"},
+    {"filled_volume", BW_SCENE__OF_BODIES, 1, false, false, {""}, "L3"},
     {"fragments", BW_SCENE__OF_SOLIDS, 1, false, false, {""}, "-"},
     {"broken_bonds", BW_SCENE__OF_SOLIDS, 1, false, false, {""}, "-"},
     {"energy",

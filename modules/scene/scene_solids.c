@@ -8,8 +8,7 @@
 void bw_scene__solids_destroy(bw_scene *s)
 {
   bw_solid_assembly_destroy(&s->assembly);
-  for (int q = 0; q < s->n_acting; q++)
-    bw_release(&s->acting[q].particle);
+  bw_scene__loads_destroy(s);
   for (int q = 0; q < s->n_solids; q++) {
     bw_pd_interface_destroy(&s->interface[q]);
     bw_solid_destroy(&s->solid[q].solid);

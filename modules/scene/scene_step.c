@@ -152,7 +152,7 @@ static bw_status choose_step(bw_scene *s, double end, double *dt, bool *last)
 /* Solids without fluid. */
 static bw_status solids_step(bw_scene *s, double dt)
 {
-  bw_scene__loads_apply(s, dt);
+  BW_TRY(bw_scene__loads_apply(s, dt));
   if (s->assembly != NULL) return bw_solid_assembly_step(s->assembly, dt);
   for (int q = 0; q < s->n_solids; q++)
     BW_TRY(bw_solid_step(s->solid[q].solid, dt));
@@ -163,7 +163,7 @@ static bw_status advance(bw_scene *s, double dt)
 {
   if (s->water != NULL) return bw_scene__water_step(s, dt);
   if (s->coupler != NULL) {
-    bw_scene__loads_apply(s, dt);
+    BW_TRY(bw_scene__loads_apply(s, dt));
     return bw_coupler_step(s->coupler, dt);
   }
   if (s->floats != NULL) {

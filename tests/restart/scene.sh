@@ -37,6 +37,8 @@ same impact_on_plate 1 60e-6 40e-6 --set bodies.plate.spacing=2e-3 --set bodies.
 same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.length=[8, 4, 0.125]" \
   --set output.picture_every=0
 
+crack="--set bodies.block.spacing=1e-2 --set loads.0.value=2e7 --set loads.0.ramp=0 --set output.picture_every=0"
+same hydraulic_crack 1 6e-5 3e-5 $crack
 same falling_sphere 2 0.1 0.05 --set "domain.cells=[25, 40, 25]" --set output.picture_every=0
 
 gate="--set domain.cells=[100,75,1] --set bodies.gate.spacing=0.002 --set bodies.gate.held.0.layers=2 \
@@ -48,6 +50,8 @@ same dam_break_on_a_gate 1 4e-3 2e-3 $gate
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/impact_on_plate/impact_on_plate.yaml" --quiet \
   --out "$out/three" --set phases.0.until.time=60e-6 --set bodies.plate.spacing=2e-3 \
   --set bodies.ball.spacing=2e-3 --set output.picture_every=0 --set output.sample_every=5e-6
+mpirun -n 3 "$build/bin/breakwater" "$source/scenes/hydraulic_crack/hydraulic_crack.yaml" --quiet \
+  --out "$out/three_crack" --set phases.0.until.time=6e-5 $crack
 # One rank and three of many bodies, and three that go on from the checkpoint of one.
 several="$build/bin/breakwater $source/tests/support/several_bodies.yaml --quiet"
 $several --out "$out/several-1"
@@ -72,6 +76,7 @@ END
 # shellcheck disable=SC2086 # words
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/dam_break_on_a_gate/dam_break_on_a_gate.yaml" \
   --quiet --out "$out/gate-3" --set phases.0.until.time=4e-3 $gate
-for pair in dam_break_on_a_gate-whole:gate-3 impact_on_plate-whole:three several-1:several-3 several-1:several-half; do
+for pair in dam_break_on_a_gate-whole:gate-3 impact_on_plate-whole:three hydraulic_crack-whole:three_crack \
+            several-1:several-3 several-1:several-half; do
   /usr/bin/python3 "$out/compare.py" "$out/${pair%:*}/history.csv" "$out/${pair#*:}/history.csv"
 done

@@ -40,8 +40,8 @@ bw_status bw_solid_crack_create(bw_solid *solid, const bool source[],
 /* Frees it and sets the pointer to NULL; NULL is fine. Local. */
 void bw_solid_crack_destroy(bw_solid_crack **crack);
 
-/* F (n,3) += the force density of the pressure [M/(L T^2)] at the present places, the crack followed
- * to where it is now. BW_EMEM. Collective. */
+/* F (n,3) += the force density of the pressure [M/(L^2 T^2)] at the present places; the crack is
+ * followed to where it is now. BW_EMEM. Collective. */
 bw_status bw_solid_crack_push(bw_solid_crack *crack, double pressure, double F[]) BW_MUST_CHECK;
 
 /* What the fluid fills. */
@@ -54,8 +54,8 @@ typedef struct {
 /* Of the crack as it is now, of all ranks. BW_EMEM. Collective. */
 bw_status bw_solid_crack_measure(bw_solid_crack *crack, bw_solid_crack_size *out) BW_MUST_CHECK;
 
-/* Whether each own particle is wet (count), as of the last push or measure; borrowed until the next.
- * Local. */
+/* Whether each own particle is wet (count), as of the last push or measure; borrowed until the
+ * next. Local. */
 const bool *bw_solid_crack_wet(const bw_solid_crack *crack);
 
 #ifdef __cplusplus

@@ -146,7 +146,7 @@ static bw_status follow(bw_solid_crack *c)
   BW_TRY(make_room(c, bw_solid_get_extended(c->solid).n));
   bw_comm_max_int(comm, 1, &changed);
   if (changed == 0) return BW_OK;
-  /* From the source anew: what is wet is a function of the bonds that hold, whatever came before. */
+  /* From the source anew: what is wet is a function of the bonds that hold now. */
   memset(c->wet, 0, c->n * sizeof *c->wet);
   c->events = events;
   bw_solid_get_broken(c->solid, c->broken);

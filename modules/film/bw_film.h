@@ -49,10 +49,11 @@ bw_status bw_film_create(const bw_film_config *config, bw_film **out) BW_MUST_CH
 /* Releases everything and sets *film to NULL; NULL is fine. */
 void bw_film_destroy(bw_film **film);
 
-/* A body by its signed distance at x (3), negative inside; context is the caller's. */
+/* A body by its signed distance. */
 typedef struct {
-  double (*distance)(const void *context, const double x[3]);
-  const void *context;
+  double (*distance)(const void *context,
+                     const double x[3]); /* of x from the surface, negative inside [L] */
+  const void *context;                   /* handed to it, the caller's */
 } bw_film_face;
 
 /* Puts the film between two faces, the nearest place sought from x (3), and tells whether there is

@@ -38,7 +38,7 @@ same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.len
   --set output.picture_every=0
 
 crack="--set bodies.block.spacing=1e-2 --set loads.0.value=2e7 --set loads.0.ramp=0 --set output.picture_every=0"
-same hydraulic_crack 1 6e-5 3e-5 $crack
+same hydraulic_crack 1 6e-5 2e-5 $crack
 same falling_sphere 2 0.1 0.05 --set "domain.cells=[25, 40, 25]" --set output.picture_every=0
 
 gate="--set domain.cells=[100,75,1] --set bodies.gate.spacing=0.002 --set bodies.gate.held.0.layers=2 \

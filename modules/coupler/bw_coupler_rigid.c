@@ -1,6 +1,7 @@
 /* Rigid bodies in the fluid: markers on their surface, load, motion. */
 #include "bw_coupler_rigid.h"
 #include "bw_memory.h"
+#include "rigid_films.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,19 +11,25 @@ struct bw_coupler_rigid {
   bw_ns_channel *fluid; /* borrowed */
   bw_rigid *rigid;      /* borrowed */
   bw_ibm_mdf *ibm;
-  size_t n; /* markers of this rank */
+  bw_coupler__films *films; /* NULL: none */
+  size_t n;                 /* markers of this rank */
   bool placed;
-  double *X, *V, *N, *dV, *M, *Q; /* (n,3), dV (n); M memory, Q force of a step, then lack */
-  double *inside;                 /* (bodies,6) int (u - U) dV, its moment at the beginning */
-  double *load;                   /* (bodies,6) as the bodies have it: relaxed, with weight */
-  double *hydro;                  /* (bodies,6) of the fluid in the last step */
-  double *scratch;                /* (bodies,6) */
+  double *X, *V, *N, *dV; /* (n,3), dV (n) */
+  double *seen;           /* (n) of dV what the grid sees: films keep sides away from other faces */
+  double *M, *Q;          /* (n,3) M memory, Q force of a step, then lack */
+  double *inside;         /* (bodies,6) int (u - U) dV, its moment at the beginning */
+  double *load;           /* (bodies,6) as the bodies have it: relaxed, with weight */
+  double *hydro;          /* (bodies,6) of the fluid in the last step */
+  double *scratch;        /* (bodies,6) */
 };
 
 bw_coupler_rigid_config bw_coupler_rigid_config_default(void)
 {
-  return (bw_coupler_rigid_config){
-      .rho = NAN, .nu = NAN, .virtual_mass = 1.0, .body = bw_ibm_mdf_config_default()};
+  return (bw_coupler_rigid_config){.rho = NAN,
+                                   .nu = NAN,
+                                   .virtual_mass = 1.0,
+                                   .body = bw_ibm_mdf_config_default(),
+                                   .films = {.limit = NAN, .roughness = NAN}};
 }
 
 static bw_status check(const bw_coupler_rigid_config *c, const bw_grid_view *g, const bw_rigid *r)
@@ -74,6 +81,7 @@ static bw_status make_arrays(bw_coupler_rigid *c)
   BW_THEN(st, BW_ALLOCATE(&c->M, 3 * c->n));
   BW_THEN(st, BW_ALLOCATE(&c->Q, 3 * c->n));
   BW_THEN(st, BW_ALLOCATE(&c->dV, c->n));
+  BW_THEN(st, BW_ALLOCATE(&c->seen, c->n));
   BW_THEN(st, BW_ALLOCATE(&c->inside, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->load, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->hydro, 6 * bodies));
@@ -96,6 +104,9 @@ bw_status bw_coupler_rigid_create(const bw_coupler_rigid_config *config, bw_ns_c
   st = bw_comm_agree(bw_grid_comm(grid), make_arrays(c));
   BW_THEN(st, check_points(c));
   BW_THEN(st, bw_ibm_mdf_create(grid, &config->body, &c->ibm));
+  if (config->films.on)
+    BW_THEN(st, bw_coupler__films_create(&config->films, config->rho * config->nu, fluid, rigid,
+                                         &c->films));
   if (st != BW_OK) {
     bw_coupler_rigid_destroy(&c);
     return st;
@@ -115,8 +126,9 @@ void bw_coupler_rigid_destroy(bw_coupler_rigid **coupler)
   bw_coupler_rigid *c = *coupler;
   if (c == NULL) return;
   bw_ibm_mdf_destroy(&c->ibm);
-  void *const arrays[] = {&c->X, &c->V,      &c->N,    &c->dV,    &c->M,
-                          &c->Q, &c->inside, &c->load, &c->hydro, &c->scratch};
+  bw_coupler__films_destroy(&c->films);
+  void *const arrays[] = {&c->seen, &c->X,      &c->V,    &c->N,     &c->dV,     &c->M,
+                          &c->Q,    &c->inside, &c->load, &c->hydro, &c->scratch};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(coupler);
@@ -206,7 +218,13 @@ static bool moves(const bw_rigid *r)
 static bw_status place(bw_coupler_rigid *c, const double *memory)
 {
   bw_rigid_surface(c->rigid, c->X, c->V, c->N);
-  BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->dV, memory));
+  memcpy(c->seen, c->dV, c->n * sizeof *c->seen);
+  if (c->films != NULL) {
+    bw_coupler__films_retract(c->films, c->n, c->N, c->X, c->seen);
+    for (size_t i = 0; i < c->n; i++)
+      c->seen[i] *= c->dV[i];
+  }
+  BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->seen, memory));
   c->placed = true;
   return bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu);
 }
@@ -277,6 +295,8 @@ bw_status bw_coupler_rigid_advance(bw_coupler_rigid *c, double dt)
       c->scratch[(d < 3 ? 0 : 3 * n) + 3 * q + d % 3] = c->load[6 * q + d];
     }
   }
+  if (c->films != NULL)
+    BW_TRY(bw_coupler__films_brake(c->films, dt, c->scratch, c->scratch + 3 * (ptrdiff_t)n));
   bw_rigid_load(c->rigid, c->scratch, c->scratch + 3 * (ptrdiff_t)n);
   /* Springs and contact may ask for shorter steps than the fluid. */
   const double parts = fmax(1.0, ceil(dt / bw_rigid_dt_max(c->rigid)));
@@ -325,6 +345,10 @@ bw_status bw_coupler_rigid_measure(bw_coupler_rigid *c, bw_coupler_rigid_report 
     memcpy(report[q].torque, c->hydro + 6 * q + 3, sizeof report[q].torque);
     report[q].slip = sqrt(sum[3 * q] / sum[3 * q + 1]);
     report[q].flux = sum[3 * q + 2];
+    memset(report[q].film, 0, sizeof report[q].film);
+    report[q].braking = 0.0;
+    if (c->films != NULL)
+      report[q].braking = bw_coupler__films_of(c->films, (int)q, report[q].film);
   }
   return BW_OK;
 }

@@ -36,6 +36,18 @@ extern "C" {
 /* Fluid, rigid bodies, and what joins them. Opaque. */
 typedef struct bw_coupler_rigid bw_coupler_rigid;
 
+/* Films between bodies, and between bodies and walls, that no cell resolves (bw_film.h).
+ * Where two faces are nearer than `limit`, the markers of a body keep away from the other face by
+ * that much (half of what is missing, where both are bodies), so that the grid carries a film of
+ * that gap, which it resolves; what it lacks, D1 - D0, brakes the bodies,
+ *   (M + dt D) v_{n+1} = M v*,   v* by all other forces,
+ * film after film: opposite impulses in one line, which take energy whatever the step. */
+typedef struct {
+  bool on;          /*                                                   default false */
+  double limit;     /* gap from which the grid carries the film [L]      default three cells */
+  double roughness; /* least gap of a film [L]            required where on, at most a cell */
+} bw_coupler_films;
+
 /* What a user chooses. */
 typedef struct {
   double rho;             /* density of the fluid [M/L^3]                 required */
@@ -43,6 +55,7 @@ typedef struct {
   double gravity[3];      /* on bodies, less their buoyancy [L/T^2]       default 0 */
   double virtual_mass;    /* c above [-], >= 0                            default 1 */
   bw_ibm_mdf_config body; /* of the forcing; needs memory                 default that of ibm_mdf */
+  bw_coupler_films films; /*                                              default none */
 } bw_coupler_rigid_config;
 
 /* rho and nu NaN. Pure. */
@@ -51,6 +64,7 @@ bw_coupler_rigid_config bw_coupler_rigid_config_default(void);
 /* Bodies in the fluid where they are now. Their surface points are the markers, so that their
  * spacing should be about that of the grid and 1.5 times it at most. The weight is given here, not
  * to bw_rigid. Fluid and bodies are borrowed until destroy. BW_EINPUT names the value; also for
+ * films whose roughness is above a cell, and for
  * points further apart than 1.5 grid spacings and for bodies smaller than four of them; BW_EMEM. */
 bw_status bw_coupler_rigid_create(const bw_coupler_rigid_config *config, bw_ns_channel *fluid,
                                   bw_rigid *rigid, bw_coupler_rigid **out) BW_MUST_CHECK;
@@ -70,6 +84,9 @@ bw_status bw_coupler_rigid_advance(bw_coupler_rigid *coupler, double dt) BW_MUST
 typedef struct {
   double force[3];  /* of the fluid, without buoyancy [M L/T^2] */
   double torque[3]; /* about the centre of mass [M L^2/T^2] */
+  double film[6];   /* force and torque of films beside that */
+  double braking;   /* power that its films take, half of it of a film between two bodies
+                       [M L^2/T^3] */
   double slip;      /* rms over the surface of what the markers' velocity lacks [L/T] */
   double flux;      /* through the surface, half of int |(u - V).n| dA [L^3/T] */
 } bw_coupler_rigid_report;

@@ -141,6 +141,9 @@ void bw_rigid_sum(const bw_rigid *rigid, const double f[], double F[], double T[
 /* Signed distance of x (3) from a body where it is now, negative inside (bw_shape_distance).
  * Local. */
 double bw_rigid_distance(const bw_rigid *rigid, int body, const double x[3]);
+/* What an impulse and its moment about the centre, impulse (6) [M L/T], [M L^2/T], change of a
+ * body's velocity and spin, change (6) [L/T], [1/T]: nothing in held directions. Local. */
+void bw_rigid_answer(const bw_rigid *rigid, int body, const double impulse[6], double change[6]);
 /* Radius of the ball about the centre of mass that holds the body. Local. */
 double bw_rigid_radius(const bw_rigid *rigid, int body);
 

@@ -79,6 +79,21 @@ void bw_rigid__forces(bw_rigid *r)
   }
 }
 
+void bw_rigid_answer(const bw_rigid *r, int q, const double impulse[6], double change[6])
+{
+  const bw_rigid__body *b = &r->body[q];
+  double M[3];
+  for (int d = 0; d < 3; d++) {
+    change[d] = b->held[d] ? 0.0 : impulse[d] / b->mass;
+    change[3 + d] = b->turns == d ? impulse[3 + d] / inertia_about(b, d) : 0.0;
+  }
+  if (b->turns != RIGID_FREE) return;
+  rigid_turn_back((const double(*)[3])b->R, impulse + 3, M);
+  for (int a = 0; a < 3; a++)
+    M[a] /= b->inertia[a];
+  rigid_turn((const double(*)[3])b->R, M, change + 3);
+}
+
 /* Half a step of the velocities. Damping is taken with the old velocity in the first half of a step
  * and with the new one in the second, so that the whole is of second order. */
 static void kick(bw_rigid__body *b, double half, bool second)

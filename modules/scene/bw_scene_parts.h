@@ -135,15 +135,17 @@ typedef enum {
   BW_SCENE_STICK /* it sticks to them */
 } bw_scene_walls;
 typedef struct {
-  int model;                            /* bw_scene_fluid_model */
-  double density;                       /* [M/L^3] */
-  double viscosity;                     /* kinematic [L^2/T] */
-  bool has_sides;                       /* are they given? */
-  bw_scene_sides sides;                 /* of the box */
-  bw_scene_start start;                 /* the flow at the beginning */
-  bool has_forcing;                     /* is it given? */
-  bw_scene_forcing forcing;             /* what drives the flow */
-  int n_shape;                          /* of a fluid of particles: how many of shape */
+  int model;                /* bw_scene_fluid_model */
+  double density;           /* [M/L^3] */
+  double viscosity;         /* kinematic [L^2/T] */
+  bool has_sides;           /* are they given? */
+  bw_scene_sides sides;     /* of the box */
+  bw_scene_start start;     /* the flow at the beginning */
+  bool has_forcing;         /* is it given? */
+  bw_scene_forcing forcing; /* what drives the flow */
+  double film_roughness;    /* of films between rigid bodies and walls [L]; NaN: no films */
+  double film_limit;        /* gap from which the grid carries them [L]; NaN: three cells */
+  int n_shape;              /* of a fluid of particles: how many of shape */
   bw_scene_shape shape[BW_SCENE_PARTS]; /* where it is at first, without the bodies */
   double speed;                         /* of it, the largest expected [L/T]; NaN: 2 sqrt(g H) */
   int walls;                            /* bw_scene_walls; INT_MIN: by the model */

@@ -63,6 +63,29 @@ static bw_status check_no_water(const bw_scene_config *c)
   return BW_OK;
 }
 
+/* Films are those of rigid bodies in a flow, and thinner than the grid. */
+static bw_status check_films(const bw_scene_config *c)
+{
+  const double h = c->domain.length[1] / c->domain.cells[1], limit = c->fluid.film_limit;
+  const double roughness = c->fluid.film_roughness;
+  BW_REQUIRE(isnan(limit) || !isnan(roughness), BW_EINPUT,
+             "fluid.film_limit = %g: films have a fluid.film_roughness; give it, or leave both out",
+             limit);
+  if (isnan(roughness)) return BW_OK;
+  BW_REQUIRE(bw_scene__any_rigid(c), BW_EINPUT,
+             "fluid.film_roughness = %g: films are between rigid bodies and walls, and no body has "
+             "motion: rigid; leave it out",
+             roughness);
+  BW_REQUIRE(roughness <= h, BW_EINPUT,
+             "fluid.film_roughness = %g: must be at most a cell, %g: the grid resolves the gap of "
+             "rougher faces; leave it out",
+             roughness, h);
+  BW_REQUIRE(isnan(limit) || limit >= h, BW_EINPUT,
+             "fluid.film_limit = %g: must be at least a cell, %g; leave it out for three", limit,
+             h);
+  return BW_OK;
+}
+
 bw_status bw_scene__check_fluid(const bw_scene_config *c)
 {
   const bw_scene_fluid *f = &c->fluid;
@@ -95,6 +118,7 @@ bw_status bw_scene__check_fluid(const bw_scene_config *c)
       c->domain.stretch == 0.0 || c->n_bodies == 0, BW_EINPUT,
       "domain.stretch = %g: bodies in a flow need a uniform grid; leave it out, or the bodies",
       c->domain.stretch);
+  BW_TRY(check_films(c));
   if (c->n_bodies == 0) return BW_OK;
   /* Markers need cells of one edge. */
   const double h = c->domain.length[1] / c->domain.cells[1];

@@ -35,6 +35,8 @@ static bw_status check_no_grid(const bw_scene_config *c)
     bool given;
   } rows[] = {{"fluid.sides", "its box has walls; domain.open names sides without", f->has_sides},
               {"fluid.forcing", "gravity drives it", f->has_forcing},
+              {"fluid.film_roughness", "its particles fill the gaps", !isnan(f->film_roughness)},
+              {"fluid.film_limit", "its particles fill the gaps", !isnan(f->film_limit)},
               {"fluid.start.developed", "there is no inflow", f->start.developed},
               {"fluid.start.vortices", "it starts from velocity", f->start.n_vortices > 0},
               {"fluid.start.file", "it starts from velocity", f->start.file[0] != '\0'},

@@ -194,6 +194,8 @@ void bw_scene_blocks(const bw_scene *s, FILE *out)
   block(out, coupled || (markers && !rigid && force), "probes",
         coupled ? "they load the solid" : "a gauge reads the force",
         "nobody reads the force by them");
+  block(out, !isnan(s->config.fluid.film_roughness), "films", "fluid.film_roughness is given",
+        "fluid.film_roughness is not given");
   block(out, bw_scene__balances(s), "momentum balance", "a gauge reads the force on all bodies",
         "no gauge reads it");
   block(out, bw_scene__asked(s, "fragments"), "fragments", "a gauge counts them",

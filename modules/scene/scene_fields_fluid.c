@@ -77,5 +77,9 @@ const bw_config_field bw_scene__fluid_fields[] = {
       "of particles: largest speed that is expected; left out: 2 sqrt(gravity depth)"),
     BW_CONFIG_WORD(bw_scene_fluid, walls, BW_OPTIONAL, walls_words,
                    "of particles: what walls and bodies are to it; left out: slip"),
+    V(bw_scene_fluid, film_roughness, BW_OPTIONAL, BW_ABOVE(0), "L",
+      "films where rigid bodies and walls are too near for the grid: their least gap"),
+    V(bw_scene_fluid, film_limit, BW_OPTIONAL, BW_ABOVE(0), "L",
+      "gap from which the grid carries a film; left out: three cells"),
     BW_CONFIG_END};
 #undef V

@@ -81,11 +81,12 @@ static bw_status sum_of(bw_scene *s, const bw_scene_gauge_config *g, const char 
     const bw_rigid_state a = bw_rigid_state_of(s->rigid, s->rigid_of[b]);
     const bool heavy = s->floats != NULL && s->config.bodies[b].motion == BW_SCENE_RIGID;
     for (int d = 0; d < 3; d++)
-      fluid[d] =
-          r->force[d] + (heavy ? (a.mass - s->config.fluid.density * a.volume) * gravity[d] : 0.0);
+      fluid[d] = r->force[d] + r->film[d] +
+                 (heavy ? (a.mass - s->config.fluid.density * a.volume) * gravity[d] : 0.0);
     if (support) add_support(s, b, fluid, value);
     for (int d = 0; d < 3 && !support; d++)
-      value[d] += strcmp(word, "torque") == 0 ? r->torque[d] : r->force[d];
+      value[d] +=
+          strcmp(word, "torque") == 0 ? r->torque[d] + r->film[3 + d] : r->force[d] + r->film[d];
   }
   return BW_OK;
 }

@@ -201,11 +201,12 @@ static bw_status join(bw_scene *s)
 {
   const bw_scene_numerics *n = &s->config.numerics;
   bw_coupler_rigid_config c = bw_coupler_rigid_config_default();
-  c.rho = s->config.fluid.density;
-  c.nu = s->config.fluid.viscosity;
+  c.rho = s->config.fluid.density, c.nu = s->config.fluid.viscosity;
   c.virtual_mass = n->virtual_mass;
   c.body.n_iter = n->forcing_iterations;
   c.body.memory = n->memory;
+  c.films = (bw_coupler_films){!isnan(s->config.fluid.film_roughness), s->config.fluid.film_limit,
+                               s->config.fluid.film_roughness};
   memcpy(c.gravity, s->config.gravity, sizeof c.gravity);
   return bw_coupler_rigid_create(&c, s->fluid, s->rigid, &s->floats);
 }

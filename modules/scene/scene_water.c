@@ -120,7 +120,7 @@ bw_status bw_scene__water_step(bw_scene *s, double dt)
   bw_scene__water *w = s->water;
   BW_TRY(look_outside(s));
   /* Prescribed particles are told where to go; the coupler knows all other loads. */
-  if (w->both != NULL) bw_scene__loads_apply(s, dt);
+  if (w->both != NULL) BW_TRY(bw_scene__loads_apply(s, dt));
   BW_TRY(w->both != NULL ? bw_coupler_particles_step(w->both, dt) : bw_ulph_step(w->fluid, dt));
   bw_scene__water_gather(s, dt);
   return BW_OK;

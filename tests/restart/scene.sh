@@ -37,6 +37,7 @@ same impact_on_plate 1 60e-6 40e-6 --set bodies.plate.spacing=2e-3 --set bodies.
 same flow_past_cylinder 2 2 1 --set "domain.cells=[64, 32, 1]" --set "domain.length=[8, 4, 0.125]" \
   --set output.picture_every=0
 
+# shellcheck disable=SC2086 # words
 crack="--set bodies.block.spacing=1e-2 --set loads.0.value=2e7 --set loads.0.ramp=0 --set output.picture_every=0"
 same hydraulic_crack 1 6e-5 2e-5 $crack
 same falling_sphere 2 0.1 0.05 --set "domain.cells=[25, 40, 25]" --set output.picture_every=0

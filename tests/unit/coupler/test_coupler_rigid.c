@@ -157,7 +157,27 @@ START_TEST(bad_input_is_refused)
 }
 END_TEST
 
+/* Films: a roughness that the grid resolves, none at all, a limit that it does not. */
+START_TEST(films_are_refused)
+{
+  double U[3] = {0};
+  const bw_rigid_body body = {.count = 1, .shape = &BALL, .density = 1.0};
+  const bw_coupler_films films[] = {
+      {true, NAN, 2.0 * H}, {true, NAN, NAN}, {true, 0.5 * H, 0.1 * H}};
+  for (size_t q = 0; q < sizeof films / sizeof *films; q++) {
+    bw_coupler_rigid_config c = oil();
+    scene s;
+    c.films = films[q];
+    bw_check_status(build(&body, U, &c, H, &s), BW_EINPUT);
+    ck_assert_msg(strstr(bw_last_message(), q < 2 ? "roughness" : "limit") != NULL, "%s",
+                  bw_last_message());
+    ck_assert_ptr_null(s.coupler);
+    destroy(&s);
+  }
+}
+END_TEST
+
 static const bw_check_test tests[] = {BW_TEST(a_body_goes_with_the_fluid),
-                                      BW_TEST(momentum_is_passed_on),
-                                      BW_TEST(bad_input_is_refused)};
+                                      BW_TEST(momentum_is_passed_on), BW_TEST(bad_input_is_refused),
+                                      BW_TEST(films_are_refused)};
 BW_CHECK_MAIN("coupler.rigid", tests)

@@ -105,6 +105,17 @@ static void describe_rigid(bw_scene *s, bw_log *log)
               bw_rigid_dt_max(s->rigid));
 }
 
+/* Pieces of a solid in a fluid of particles meet each other and the sides of the box alone. */
+static void warn_of_walls(const bw_scene *s, bw_log *log)
+{
+  for (int b = 0; b < s->config.n_bodies && s->n_solids > 0; b++)
+    if (s->solid[0].contact && bw_scene__is_wall(&s->config, b))
+      bw_log_warn(log,
+                  "bodies.%s is a wall of the fluid, and bodies that move go through it; if they "
+                  "may come there make it prescribed, a horizon away from them",
+                  s->config.bodies[b].name);
+}
+
 /* Cells across what is thin, and steps of the solid. */
 void bw_scene__warn(bw_scene *s, bw_log *log)
 {
@@ -201,6 +212,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
               isnan(end) ? "; end by " : ", steps in all about ",
               isnan(end) ? (double)s->config.n_phases : end / limit);
   bw_scene__warn(s, log);
+  warn_of_walls(s, log);
   BW_TRY(bw_scene__look_at_gaps(s, log));
   return s->planned ? bw_scene__plan_describe(s, log) : BW_OK;
 }

@@ -156,6 +156,7 @@ typedef struct {
   bw_scene_until until;      /* when it ends */
   char hold[BW_SCENE_NAMES]; /* bodies that stand still */
   double damp;               /* against rest [M/(L^3 T)] */
+  double step;               /* fixed time step in it [T]; NaN: that of numerics */
   int breaking;              /* may bonds break? 0, 1; INT_MIN: as the bodies say */
 } bw_scene_phase;
 

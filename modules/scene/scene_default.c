@@ -116,7 +116,7 @@ void bw_scene_config_default(bw_scene_config *c)
   c->loads[0].where.layers = 1;
   c->loads[0].where.box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   snprintf(c->contact.between, sizeof c->contact.between, "all");
-  c->phases[0] = (bw_scene_phase){.until = {NAN, INT_MIN, NAN}, .breaking = INT_MIN};
+  c->phases[0] = (bw_scene_phase){.until = {NAN, INT_MIN, NAN}, .step = NAN, .breaking = INT_MIN};
   default_gauge(&c->gauges[0]);
   c->watch[0] = (bw_scene_watch){.last_periods = INT_MIN, .above = NAN, .below = NAN};
   c->output.sample_every = NAN;

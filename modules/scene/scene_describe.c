@@ -160,21 +160,29 @@ void bw_scene__warn_speed(bw_scene *s)
               cell, s->time, MOST, cell / MOST);
 }
 
-/* Refuses a step of the file that the first step would refuse. */
+/* What the first step may be at most. */
+static double first_limit(bw_scene *s)
+{
+  if (s->water != NULL) return bw_scene__water_limit(s);
+  if (s->grid == NULL) return bw_scene__solid_limit(s);
+  return s->planned ? s->flow_plan.dt_max : bw_ns_channel_dt_max(s->fluid);
+}
+
+/* Refuses steps of the file that the first step would refuse. What the flow becomes may bear less;
+ * that is found where it happens. */
 static bw_status check_step(bw_scene *s)
 {
-  const double step = s->config.numerics.step;
-  const bool flow = s->grid != NULL;
-  if (isnan(step)) return BW_OK;
-  /* What the flow becomes may bear less; that is found where it happens. */
-  const double most = s->water != NULL ? bw_scene__water_limit(s)
-                      : !flow          ? bw_scene__solid_limit(s)
-                      : s->planned     ? s->flow_plan.dt_max
-                                       : bw_ns_channel_dt_max(s->fluid);
-  BW_REQUIRE(step <= most * (1.0 + 1e-12), BW_EINPUT,
-             "numerics.step = %g: the %s at the start bear at most %.3g; take a shorter one, or "
-             "leave it out",
-             step, flow || s->water != NULL ? "fluid and its sides" : "bodies", most);
+  const double most = first_limit(s) * (1.0 + 1e-12);
+  const char *who = bw_scene__has_flow(&s->config) ? "fluid and its sides" : "bodies";
+  for (int q = -1; q < s->config.n_phases; q++) {
+    const double step = q < 0 ? s->config.numerics.step : s->config.phases[q].step;
+    char key[48] = "numerics.step";
+    if (q >= 0) snprintf(key, sizeof key, "phases.%d.step", q);
+    BW_REQUIRE(!(step > most), BW_EINPUT,
+               "%s = %g: the %s at the start bear at most %.3g; take a shorter one, or leave it "
+               "out",
+               key, step, who, most);
+  }
   return BW_OK;
 }
 

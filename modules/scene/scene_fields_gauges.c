@@ -20,6 +20,8 @@ const bw_config_field bw_scene__phase_fields[] = {
                     "when it ends: the first of those given; one number: the time"),
     V(OURS, hold, BW_OPTIONAL, BW_TEXTS, "", "bodies that stand still in it"),
     V(OURS, damp, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L3 T)", "damping against rest, of all bodies"),
+    V(OURS, step, BW_OPTIONAL, BW_ABOVE(0), "T",
+      "fixed time step in this phase; left out: as numerics says"),
     BW_CONFIG_WORD(bw_scene_phase, breaking, BW_OPTIONAL, breaking_words,
                    "may bonds break? Left out: those of breakable bodies"),
     BW_CONFIG_END};

@@ -109,6 +109,8 @@ double bw_scene__solid_limit(const bw_scene *s)
 double bw_scene__limit(bw_scene *s)
 {
   const bw_scene_numerics *n = &s->config.numerics;
+  const double own = bw_scene_done(s) ? NAN : s->config.phases[s->phase].step;
+  if (!isnan(own)) return own;
   if (!isnan(n->step)) return n->step;
   return n->step_share * (s->water != NULL  ? bw_scene__water_limit(s)
                           : s->grid != NULL ? fluid_limit(s)

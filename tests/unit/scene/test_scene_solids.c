@@ -132,7 +132,7 @@ START_TEST(phases)
   bw_scene *s =
       made(BLOCK "bodies: {a: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, material: m, motion: "
                  "elastic, spacing: 0.1, velocity: [1, 0]}}\n"
-                 "phases: [{until: 0.1}, {until: {steps: 7}}, {until: 1, damp: 30}]\n"
+                 "phases: [{until: 0.1}, {until: {steps: 7}, step: 1e-3}, {until: 1, damp: 30}]\n"
                  "gauges: {v: {body: a, of: velocity}}\n");
   while (bw_scene_phase_now(s) == 0)
     bw_check_ok(bw_scene_step(s, INFINITY));
@@ -141,6 +141,8 @@ START_TEST(phases)
   while (bw_scene_phase_now(s) == 1)
     bw_check_ok(bw_scene_step(s, INFINITY));
   ck_assert_int_eq(bw_scene_steps(s), first + 7);
+  /* The steps of that phase are its own. */
+  bw_check_near(bw_scene_time(s), 0.107, 1e-15);
   bw_check_near(gauge(s, "v.x"), 1.0, TINY);
   const double from = bw_scene_time(s);
   run(s);

@@ -9,7 +9,7 @@
 bw_film_config bw_film_config_default(void)
 {
   return (bw_film_config){
-      .mu = (double)NAN, .limit = (double)NAN, .roughness = (double)NAN, .depth = 1.0, .cells = 48};
+      .mu = (double)NAN, .limit = (double)NAN, .roughness = (double)NAN, .depth = 1.0, .cells = 32};
 }
 
 static bw_status check(const bw_film_config *c)
@@ -46,6 +46,10 @@ bw_status bw_film_create(const bw_film_config *config, bw_film **out)
   f->n[0] = config->cells, f->n[1] = config->planar ? 1 : config->cells;
   double **const array[] = ARRAYS(f);
   bw_status st = BW_ALLOCATE(&f->film, film_cells(f));
+  for (int d = 0; d < 2; d++) {
+    BW_THEN(st, BW_ALLOCATE(&f->at[d], (size_t)f->n[d]));
+    BW_THEN(st, BW_ALLOCATE(&f->width[d], (size_t)f->n[d]));
+  }
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     BW_THEN(st, BW_ALLOCATE(array[q], film_cells(f)));
   if (st != BW_OK)
@@ -62,6 +66,10 @@ void bw_film_destroy(bw_film **film)
   double **const array[] = ARRAYS(f);
   for (size_t q = 0; q < sizeof array / sizeof *array; q++)
     bw_release(array[q]);
+  for (int d = 0; d < 2; d++) {
+    bw_release(&f->at[d]);
+    bw_release(&f->width[d]);
+  }
   bw_release(&f->film);
   bw_release(film);
 }
@@ -74,9 +82,8 @@ typedef struct {
 static spot spot_of(const bw_film *f, int i, int j)
 {
   const size_t at = (size_t)i + (size_t)f->n[0] * (size_t)j;
-  const double middle = 0.5 * (f->z[0][at] + f->z[1][at]), s = film_along(f, 0, i);
-  const double t = film_along(f, 1, j);
-  spot c = {.area = f->step[0] * (f->config.planar ? f->config.depth : f->step[1])};
+  const double middle = 0.5 * (f->z[0][at] + f->z[1][at]), s = f->at[0][i], t = f->at[1][j];
+  spot c = {.area = film_area(f, i, j)};
   for (int d = 0; d < 3; d++) {
     c.r[d] = s * f->axes[0][d] + t * f->axes[1][d] + middle * f->axes[2][d];
     c.g[d] = c.area * (f->axes[2][d] + f->g[0][at] * f->axes[0][d] + f->g[1][at] * f->axes[1][d]);
@@ -192,9 +199,9 @@ static void set_edges(bw_film *f, double (*pressure)(const void *, const double[
       for (int d = 0; d < 2; d++)
         for (int end = 0; end < 2; end++) {
           const size_t at = (size_t)i + (size_t)f->n[0] * (size_t)j;
-          double place[2] = {film_along(f, 0, i), film_along(f, 1, j)}, x[3];
+          double place[2] = {f->at[0][i], f->at[1][j]}, x[3];
           if (f->edge[d][end][at] == 0.0) continue;
-          place[d] += (end - 0.5) * f->step[d];
+          place[d] += (end - 0.5) * f->width[d][d == 0 ? i : j];
           film_point(f, place[0], place[1], 0.5 * (f->z[0][at] + f->z[1][at]), x);
           f->rhs[at] += f->edge[d][end][at] * pressure(context, x);
         }

@@ -13,9 +13,10 @@
  * gap, as the narrower film is the stiffer one. h is never below the roughness.
  *
  * One patch has the film of two faces, around the place where they are nearest, as far as they face
- * each other and are nearer than three limits (of faces that part), in `cells` cells each way; a
- * line in the plane. The faces are those of bodies whose signed distance is known, of which one
- * place is nearest: between bodies with several the film is that of the place where it began.
+ * each other and are nearer than three limits (of faces that part), in `cells` cells each way, the
+ * smaller the nearer to that place where the gap widens; a line in the plane. The faces are those
+ * of bodies whose signed distance is known, of which one place is nearest: between bodies with
+ * several the film is that of the place where it began.
  * Units    any consistent set: [M], [L], [T]. A twist is a velocity and a spin, a wrench a force
  *          and a moment, both about the patch's origin.
  * Life     config_default -> create -> { place -> resistance, pressure } -> destroy. All local: no
@@ -37,7 +38,7 @@ typedef struct {
   double roughness; /* least gap [L], below the limit                          required */
   bool planar;      /* a line along which the faces lie, else a patch          default false */
   double depth;     /* of a planar film [L]                                    default 1 */
-  int cells;        /* each way, 8 .. 512                                      default 48 */
+  int cells;        /* each way, 8 .. 512                                      default 32 */
 } bw_film_config;
 
 /* Required values NaN. Pure. */

@@ -7,7 +7,7 @@ struct bw_film {
   bw_film_config config;
   int n[2];                     /* cells each way; the second is 1 of a line */
   double origin[3], axes[3][3]; /* rows: along the patch, along it, normal */
-  double low[2], step[2];       /* of the patch, from the origin; of a cell [L] */
+  double *at[2], *width[2];     /* (n) of each way: middles from the origin, widths of cells [L] */
   double gap;
   bool *film;         /* (n0 n1) does this cell have both faces? */
   double *z[2];       /* heights of a, b */
@@ -24,17 +24,17 @@ static inline size_t film_cells(const bw_film *f)
   return (size_t)f->n[0] * (size_t)f->n[1];
 }
 
-/* Middle of cell (i, j): along the patch, and in space. */
-static inline double film_along(const bw_film *f, int d, int i)
-{
-  return f->low[d] + (i + 0.5) * f->step[d];
-}
-
 /* Point of space at (s, t) along the patch and z above it. */
 static inline void film_point(const bw_film *f, double s, double t, double z, double x[3])
 {
   for (int d = 0; d < 3; d++)
     x[d] = f->origin[d] + s * f->axes[0][d] + t * f->axes[1][d] + z * f->axes[2][d];
+}
+
+/* Area of cell (i, j). */
+static inline double film_area(const bw_film *f, int i, int j)
+{
+  return f->width[0][i] * (f->config.planar ? f->config.depth : f->width[1][j]);
 }
 
 /* Conductances of all edges for gaps h (cells). */

@@ -136,23 +136,46 @@ static double gap_at(const bw_film *f, const bw_film_face *a, const bw_film_face
   return z[1] - z[0] <= FAR * f->config.limit ? z[1] - z[0] : (double)NAN;
 }
 
-/* How far the film reaches from the origin along a direction of the patch. */
+/* How far along a direction of the patch the gap is at most `most`, 0 where it is more at once. */
 static double reach(const bw_film *f, const bw_film_face *a, const bw_film_face *b, int d,
-                    double sign)
+                    double sign, double most)
 {
   double in = 0.0, out = 1e-3 * f->config.limit, z[2];
-  for (int q = 0; q < TRIES; q++) {
-    if (isnan(gap_at(f, a, b, d == 0 ? sign * out : 0.0, d == 1 ? sign * out : 0.0, z))) break;
-    in = out, out *= 1.5;
-  }
-  while (out - in > 1e-7 * out) {
-    const double middle = 0.5 * (in + out);
-    if (isnan(gap_at(f, a, b, d == 0 ? sign * middle : 0.0, d == 1 ? sign * middle : 0.0, z)))
-      out = middle;
+  bool found = false;
+  /* Outwards until it ends, then halved. */
+  for (int q = 0; q < TRIES && (!found || out - in > 1e-7 * out); q++) {
+    const double s = found ? 0.5 * (in + out) : out;
+    const double gap = gap_at(f, a, b, d == 0 ? sign * s : 0.0, d == 1 ? sign * s : 0.0, z);
+    const bool here = gap <= most; /* false of NAN */
+    if (!here)
+      out = s, found = true;
+    else if (found)
+      in = s;
     else
-      in = middle;
+      in = out, out *= 1.5;
   }
   return in;
+}
+
+/* Cells along a direction, from as far as the film reaches below to above: sinh(u), u in equal
+ * steps, its length the distance in which the gap doubles; equal cells where it does not. */
+static void grade(bw_film *f, const bw_film_face *a, const bw_film_face *b, int d)
+{
+  const double far = FAR * f->config.limit, twice = 2.0 * fmax(f->gap, f->config.roughness);
+  const double below = reach(f, a, b, d, -1.0, far), above = reach(f, a, b, d, 1.0, far);
+  const double near = fmin(reach(f, a, b, d, -1.0, twice), reach(f, a, b, d, 1.0, twice));
+  const bool even = near >= fmin(below, above) || near <= 0.0;
+  const double low = even ? -below : -asinh(below / near);
+  const double high = even ? above : asinh(above / near);
+  for (int i = 0; i < f->n[d]; i++) {
+    double end[2];
+    for (int q = 0; q < 2; q++) {
+      const double u = low + (high - low) * (i + q) / f->n[d];
+      end[q] = even ? u : near * sinh(u);
+    }
+    f->at[d][i] = 0.5 * (end[0] + end[1]);
+    f->width[d][i] = end[1] - end[0];
+  }
 }
 
 /* Slope of what `value` has along direction d at a cell, by the film's cells beside it. */
@@ -165,7 +188,7 @@ static double slope(const bw_film *f, const double value[], int d, int i, int j)
   if (!up && !down) return 0.0;
   const double above = up ? value[at + stride] : value[at];
   const double below = down ? value[at - stride] : value[at];
-  return (above - below) / ((up + down) * f->step[d]);
+  return (above - below) / (f->at[d][place + up] - f->at[d][place - down]);
 }
 
 static void fill(bw_film *f, const bw_film_face *a, const bw_film_face *b)
@@ -174,7 +197,7 @@ static void fill(bw_film *f, const bw_film_face *a, const bw_film_face *b)
     for (int i = 0; i < f->n[0]; i++) {
       const ptrdiff_t at = i + (ptrdiff_t)f->n[0] * j;
       double z[2];
-      const double gap = gap_at(f, a, b, film_along(f, 0, i), film_along(f, 1, j), z);
+      const double gap = gap_at(f, a, b, f->at[0][i], f->at[1][j], z);
       f->film[at] = !isnan(gap);
       f->z[0][at] = f->film[at] ? z[0] : 0.0, f->z[1][at] = f->film[at] ? z[1] : 0.0;
       f->h[at] = f->film[at] ? fmax(gap, f->config.roughness) : 1.0;
@@ -197,12 +220,9 @@ bool bw_film_place(bw_film *f, const bw_film_face *a, const bw_film_face *b, con
   f->gap = gap_at(f, a, b, 0.0, 0.0, z);
   if (!(f->gap < f->config.limit)) return false;
   /* The patch ends where the faces do, or where they are far apart. */
-  for (int d = 0; d < 2; d++) {
-    f->low[d] = -0.5, f->step[d] = 1.0;
-    if (f->config.planar && d == 1) continue;
-    const double below = reach(f, a, b, d, -1.0), above = reach(f, a, b, d, 1.0);
-    f->low[d] = -below, f->step[d] = (below + above) / f->n[d];
-  }
+  grade(f, a, b, 0);
+  f->at[1][0] = 0.0, f->width[1][0] = 1.0;
+  if (!f->config.planar) grade(f, a, b, 1);
   fill(f, a, b);
   return true;
 }
@@ -212,8 +232,8 @@ bw_film_where bw_film_look(const bw_film *f)
   bw_film_where w = {.gap = f->gap};
   memcpy(w.origin, f->origin, sizeof w.origin);
   memcpy(w.normal, f->axes[2], sizeof w.normal);
-  const double cell = f->step[0] * (f->config.planar ? f->config.depth : f->step[1]);
-  for (size_t at = 0; at < film_cells(f); at++)
-    w.area += f->film[at] ? cell : 0.0;
+  for (int j = 0; j < f->n[1]; j++)
+    for (int i = 0; i < f->n[0]; i++)
+      w.area += f->film[i + (ptrdiff_t)f->n[0] * j] ? film_area(f, i, j) : 0.0;
   return w;
 }

@@ -11,23 +11,26 @@ static const double TOLERANCE = 1e-9; /* of the residual, in the norm of the pre
 
 void bw_film__conduct(bw_film *f, const double h[])
 {
-  const double depth = f->config.planar ? f->config.depth : f->step[1];
-  const double width[2] = {depth, f->step[0]};
+  const double per_mu = 1.0 / (12.0 * f->config.mu);
   memset(f->diagonal, 0, film_cells(f) * sizeof *f->diagonal);
   for (int d = 0; d < (f->config.planar ? 1 : 2); d++)
     for (int j = 0; j < f->n[1]; j++)
       for (int i = 0; i < f->n[0]; i++) {
         const ptrdiff_t at = i + (ptrdiff_t)f->n[0] * j, stride = d == 0 ? 1 : f->n[0];
         const int place = d == 0 ? i : j;
-        const double factor = width[d] / (f->step[d] * 12.0 * f->config.mu);
+        const double across = film_area(f, i, j) / f->width[d][place] * per_mu;
         const bool up = place + 1 < f->n[d] && f->film[at + stride];
         const bool down = place > 0 && f->film[at - stride];
         f->k[d][at] = f->edge[d][0][at] = f->edge[d][1][at] = 0.0;
         if (!f->film[at]) continue;
         /* The gap on the edge is the mean of both sides. */
-        if (up) f->k[d][at] = factor * pow(0.5 * (h[at] + h[at + stride]), 3);
-        if (!up) f->edge[d][1][at] = 2.0 * factor * pow(h[at], 3);
-        if (!down) f->edge[d][0][at] = 2.0 * factor * pow(h[at], 3);
+        const double edge = 2.0 * across * pow(h[at], 3) / f->width[d][place];
+        if (up)
+          f->k[d][at] = across * pow(0.5 * (h[at] + h[at + stride]), 3) /
+                        (f->at[d][place + 1] - f->at[d][place]);
+        else
+          f->edge[d][1][at] = edge;
+        if (!down) f->edge[d][0][at] = edge;
         f->diagonal[at] += f->k[d][at] + f->edge[d][0][at] + f->edge[d][1][at];
         if (up) f->diagonal[at + stride] += f->k[d][at];
       }

@@ -9,7 +9,8 @@ static const bw_config_field until_fields[] = {
     V(bw_scene_until, steps, BW_OPTIONAL | BW_MAY_CHANGE, BW_AT_LEAST(1), "", "steps of the phase"),
     V(bw_scene_until, settled, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "solids: kinetic over elastic energy; fluid: relative change of its kinetic energy per "
-      "sample; fluid of particles: kinetic over potential energy above the origin; ends below it"),
+      "sample; fluid of particles: kinetic (the largest of late) over potential energy above the "
+      "origin; ends below it"),
     BW_CONFIG_END};
 #define OURS bw_scene_phase
 static const bw_config_word breaking_words[] = {

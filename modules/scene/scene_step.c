@@ -189,8 +189,13 @@ static bw_status settled(bw_scene *s, double level, bool *rest)
     return BW_OK;
   }
   if (s->water != NULL) {
+    /* What starts from rest has still to move, and a swell is at rest twice in its period: the
+     * largest of late, which fades. */
+    static const double fades = 0.95; /* from look to look */
     const bw_ulph_ledger l = bw_ulph_account(s->water->fluid);
-    *rest = l.kinetic <= level * fabs(l.potential);
+    const double before = isnan(s->settled_energy) ? fabs(l.potential) : s->settled_energy;
+    s->settled_energy = fmax(l.kinetic, fades * before);
+    *rest = s->settled_energy <= level * fabs(l.potential);
     return BW_OK;
   }
   double kinetic = 0.0, elastic = 0.0;

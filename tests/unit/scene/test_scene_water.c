@@ -174,6 +174,18 @@ START_TEST(walls)
 }
 END_TEST
 
+/* A phase until the water is at rest: not at the first look, as what starts from rest has still to
+ * move. At rest it has settled when what is remembered has faded: 0.95^90 < 1/100, every 20 steps. */
+START_TEST(settles)
+{
+  bw_scene *s = made(WATER(POOL) "phases: [{until: {settled: 0.01}}, {until: {steps: 1}}]\n");
+  while (bw_scene_phase_now(s) == 0)
+    bw_check_ok(bw_scene_step(s, INFINITY));
+  ck_assert_int_eq(bw_scene_steps(s), 1800);
+  bw_scene_destroy(&s);
+}
+END_TEST
+
 typedef struct {
   const char *text, *piece;
 } refusal;
@@ -224,5 +236,6 @@ START_TEST(refused)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(rest),   BW_TEST(is_the_module), BW_TEST(borne),
-                                      BW_TEST(piston), BW_TEST(walls),         BW_TEST(refused)};
+                                      BW_TEST(piston), BW_TEST(settles),       BW_TEST(walls),
+                                      BW_TEST(refused)};
 BW_CHECK_MAIN("scene.water", tests)

@@ -175,7 +175,8 @@ START_TEST(walls)
 END_TEST
 
 /* A phase until the water is at rest: not at the first look, as what starts from rest has still to
- * move. At rest it has settled when what is remembered has faded: 0.95^90 < 1/100, every 20 steps. */
+ * move. At rest it has settled when what is remembered has faded, 0.95^90 < 1/100, every 20 steps.
+ */
 START_TEST(settles)
 {
   bw_scene *s = made(WATER(POOL) "phases: [{until: {settled: 0.01}}, {until: {steps: 1}}]\n");

@@ -161,6 +161,11 @@ void bw_comm_xor(const bw_comm *comm, size_t n, uint64_t x[])
   reduce(comm, n, x, MPI_UINT64_T, MPI_BXOR);
 }
 
+void bw_comm_or(const bw_comm *comm, size_t n, uint64_t x[])
+{
+  reduce(comm, n, x, MPI_UINT64_T, MPI_BOR);
+}
+
 int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x)
 {
   int64_t below = 0;

@@ -57,6 +57,7 @@ void bw_comm_min(const bw_comm *comm, size_t n, double x[]);
 void bw_comm_sum_int(const bw_comm *comm, size_t n, int64_t x[]);
 void bw_comm_max_int(const bw_comm *comm, size_t n, int64_t x[]);
 void bw_comm_xor(const bw_comm *comm, size_t n, uint64_t x[]);
+void bw_comm_or(const bw_comm *comm, size_t n, uint64_t x[]);
 
 /* Sum of x over the ranks below this one (0 on rank 0). Collective. */
 int64_t bw_comm_prefix_sum(const bw_comm *comm, int64_t x);

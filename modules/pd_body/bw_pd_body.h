@@ -68,10 +68,21 @@ typedef struct {
                                 the third is not read */
 } bw_pd_box;
 
+/* The level of every cell of the coarsest lattice: all that is in a cell is of its level. Levels of
+ * cells within a horizon of each other, of the coarser one's level, differ by one at most
+ * (bw_pd_levels_balance sees to that). */
+typedef struct {
+  int finest;       /* level of the finest particles there may be, 1 .. BW_PD_FINEST */
+  int32_t lower[3]; /* lattice site of the first cell */
+  int32_t size[3];  /* cells each way */
+  uint8_t *level;   /* (size[2], size[1], size[0]) 0 .. finest */
+} bw_pd_map;
+
 /* The boxes of a body, and how bonds between two spacings are. */
 typedef struct {
   int n;                      /* boxes; 0: one level                          default 0 */
   bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet */
+  const bw_pd_map *map;       /* in place of boxes, borrowed by create        default NULL */
   bw_pd_jump jump;            /* bonds between levels                  default balanced */
 } bw_pd_finer;
 

@@ -62,10 +62,9 @@ typedef struct {
 } bw_pd_rest;
 
 enum { BW_PD_MIXED = 255 }; /* group of a block where groups meet */
-
 /* BW_PD_LANES successive storage places, some of them own particles. */
 typedef struct {
-  int32_t first; /* storage place of lane 0 */
+  int32_t first; /* place of lane 0 */
   int32_t own;   /* own particle of the first lane set in mask; the others follow */
   uint32_t slot; /* first slot; the block's last one is before the next block's first */
   uint8_t mask;  /* lanes that are own particles */
@@ -164,6 +163,7 @@ struct bw_pd_body {
   bw_pd_body_config config; /* as asked for, defaults and Poisson's ratio resolved */
   int dimension;            /* 2 or 3 */
   int finest;               /* level of the finest particles; 0: one level */
+  bool mapped;              /* levels are by a map */
   bw_pd_level *level;       /* (finest + 1) */
   int directions;           /* largest number of directions of a level */
   size_t n, n_extended;     /* own particles; own and copies */

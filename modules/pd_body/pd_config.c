@@ -139,7 +139,7 @@ static bw_status check_boxes(const bw_pd_body_config *c)
                  "upper",
                  b, box->lower[k], box->upper[k], k);
   }
-  BW_REQUIRE(c->finer.n == 0 || c->disorder == 0, BW_EINPUT,
+  BW_REQUIRE(bw_pd_body_finest(c) == 0 || c->disorder == 0, BW_EINPUT,
              "solid: disorder = %g with levels: a cloud has one level; leave one of them out",
              c->disorder);
   return BW_OK;

@@ -69,7 +69,7 @@ static bw_status prescribed_list(bw_pd_body *pd)
 
 static bw_status check_levels(const bw_pd_body_config *c, const bw_pd_law *law)
 {
-  BW_REQUIRE(c->finer.n == 0 || law->levels, BW_EINPUT,
+  BW_REQUIRE(bw_pd_body_finest(c) == 0 || law->levels, BW_EINPUT,
              "solid: levels with law = %s: bonds between two spacings are known to law = bond "
              "alone; take that law or leave levels out",
              law->name);
@@ -120,6 +120,8 @@ static bw_status build(bw_pd_body *pd, const bw_pd_sites *given, const void *opt
   BW_TRY(st);
   bw_pd_body_rows(pd);
   BW_TRY(bw_pd_body_damping_bound(pd));
+  pd->mapped = pd->config.finer.map != NULL;
+  pd->config.finer.map = NULL; /* borrowed until here */
   /* From here on families, copies and numbering stand; what is left is the law's. */
   BW_TRY(pd->law->prepare(pd, options));
   pd->law->constants(pd);

@@ -27,7 +27,7 @@ typedef struct {
 
 int bw_pd_body_finest(const bw_pd_body_config *c)
 {
-  int finest = 0;
+  int finest = c->finer.map != NULL ? c->finer.map->finest : 0;
   for (int b = 0; b < c->finer.n; b++)
     finest = c->finer.box[b].level > finest ? c->finer.box[b].level : finest;
   return finest;
@@ -87,8 +87,22 @@ static bool within(const plan *p, int b, int l, const int32_t cell[3])
   return true;
 }
 
+/* Level that the map gives to the cell of level 0 around a cell of level l. */
+static int level_of(const bw_pd_map *map, int axes, int l, const int32_t cell[3])
+{
+  size_t at = 0;
+  for (int k = axes - 1; k >= 0; k--) {
+    const int32_t x = (cell[k] >> l) - map->lower[k];
+    if (x < 0 || x >= map->size[k]) return 0;
+    at = at * (size_t)map->size[k] + (size_t)x;
+  }
+  return map->level[at];
+}
+
 static bool is_split(const plan *p, int l, const int32_t cell[3])
 {
+  const bw_pd_map *map = p->config->finer.map;
+  if (map != NULL && level_of(map, p->axes, l, cell) > l) return true;
   for (int b = 0; b < p->config->finer.n; b++)
     if (p->config->finer.box[b].level > l && within(p, b, l, cell)) return true;
   return false;
@@ -145,7 +159,7 @@ bw_status bw_pd_body_refine(const bw_pd_body_config *c, const bw_pd_sites *given
 {
   plan p;
   *out = (bw_pd_refined){.sites = *given};
-  if (c->finer.n == 0) return BW_OK;
+  if (bw_pd_body_finest(c) == 0) return BW_OK;
   make_plan(c, &p);
   /* Sites become places: products of 2^(finest + 1) have to fit. */
   for (int64_t q = 0; q < 3 * given->n; q++)

@@ -21,7 +21,7 @@ bw_status bw_pd_body_refine(const bw_pd_body_config *config, const bw_pd_sites *
                             bw_pd_refined *out) BW_MUST_CHECK;
 void bw_pd_body_refined_release(bw_pd_refined *refined);
 
-/* The largest level of a box; 0: there is none. Local. */
+/* The largest level of a box or of the map; 0: there is neither. Local. */
 int bw_pd_body_finest(const bw_pd_body_config *config);
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   BW_REQUIRE(o->surface_correction != BW_PD_SURFACE_TENSOR || c->disorder == 0, BW_EINPUT,
              "solid: surface_correction = tensor is of lattices; with disorder = %g use energy",
              c->disorder);
-  BW_REQUIRE(c->finer.n == 0 || o->surface_correction == BW_PD_SURFACE_NONE ||
+  BW_REQUIRE(bw_pd_body_finest(c) == 0 || o->surface_correction == BW_PD_SURFACE_NONE ||
                  o->surface_correction == BW_PD_SURFACE_TENSOR,
              BW_EINPUT,
              "solid: surface_correction = %s with levels: a factor per particle knows one level; "
@@ -70,7 +70,9 @@ static void row_constants(const bw_pd_body *pd, const bw_pd_level *level, int g,
     /* Between levels constants are told by the coarser end. */
     const bw_pd_level *other = pd->level + s->other[q], *coarser = other < level ? other : level;
     const double c0 = state->c0[g][h] * coarser->stiff;
-    const double s0 = state->s0[g][h] * coarser->stretch * sqrt(s->tough[q]);
+    /* Where levels change nothing breaks but in the finest: that is what a stretch is beside. */
+    const double s0 = state->s0[g][h] * (pd->mapped ? pd->level[pd->finest].stretch
+                                                    : coarser->stretch * sqrt(s->tough[q]));
     const double limit = r0 * (1 + s0);
     /* Acceleration of the owner per change of length, with what every bond shares of alpha. */
     row[BW_PD_STIFFNESS] = (bw_real)(factor[state->options.surface_correction] * c0 * gamma *

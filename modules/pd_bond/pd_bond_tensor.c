@@ -21,7 +21,10 @@
 #include "pd_bond.h"
 #include "pd_sweep.h"
 
+#include <string.h>
+
 enum { EVEN = 15, MOST = 22, SWEEPS = 60 };
+enum { LAYERS = 3 }; /* families that a face is felt through, where levels change */
 static const double LOW = 0.25, HIGH = 65535 * BW_PD_ALPHA_UNIT;
 
 typedef struct {
@@ -207,14 +210,25 @@ INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
     vec_put_owners(block, vec_load(v->at[k] + block->first) + rest[k], next[k]);
 }
 
+/* Does no owner of a block change its multipliers? */
+static bool is_held(const bool held[], const bw_pd_block *block)
+{
+  const int32_t end = block->own + __builtin_popcount(block->mask);
+  for (int32_t i = block->own; i < end; i++)
+    if (!held[i]) return false;
+  return true;
+}
+
 /* All blocks; K is known when this is compiled. */
 static void ascend_all(const bw_pd_body *pd, const solver *v, bw_real *const next[])
 {
-  for (size_t b = 0; b < pd->bonds.n_block; b++)
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    if (pd->mapped && is_held(v->held, &pd->bonds.block[b])) continue;
     if (v->n == MOST)
       ascend(pd, v, &pd->bonds.block[b], next, MOST);
     else
       ascend(pd, v, &pd->bonds.block[b], next, v->n);
+  }
 }
 
 /* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
@@ -272,6 +286,57 @@ static void hold(const bw_pd_body *pd, solver *v)
   }
 }
 
+/* near (storage) of the particles whose family of the own level misses cells. */
+static void mark_cut(const bw_pd_body *pd, const solver *v, bw_real *near)
+{
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    const bw_pd_block *block = &pd->bonds.block[b];
+    int missing[BW_PD_LANES];
+    for (int lane = 0; lane < BW_PD_LANES; lane++)
+      missing[lane] = bw_pd_body_level_of(pd, block)->stencil.same;
+    for (uint32_t q = block->slot; q < block[1].slot; q++)
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        missing[lane] -= pd->bonds.slot[q].family >> lane & 1;
+    for (int lane = 0; lane < BW_PD_LANES; lane++)
+      if ((block->mask >> lane & 1) && missing[lane] > 0 && !v->held[bw_pd_body_owner(block, lane)])
+        near[block->first + lane] = 1;
+  }
+}
+
+/* near of those with a neighbour that was near before. */
+static void mark_neighbours(const bw_pd_body *pd, const bw_real *before, bw_real *near)
+{
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    const bw_pd_block *block = &pd->bonds.block[b];
+    for (uint32_t q = block->slot; q < block[1].slot; q++)
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        if ((pd->bonds.slot[q].family >> lane & 1) && before[pd->bonds.slot[q].base + lane] > 0)
+          near[block->first + lane] = 1;
+  }
+}
+
+/* Where levels change a body is built often, and deep inside a full family's multipliers are the
+ * solution: who is LAYERS families from every face keeps them, too. Collective. */
+static bw_status hold_inside(bw_pd_body *pd, solver *v)
+{
+  const size_t places = pd->points.n_storage;
+  bw_real *near = NULL, *before = NULL;
+  bw_status st = bw_pd_body_storage_array(places, &near);
+  BW_THEN(st, bw_pd_body_storage_array(places, &before));
+  st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK) mark_cut(pd, v, near);
+  for (int layer = 0; layer < LAYERS && st == BW_OK; layer++) {
+    bw_pd_body_fill_places(pd, near);
+    memcpy(before, near, places * sizeof *before);
+    mark_neighbours(pd, before, near);
+  }
+  for (size_t i = 0; i < pd->n && st == BW_OK; i++)
+    v->held[i] = v->held[i] || !(near[pd->points.place[i]] > 0);
+  bw_pd_body_release_storage_array(&near);
+  bw_pd_body_release_storage_array(&before);
+  return st;
+}
+
 static bw_status solver_arrays(const bw_pd_body *pd, solver *v, bw_real *next[])
 {
   BW_TRY(BW_ALLOCATE(&v->held, pd->n));
@@ -297,6 +362,7 @@ bw_status bw_pd_bond__tensor(bw_pd_body *pd)
   BW_THEN(st, solver_arrays(pd, &v, next));
   BW_THEN(st, BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES));
   st = bw_comm_agree(pd->comm, st);
+  if (st == BW_OK && pd->mapped) st = hold_inside(pd, &v);
   if (st == BW_OK) {
     /* Multipliers are needed until the factors are stored; then they go. */
     solve(pd, &v, next);

@@ -23,6 +23,7 @@
 #include "bw_pd_body.h"
 #include "bw_pd_bond_law.h"
 #include "bw_pd_contact.h"
+#include "bw_pd_levels.h"
 #include "bw_solid_law.h"
 #include <stdio.h>
 
@@ -52,6 +53,26 @@ typedef struct {
   double mean;     /* k_d of FSI eq. 9, -k (V - V_mean) [M/(L^3 T)] */
   double absolute; /* -k V, for settling [M/(L^3 T)] */
 } bw_solid_damping;
+
+/* How levels follow what happens (bw_solid_levels.h). Lengths are in horizons of level 0. */
+typedef struct {
+  int level; /* of the finest particles, 1: half of ds, 2: a quarter ...; 0: levels stay as they
+                    are                                                           default 0 */
+  bw_pd_levels_trigger trigger; /* what `at` and `coarsen_at` are shares of       default stretch */
+  double at;                    /* cells beyond this have to be fine              default 0.5 */
+  double coarsen_at; /* fine cells below this, for some looks, may be coarse      default 0.2 */
+  double buffer;     /* fine cells at least this far around, above 1              default 2 */
+  double ahead;      /* and this much farther when they are made                  default 1 */
+} bw_solid_refine;
+
+/* Where particles are finer. */
+typedef struct {
+  int n;                      /* boxes; 0: none                                   default 0 */
+  bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet; their level is the least that
+                                 there is in them */
+  bw_pd_jump jump;        /* bonds between levels                             default balanced */
+  bw_solid_refine refine; /* elsewhere as needed                              default never */
+} bw_solid_finer;
 
 /* What a solid is made of and how it moves. Required values start as NaN: refused by name. */
 typedef struct {
@@ -84,10 +105,9 @@ typedef struct {
                                   (3.40 with n_c = 1, k_c = 15 c0, r_c = ds)  default false */
   double origin[3];               /* of the lattice [L]                   default 0 */
   double axes[3][3];              /* rows: lattice directions             default identity */
-  bw_pd_finer finer; /* boxes of finer particles (bw_pd_body.h); cracks run on the finest
-                                 level alone: a bond beyond its limit elsewhere ends the run
-                                                          default one level */
-  double period[3];  /* periodic length per direction [L], 0: not periodic. Must be a whole
+  bw_solid_finer finer; /* where particles are finer; cracks run on the finest level alone: a bond
+                           beyond its limit elsewhere ends the run     default one level */
+  double period[3];     /* periodic length per direction [L], 0: not periodic. Must be a whole
                        number of ds along that axis         default 0 */
 } bw_solid_config;
 
@@ -130,7 +150,8 @@ void bw_solid_destroy(bw_solid **solid);
 
 /* Break the bonds that cross a segment (2D: from a to b; ends included) or a parallelogram with
  * corner a and edges b-a, c-a (3D; pass c = NULL in 2D), in the reference shape [L]. Unbreakable
- * ones too. BW_EINPUT for a cut without extent, or without c in 3D. Collective. */
+ * ones too. Where levels change a horizon around its rim is as fine as can be from then on, so that
+ * there are other particles. BW_EINPUT for a cut without extent, or without c in 3D. Collective. */
 bw_status bw_solid_precrack(bw_solid *solid, const double a[3], const double b[3],
                             const double c[3]) BW_MUST_CHECK;
 
@@ -289,8 +310,8 @@ void bw_solid_get_broken(const bw_solid *solid, uint16_t broken[]);
 #define BW_SOLID_TOO_CLOSE 0.6
 
 /* Where energy and momentum are and have gone, of all ranks. The energies balance to the order of
- * the integrator: kinetic + elastic + contact + retired + damping + fracture + plastic - external
- * stays what it was. */
+ * the integrator: kinetic + elastic + contact + retired + damping + fracture + plastic + regrid
+ * - external stays what it was. */
 typedef struct {
   double kinetic, elastic;  /* [M L^2/T^2] present */
   double contact;           /* elastic energy of contact, with walls too, present [M L^2/T^2] */
@@ -302,6 +323,7 @@ typedef struct {
   double damping, fracture; /* dissipated since the start (or restart's stored value)
                                      [M L^2/T^2] */
   double plastic;           /* dissipated inside particles by the law, so far [M L^2/T^2] */
+  double regrid;            /* taken by changes of levels, less what they gave [M L^2/T^2] */
   double external;          /* work of F and of prescribed motion since the start
                                      [M L^2/T^2] */
   double momentum[3], angular[3]; /* [M L/T], [M L^2/T] about the origin of space; retired particles

@@ -35,7 +35,7 @@ bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
 {
   bw_pd_body *pd = s->body;
   /* One array, so that one sum over ranks does for all of them. */
-  double book[17] = {0};
+  double book[18] = {0};
   int64_t count[3] = {pd->bonds.directed, 0, s->book.precracked};
   /* Energies are those of the present motion: forces and pairs have to be of it as well. */
   if (!pd->current) BW_TRY(bw_solid_evaluate(s));
@@ -54,10 +54,11 @@ bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
   for (int k = 0; k < 3; k++)
     book[13 + k] = s->book.wall[k];
   if (pd->law->dissipated != NULL) book[16] = pd->law->dissipated(pd);
+  book[17] = s->book.regrid;
   /* Until here all is of this rank; after this all ranks know the same of all. */
   double closest = s->contact != NULL ? bw_pd_contact_closest(s->contact) : INFINITY;
   bw_comm_min(pd->comm, 1, &closest);
-  bw_comm_sum(pd->comm, 17, book);
+  bw_comm_sum(pd->comm, 18, book);
   bw_comm_sum_int(pd->comm, 3, count);
   /* Directed bonds were counted from both ends. */
   *out = (bw_solid_ledger){.kinetic = book[0],
@@ -71,6 +72,7 @@ bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
                            .external = book[11],
                            .retired = book[12],
                            .plastic = book[16],
+                           .regrid = book[17],
                            .wall = {book[13], book[14], book[15]},
                            .bonds = (count[0] - count[2]) / 2,
                            .broken = (count[1] - count[2]) / 2};

@@ -24,9 +24,14 @@ static const bw_comm *comm_of(const bw_solid_assembly *set)
 static bw_status check(int n, bw_solid *const solid[])
 {
   BW_REQUIRE(n >= 1 && solid != NULL, BW_EINPUT, "solid_assembly: %d solids; at least 1", n);
-  for (int q = 0; q < n; q++)
+  for (int q = 0; q < n; q++) {
     BW_REQUIRE(solid[q]->config.integrator == BW_SOLID_VERLET, BW_EINPUT,
                "solid_assembly: solid %d has integrator = rk3; in an assembly use verlet", q);
+    BW_REQUIRE(solid[q]->levels == NULL, BW_EINPUT,
+               "solid_assembly: the levels of solid %d change, which contact between solids does "
+               "not follow; leave refine.level out",
+               q);
+  }
   return BW_OK;
 }
 
@@ -195,6 +200,7 @@ static void add_ledger(bw_solid_ledger *sum, const bw_solid_ledger *l)
   sum->damping += l->damping;
   sum->fracture += l->fracture;
   sum->plastic += l->plastic;
+  sum->regrid += l->regrid;
   sum->external += l->external;
   for (int k = 0; k < 3; k++) {
     sum->momentum[k] += l->momentum[k];

@@ -20,10 +20,39 @@ bw_solid_config bw_solid_config_default(void)
                        .integrator = BW_SOLID_VERLET,
                        .choice = bw_solid_law_choice_default(),
                        .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  c.finer.refine = (bw_solid_refine){.at = 0.5, .coarsen_at = 0.2, .buffer = 2, .ahead = 1};
   for (int g = 0; g < BW_PD_GROUPS; g++)
     for (int h = 0; h < BW_PD_GROUPS; h++)
       c.more.joint_G0[g][h] = NAN;
   return c;
+}
+
+static bw_status check_refine(const bw_solid_finer *f)
+{
+  const bw_solid_refine *r = &f->refine;
+  if (r->level == 0) return BW_OK;
+  BW_REQUIRE(r->level >= 1 && r->level <= BW_PD_FINEST, BW_EINPUT,
+             "solid: refine.level = %d must be from 1 (half the spacing) to %d", r->level,
+             (int)BW_PD_FINEST);
+  BW_REQUIRE((unsigned)r->trigger <= BW_PD_LEVELS_DAMAGE, BW_EINPUT,
+             "solid: refine.trigger = %d is unknown", (int)r->trigger);
+  BW_REQUIRE(r->at > 0 && r->at < 1, BW_EINPUT,
+             "solid: refine.at = %g must be between 0 and 1, where bonds break", r->at);
+  BW_REQUIRE(r->coarsen_at >= 0 && r->coarsen_at < r->at, BW_EINPUT,
+             "solid: refine.coarsen_at = %g must be from 0 to less than refine.at = %g",
+             r->coarsen_at, r->at);
+  BW_REQUIRE(
+      r->buffer > 1 && r->buffer <= 100, BW_EINPUT,
+      "solid: refine.buffer = %g horizons must be more than 1, which is what bonds of coarse "
+      "particles reach, and at most 100",
+      r->buffer);
+  BW_REQUIRE(r->ahead >= 0 && r->ahead <= 100, BW_EINPUT,
+             "solid: refine.ahead = %g horizons must be from 0 to 100", r->ahead);
+  for (int b = 0; b < f->n; b++)
+    BW_REQUIRE(f->box[b].level <= r->level, BW_EINPUT,
+               "solid: levels[%d].level = %d is finer than refine.level = %d; make that larger", b,
+               f->box[b].level, r->level);
+  return BW_OK;
 }
 
 static bw_status check_config(const bw_solid_config *c)
@@ -47,8 +76,14 @@ static bw_status check_config(const bw_solid_config *c)
              "solid: surface_correction = %d is of bonds; families at faces are whole in a "
              "state-based law, leave it out",
              (int)c->surface_correction);
+  BW_TRY(check_refine(&c->finer));
+  const bool levels = c->finer.n > 0 || c->finer.refine.level > 0;
+  BW_REQUIRE(c->finer.refine.level == 0 || !c->contact, BW_EINPUT,
+             "solid: contact with refine.level = %d: contact does not follow levels that change; "
+             "leave one of them out",
+             c->finer.refine.level);
   BW_REQUIRE(
-      c->finer.n == 0 || (c->damping.pair == 0 && c->damping.mean == 0), BW_EINPUT,
+      !levels || (c->damping.pair == 0 && c->damping.mean == 0), BW_EINPUT,
       "solid: damping.pair = %g, damping.mean = %g with levels: between neighbours they damp "
       "each level differently; use damping.absolute",
       c->damping.pair, c->damping.mean);
@@ -59,57 +94,16 @@ static bw_status check_config(const bw_solid_config *c)
   return BW_OK;
 }
 
-static bw_pd_body_config body_config(const bw_solid_config *c)
-{
-  bw_pd_body_config b = {.geometry = c->geometry,
-                         .ds = c->ds,
-                         .thickness = c->thickness,
-                         .horizon_ratio = c->horizon_ratio,
-                         .volume_fraction = c->volume_fraction,
-                         .family_reach = c->family_reach,
-                         .disorder = c->disorder,
-                         .disorder_seed = c->disorder_seed,
-                         .n_group = 1 + c->more.n,
-                         .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
-  b.finer = c->finer;
-  /* Two ways to say it: the number beside E, or that of the choice. */
-  if (isnan(c->nu)) b.material[0].nu = c->choice.poisson_ratio;
-  /* Group 0 is the configuration's own material; `more` follow it. */
-  memcpy(b.origin, c->origin, sizeof b.origin);
-  memcpy(b.axes, c->axes, sizeof b.axes);
-  memcpy(b.period, c->period, sizeof b.period);
-  memcpy(b.joint_G0, c->more.joint_G0, sizeof b.joint_G0);
-  for (int g = 0; g < c->more.n; g++)
-    b.material[1 + g] = c->more.material[g];
-  return b;
-}
-
-static bw_status own_arrays(bw_solid *s)
-{
-  bw_pd_body *pd = s->body;
-  /* Room for all: retiring allocates nothing. */
-  BW_TRY(BW_ALLOCATE(&s->retired, pd->n));
-  if (s->config.contact) BW_TRY(bw_pd_contact_create(pd, &s->contact));
-  for (int k = 0; k < 3 && s->config.integrator == BW_SOLID_RK3; k++) {
-    BW_TRY(BW_ALLOCATE(&s->v_before[k], pd->n));
-    BW_TRY(BW_ALLOCATE(&s->a_before[k], pd->n));
-  }
-  return BW_OK;
-}
-
 static bw_status build(bw_solid *s, const bw_comm *comm, const bw_pd_sites *given)
 {
   bw_solid_config *c = &s->config;
-  const bw_pd_body_config body = body_config(c);
-  const bw_pd_law *law = c->law != NULL ? c->law : bw_solid_laws[c->choice.law];
-  bw_solid_options store;
-  const void *options =
-      c->law_options != NULL ? c->law_options : bw_solid__law_options(c, law, &store);
-  BW_TRY(bw_pd_body_create(comm, &body, law, options, given, &s->body));
+  if (c->finer.refine.level > 0) BW_TRY(bw_solid__levels_create(s, comm, given));
+  BW_TRY(bw_solid__body(s, comm, given, s->levels != NULL ? &s->levels->map : NULL, &s->body));
   c->nu = s->body->config.material[0].nu;
   c->volume_fraction = s->body->config.volume_fraction;
-  bw_pd_body_set_damping(s->body, c->damping.pair, c->damping.mean, c->damping.absolute);
-  return bw_comm_agree(comm, own_arrays(s));
+  BW_TRY(bw_comm_agree(comm, bw_solid__own_arrays(s)));
+  if (s->levels != NULL) bw_solid__levels_bound(s);
+  return BW_OK;
 }
 
 bw_status bw_solid_create(const bw_comm *comm, const bw_solid_config *config,
@@ -148,13 +142,9 @@ void bw_solid_destroy(bw_solid **solid)
 {
   bw_solid *s = *solid;
   if (s == NULL) return;
-  bw_pd_contact_destroy(&s->contact);
+  bw_solid__release_own_arrays(s);
   bw_pd_body_destroy(&s->body);
   bw_solid__drag_release(&s->drag);
-  bw_release(&s->retired);
-  for (int k = 0; k < 3; k++) {
-    bw_release(&s->v_before[k]);
-    bw_release(&s->a_before[k]);
-  }
+  bw_solid__levels_release(s);
   bw_release(solid);
 }

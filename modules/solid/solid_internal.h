@@ -2,6 +2,7 @@
 #pragma once
 #include "bw_pd_material.h"
 #include "bw_solid.h"
+#include "bw_solid_levels.h"
 #include "pd_law.h"
 
 enum {
@@ -13,6 +14,7 @@ enum { BW_SOLID__GONE = 1, BW_SOLID__STALE = 2 }; /* is retired; a is not that o
 typedef struct {
   double damping;     /* dissipated [M L^2/T^2] */
   double external;    /* work of forces and prescribed motion [M L^2/T^2] */
+  double regrid;      /* taken by changes of levels [M L^2/T^2] */
   double retired;     /* elastic energy that went with retired particles [M L^2/T^2] */
   double wall[3];     /* impulse on the walls [M L/T] */
   int64_t precracked; /* bonds cut by pre-cracks, from both ends */
@@ -28,6 +30,27 @@ typedef struct {
   double *impulse, work;  /* (n,3) [M/(L^2 T)], [M L^2/T^2]: since it was set */
 } bw_solid__drag;
 
+/* A pre-crack as it was asked for. */
+typedef struct {
+  double a[3], b[3], c[3];
+} bw_solid__precrack;
+
+/* Of a solid whose levels change. */
+typedef struct {
+  bw_pd_map map;         /* of the body as it is */
+  uint8_t *least;        /* (cells) level that boxes ask for, with belts */
+  uint8_t *age;          /* (cells) looks since a fine cell was needed, up to 255 */
+  bw_pd_sites given;     /* what this rank gave to create, owned: */
+  int32_t *site;         /* (given.n,3) */
+  uint8_t *kind, *group; /* (given.n); NULL: none were given */
+  int n_cut;
+  bw_solid__precrack *cut; /* (n_cut) pre-cracks so far */
+  uint16_t *precut;        /* (n) bonds of the own particles that they cut */
+  double since, dt;        /* since the last look; the last step [T] */
+  double frequency2;       /* bound of the squared largest one where all is fine [1/T^2] */
+  int64_t changes;         /* so far */
+} bw_solid__levels;
+
 struct bw_solid {
   bw_solid_config config; /* as it was asked for, defaults resolved */
   bw_pd_body *body;
@@ -40,8 +63,42 @@ struct bw_solid {
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
   bw_solid__drag drag;
+  bw_solid__levels *levels; /* NULL: they stay as they are */
   bw_solid_book book;
 };
+
+/* solid_body.c: a body by the solid's configuration, its levels by a map (NULL: by its boxes); and
+ * what the solid keeps per particle of its body, contact too. Collective. */
+bw_status bw_solid__body(const bw_solid *s, const bw_comm *comm, const bw_pd_sites *given,
+                         const bw_pd_map *map, bw_pd_body **out) BW_MUST_CHECK;
+bw_status bw_solid__own_arrays(bw_solid *s) BW_MUST_CHECK;
+void bw_solid__release_own_arrays(bw_solid *s);
+
+/* solid_levels.c */
+/* The levels of a solid that is being made, from its boxes; before its body. Collective. */
+bw_status bw_solid__levels_create(bw_solid *s, const bw_comm *comm,
+                                  const bw_pd_sites *given) BW_MUST_CHECK;
+void bw_solid__levels_release(bw_solid *s);
+void bw_solid__levels_bound(bw_solid *s); /* frequency2, once the first body stands. Local. */
+/* The time of a step counts; BW_EINPUT where a look is overdue. Local. */
+bw_status bw_solid__levels_time(bw_solid *s, double dt) BW_MUST_CHECK;
+bool bw_solid__levels_due(const bw_solid *s); /* would the next step be one too many? Local. */
+/* flag (cells) <- bits of what is in each cell, of all ranks: those of bw_pd_levels_look and these.
+ * BW_EDIVERGED where a bond has broken above the finest level. Collective. */
+enum { BW_SOLID__OCCUPIED = 4, BW_SOLID__SCAR = 8 };
+bw_status bw_solid__levels_scan(const bw_solid *s, uint8_t flag[]) BW_MUST_CHECK;
+/* Sets flag where `bit` of scan is within `width` cells. BW_EMEM. Local. */
+bw_status bw_solid__levels_around(const bw_solid *s, const uint8_t scan[], int bit, int width,
+                                  uint8_t flag[]) BW_MUST_CHECK;
+
+/* solid_regrid.c: a body of another map in place of that of the solid, which takes the cells of the
+ * map over. Collective. */
+bw_status bw_solid__remap(bw_solid *s, bw_pd_map *now) BW_MUST_CHECK;
+
+/* solid_cut.c: the bonds of a pre-crack, booked; of all so far in a new body. Collective. */
+bw_status bw_solid__cut(bw_solid *s, const double a[3], const double b[3],
+                        const double c[3]) BW_MUST_CHECK;
+bw_status bw_solid__cut_again(bw_solid *s) BW_MUST_CHECK;
 
 /* solid_step.c, the pieces of a Verlet step: begin, leap, evaluate, land, end. begin is collective
  * and its status the same on all ranks; leap: BW_EDIVERGED when a particle moved more than a
@@ -69,5 +126,6 @@ void bw_solid__drag_off(bw_solid *s, double dt);
 void bw_solid__drag_release(bw_solid__drag *d);
 
 /* solid_retire.c */
+void bw_solid__renew_kinds(bw_solid *s); /* what follows from kinds. Collective. */
 /* Who is retired by the rows of a restart, each of so many numbers. Collective. */
 void bw_solid__retire_rows(bw_solid *s, size_t width, const double rows[]);

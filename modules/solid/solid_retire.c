@@ -3,7 +3,7 @@
 #include "solid_internal.h"
 
 /* Everything that follows from the kinds of the own particles. */
-static void renew(bw_solid *s)
+void bw_solid__renew_kinds(bw_solid *s)
 {
   bw_pd_body *pd = s->body;
   /* Who is not pushed: prescribed, and retired. */
@@ -50,7 +50,7 @@ bw_status bw_solid_retire(bw_solid *s, const bool gone[])
   /* Energies are booked: now the kinds may change. */
   for (size_t i = 0; i < pd->n; i++)
     if (gone[i] && !(pd->points.kind[i] & BW_PD_PRESCRIBED)) pd->points.kind[i] |= BW_PD_RETIRED;
-  renew(s);
+  bw_solid__renew_kinds(s);
   /* Forces anew: those of the retired are gone from everybody's. */
   BW_TRY(bw_comm_agree(pd->comm, bw_solid__evaluate(s, false)));
   /* What is left of contact was not theirs. */
@@ -71,5 +71,5 @@ void bw_solid__retire_rows(bw_solid *s, size_t width, const double rows[])
     pd->points.kind[i] = kind;
   }
   bw_comm_max_int(pd->comm, 1, &changed);
-  if (changed) renew(s);
+  if (changed) bw_solid__renew_kinds(s);
 }

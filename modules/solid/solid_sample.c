@@ -64,7 +64,8 @@ bw_status bw_solid_try(const bw_comm *comm, const bw_solid_config *config, bw_so
   /* The step is that of the finest particles, wherever they are. */
   for (int b = 0; b < config->finer.n; b++)
     c.ds = fmin(c.ds, ldexp(config->ds, -config->finer.box[b].level));
-  c.finer.n = 0;
+  c.ds = fmin(c.ds, ldexp(config->ds, -config->finer.refine.level));
+  c.finer.n = c.finer.refine.level = 0;
   bw_status st = bw_comm_self(&self);
   BW_THEN(st, measure(self, &c, out));
   bw_comm_destroy(&self);

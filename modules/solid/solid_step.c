@@ -352,8 +352,11 @@ bw_status bw_solid__end(bw_solid *s)
   break_bonds(s);
   BW_REQUIRE(bonds->astray == 0, BW_EDIVERGED,
              "solid: a bond of particle %lld is beyond its limit outside the finest level; cracks "
-             "run on the finest level alone: make the boxes of `levels` larger",
-             (long long)bonds->astray_id);
+             "run on the finest level alone: %s",
+             (long long)bonds->astray_id,
+             s->levels == NULL ? "make the boxes of `levels` larger"
+                               : "the buffer is too thin, make refine.buffer larger or refine.at "
+                                 "smaller");
   return BW_OK;
 }
 
@@ -364,6 +367,7 @@ bw_status bw_solid_step(bw_solid *s, double dt)
   BW_REQUIRE(dt > 0 && dt <= limit * (1 + 1e-12), BW_ECFL,
              "solid_step: dt = %g must be positive and at most %g; take smaller sub-steps", dt,
              limit);
+  BW_TRY(bw_solid__levels_time(s, dt));
   bw_status st = bw_solid__begin(s);
   if (st == BW_OK) st = s->config.integrator == BW_SOLID_RK3 ? step_rk3(s, dt) : step_verlet(s, dt);
   /* Bonds held during the whole step; now those beyond their limit go (3.34). */

@@ -2,9 +2,9 @@
  *
  * Cells of the coarsest lattice are refined and coarsened as wholes; around fine ones lie belts of
  * the levels between. After a change count, ids and the order of particles are new ones and
- * bw_solid_revision is raised: whoever holds lists of particles makes them anew. What moves is taken over through the parents (bw_pd_levels.h), the
- * external force too; broken bonds and pre-cracks stay, a drag goes. The change of energy is booked
- * as `regrid`. */
+ * bw_solid_revision is raised: whoever holds lists of particles makes them anew. What moves is
+ * taken over through the parents (bw_pd_levels.h), the external force too; broken bonds and
+ * pre-cracks stay, a drag goes. The change of energy is booked as `regrid`. */
 #pragma once
 #include "bw_solid.h"
 

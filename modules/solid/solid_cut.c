@@ -78,9 +78,8 @@ static bool crosses(const cut *c, double ds, const double p[3], const double q[3
 static void ends(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot, int lane,
                  double p[3], double q[3])
 {
-  /* The last axis that the two ends differ in tells which is first. */
-  const int32_t *o = bw_pd_body_level_of(pd, block)->stencil.offset + 3 * slot->direction;
-  const bool forward = o[2] != 0 ? o[2] > 0 : o[1] != 0 ? o[1] > 0 : o[0] > 0;
+  const bool forward =
+      bw_pd_body_is_first(&bw_pd_body_level_of(pd, block)->stencil, slot->direction);
   bw_pd_body_reference(pd, (size_t)bw_pd_body_owner(block, lane), forward ? p : q);
   bw_pd_body_reference(pd, (size_t)pd->points.occupant[slot->base + lane], forward ? q : p);
 }

@@ -11,9 +11,9 @@
  *            for the way to 12 mm; what comes after the fork has no claim: fine plates that are
  *            pulled evenly, and with three in a thousand more above, arrive 6 % apart themselves.
  *            One fine spacing sideways for the tip until it has come 12 mm. Work against kinetic,
- *            elastic and fracture energy 1 % (as in crack_branching_12MPa). Beside, without a claim:
- *            how much faster, and the most that counts of particles (over time) allow; what changes
- *            of levels took.
+ *            elastic and fracture energy 1 % (as in crack_branching_12MPa). Beside that, without
+ *            a claim: how much faster, and the most that counts of particles (over time) allow;
+ *            what changes of levels took.
  * --full: particles of 0.25 mm in a plate of 1 mm, two levels.
  * BUILD modules=solid
  * TEST  ranks=1 */
@@ -212,10 +212,10 @@ static double ways_apart(const story *all, const story *some)
 }
 
 /* When the tip has come so far. */
-static double time_of(const story *o, double way)
+static double time_of(const story *o, double come)
 {
   int q = 0;
-  while (q < SAMPLES && o->tip[q] < LENGTH / 2 + way)
+  while (q < SAMPLES && o->tip[q] < LENGTH / 2 + come)
     q++;
   return q < SAMPLES ? o->end * (q + 1) / SAMPLES : NAN;
 }

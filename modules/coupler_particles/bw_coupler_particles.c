@@ -29,6 +29,12 @@ static bw_status check(const bw_coupler_particles_config *q, const bw_ulph_confi
   BW_REQUIRE(q->step_share > 0 && q->step_share <= 1, BW_EINPUT,
              "coupler_particles: step_share is %g; it must be above 0 and at most 1",
              q->step_share);
+  static const double least = 1e-6, most = 1e9;
+  const double density = bw_solid_settings(solid)->rho / f->rho0;
+  BW_REQUIRE(density >= least && density <= most, BW_EINPUT,
+             "coupler_particles: the solid is %.3g times as dense as the fluid, %g: from %g to %g "
+             "times is possible, beyond which rounding hides what one does to the other",
+             density, f->rho0, least, most);
   BW_REQUIRE(planar == (f->dimensions == 2), BW_EINPUT,
              "coupler_particles: the fluid has %d dimensions and the solid %d; take the same",
              f->dimensions, planar ? 2 : 3);
@@ -111,12 +117,27 @@ void bw_coupler_particles_hold(bw_coupler_particles *c, bool held)
 }
 
 /* ---- a step ---- */
-int bw_coupler_particles_substeps(const bw_coupler_particles *c, double dt)
+static double substeps(const bw_coupler_particles *c, double dt)
 {
   /* The squares of frequencies add: bonds and contact. */
   const double rate = hypot(1 / bw_solid_dt_max(c->solid), 1 / bw_solid_dt_contact(c->solid));
-  const double n = ceil(dt * rate / c->config.solid_safety);
-  return n < 1 ? 1 : n < (double)INT_MAX ? (int)n : INT_MAX;
+  return fmax(1, ceil(dt * rate / c->config.solid_safety));
+}
+
+int bw_coupler_particles_substeps(const bw_coupler_particles *c, double dt)
+{
+  const double n = substeps(c, dt);
+  return n < (double)INT_MAX ? (int)n : INT_MAX;
+}
+
+bw_status bw_coupler_particles_check_substeps(const bw_coupler_particles *c, double dt)
+{
+  const double n = substeps(c, dt);
+  BW_REQUIRE(n <= BW_COUPLER_PARTICLES_MOST_SUBSTEPS, BW_EINPUT,
+             "a step of %g takes %.3g sub-steps of the solid, more than %d: take a softer, heavier "
+             "or less damped solid, or larger particles",
+             dt, n, BW_COUPLER_PARTICLES_MOST_SUBSTEPS);
+  return BW_OK;
 }
 
 double bw_coupler_particles_dt_max(bw_coupler_particles *c)
@@ -166,6 +187,7 @@ static bw_status advance_solid(bw_coupler_particles *c, double dt)
 {
   const int64_t *id = bw_solid_id(c->solid);
   const uint8_t *kind = bw_solid_kind(c->solid);
+  BW_TRY(bw_coupler_particles_check_substeps(c, dt));
   const int n = bw_coupler_particles_substeps(c, dt);
   set_load(c, dt);
   BW_TRY(resist(c, dt));

@@ -72,6 +72,12 @@ void bw_coupler_particles_hold(bw_coupler_particles *c, bool held);
 /* Sub-steps that the solid takes in a step of dt [T], at least 1. Local. */
 int bw_coupler_particles_substeps(const bw_coupler_particles *c, double dt);
 
+/* Refuses a step of more than BW_COUPLER_PARTICLES_MOST_SUBSTEPS with BW_EINPUT, as the step itself
+ * does. Local. */
+#define BW_COUPLER_PARTICLES_MOST_SUBSTEPS 1000000
+bw_status bw_coupler_particles_check_substeps(const bw_coupler_particles *c,
+                                              double dt) BW_MUST_CHECK;
+
 /* The step that is recommended now [T]: step_share of the fluid's: jets along a
  * plate that gives way were not stable at 0.6 and more. Collective. */
 double bw_coupler_particles_dt_max(bw_coupler_particles *c);

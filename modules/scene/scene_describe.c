@@ -214,7 +214,6 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
                 bw_coupler_substeps(s->coupler, dt), dt);
   }
   BW_TRY(check_step(s));
-  BW_TRY(bw_scene__check_sizes(s));
   const double limit = bw_scene__limit(s), end = bw_scene__end(s);
   bw_log_info(log, "time step  %.3g now%s%.3g", limit,
               isnan(end) ? "; end by " : ", steps in all about ",

@@ -220,6 +220,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
     BW_REQUIRE(bw_scene__watched_column(s, s->config.watch[k].name) > 0, BW_EINPUT,
                "watch.%s: there is no such component; the columns of history.csv have the names",
                s->config.watch[k].name);
+  BW_TRY(bw_scene__check_sizes(s));
   BW_TRY(set_intervals(r));
   BW_TRY(bw_scene_describe(s, log));
   /* --check ends here: all was looked at, nothing large was made. */

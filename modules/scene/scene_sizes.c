@@ -5,8 +5,12 @@
 #include "bw_number.h"
 #include <math.h>
 
-/* Spacings passed in a step, or by which a step is accelerated; damped or viscous over undamped. */
-static const double MOST_SPACINGS = 1e3, MOST_DAMPING = 1e6, MOST_CELL_REYNOLDS = 1e12;
+/* Spacings passed in a step, or by which a step is accelerated; damped or viscous over undamped;
+ * a ramp over the run; densities of a solid over that of its fluid; of a spacing, what sound passes
+ * in the whole run. */
+static const double MOST_SPACINGS = 1e3, MOST_DAMPING = 1e6, MOST_CELL_REYNOLDS = 1e12,
+                    LONGEST_RAMP = 1e6, LEAST_DENSITY = 1e-6, MOST_DENSITY = 1e9,
+                    LEAST_SOUND = 1e-6;
 
 static double length_of(const double v[3])
 {
@@ -34,6 +38,44 @@ static bw_status check_fluid(const bw_scene *s)
       "fluid.viscosity = %g: with the speed %g that the file names, the cell Reynolds number "
       "is %.3g; at most %g, beyond which rounding hides the viscosity; check its unit",
       nu, s->speed, s->speed * h / nu, MOST_CELL_REYNOLDS);
+  return BW_OK;
+}
+
+/* What comes in or moves too late, and what begins too fast. */
+static bw_status check_flow(const bw_scene *s, double dt)
+{
+  const bw_scene_fluid *f = &s->config.fluid;
+  const bw_scene_pair *const pair[] = {&f->sides.x, &f->sides.y, &f->sides.z};
+  const double end = bw_scene__end(s), h = bw_grid_look(s->grid)->spacing[1];
+  for (int d = 0; d < 6; d++) {
+    const bw_scene_side *q = d % 2 == 0 ? &pair[d / 2]->lower : &pair[d / 2]->upper;
+    BW_REQUIRE(isnan(end) || q->ramp <= LONGEST_RAMP * end, BW_EINPUT,
+               "fluid.sides.%c.%s.ramp = %g is %.3g times the run, %g: nothing would move",
+               "xyz"[d / 2], d % 2 == 0 ? "lower" : "upper", q->ramp, q->ramp / end, end);
+  }
+  const double passed = length_of(f->start.velocity) * dt / h;
+  BW_REQUIRE(
+      passed <= MOST_SPACINGS, BW_EINPUT,
+      "fluid.start.velocity: %g passes %.3g cells in a step of %g, at most %g; check its unit",
+      length_of(f->start.velocity), passed, dt, MOST_SPACINGS);
+  return BW_OK;
+}
+
+/* Material m of a body that moves: against the fluid, and how far sound comes in it. */
+static bw_status check_material(const bw_scene *s, const bw_scene_body *b, int m)
+{
+  const bw_scene_material *q = &s->config.materials[m];
+  const double end = bw_scene__end(s), sound = sqrt(q->young_modulus / q->density);
+  const double ratio = s->grid != NULL ? q->density / s->config.fluid.density : 1.0;
+  BW_REQUIRE(ratio >= LEAST_DENSITY && ratio <= MOST_DENSITY, BW_EINPUT,
+             "materials.%s.density = %g is %.3g times fluid.density = %g: from %g to %g times is "
+             "possible, beyond which rounding hides what one does to the other",
+             q->name, q->density, ratio, s->config.fluid.density, LEAST_DENSITY, MOST_DENSITY);
+  BW_REQUIRE(
+      !bw_scene__deforms(b) || isnan(end) || sound * end / b->spacing >= LEAST_SOUND, BW_EINPUT,
+      "materials.%s: sound, of %g by young_modulus and density, passes %.3g of a particle of %s "
+      "until the end at %g; at least %g, below which rounding hides what it does",
+      q->name, sound, sound * end / b->spacing, b->name, end, LEAST_SOUND);
   return BW_OK;
 }
 
@@ -120,6 +162,10 @@ static bw_status check_loads(const bw_scene *s, double dt)
     const int b = bw_scene__body_named(c, l->on);
     const int m = b < 0 ? -1 : bw_scene__material_named(c, c->bodies[b].material);
     if (m < 0) continue;
+    const double end = bw_scene__end(s);
+    BW_REQUIRE(isnan(end) || l->ramp <= LONGEST_RAMP * end, BW_EINPUT,
+               "loads.%d.ramp = %g is %.3g times the run, %g: nothing would be loaded", q, l->ramp,
+               l->ramp / end, end);
     const double moved = moved_by(s, l, &c->bodies[b], c->materials[m].density, dt);
     BW_REQUIRE(
         moved <= MOST_SPACINGS, BW_EINPUT,
@@ -138,7 +184,13 @@ bw_status bw_scene__check_sizes(bw_scene *s)
   if (!isfinite(dt)) return BW_OK;
   BW_TRY(check_steps(s, dt));
   if (s->grid != NULL) BW_TRY(check_fluid(s));
-  for (int b = 0; b < s->config.n_bodies; b++)
-    BW_TRY(check_motion(s, &s->config.bodies[b], dt));
+  if (s->grid != NULL) BW_TRY(check_flow(s, dt));
+  for (int b = 0; b < s->config.n_bodies; b++) {
+    const bw_scene_body *body = &s->config.bodies[b];
+    const int m = bw_scene__material_named(&s->config, body->material);
+    const bool moves = bw_scene__deforms(body) || body->motion == BW_SCENE_RIGID;
+    if (moves && m >= 0) BW_TRY(check_material(s, body, m));
+    BW_TRY(check_motion(s, body, dt));
+  }
   return check_loads(s, dt);
 }

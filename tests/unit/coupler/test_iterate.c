@@ -106,6 +106,35 @@ START_TEST(iterated_step_meets_its_residual)
 }
 END_TEST
 
+/* An iterated step knows what the fluid answers: virtual mass, which stands for that in an explicit
+ * one, has no part in it. */
+START_TEST(virtual_mass_is_that_of_explicit_steps)
+{
+  double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
+  size_t n = 0;
+  for (int q = 0; q < 2; q++) {
+    scene s = build(0.3, 0.1);
+    const double c = make_light(&s);
+    n = 3 * bw_solid_count(s.solid);
+    iterate(&s, c, 60);
+    s.coupler->config.virtual_mass = q;
+    bw_check_ok(bw_coupler_step(s.coupler, STEP));
+    bw_check_ok(BW_ALLOCATE(&V[q], n));
+    bw_solid_get_velocity(s.solid, V[q]);
+    destroy(&s);
+  }
+  for (size_t i = 0; i < n; i++) {
+    most[0] = fmax(most[0], fabs(V[0][i]));
+    most[1] = fmax(most[1], fabs(V[1][i] - V[0][i]));
+  }
+  bw_comm_max(bw_check_world(), 2, most);
+  ck_assert_double_gt(most[0], 0.0);
+  ck_assert_double_le(most[1], ROUND_OFF * most[0]);
+  bw_release(&V[0]);
+  bw_release(&V[1]);
+}
+END_TEST
+
 /* Saved, gone on, loaded, gone on again: the same velocities, to round-off. */
 START_TEST(a_restart_iterates_the_same_way)
 {
@@ -146,5 +175,6 @@ START_TEST(a_restart_iterates_the_same_way)
 END_TEST
 
 static const bw_check_test tests[] = {BW_TEST(iterated_step_meets_its_residual),
+                                      BW_TEST(virtual_mass_is_that_of_explicit_steps),
                                       BW_TEST(a_restart_iterates_the_same_way)};
 BW_CHECK_MAIN("iterate", tests)

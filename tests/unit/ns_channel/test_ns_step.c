@@ -327,9 +327,26 @@ START_TEST(contradictions_are_refused)
 }
 END_TEST
 
+/* What one inflow brings another may take: no outflow is needed then, whatever the length of a
+ * unit. */
+START_TEST(inflows_that_balance_are_taken)
+{
+  static const int n[3] = {8, 8, 8};
+  for (double unit = 1e-6; unit < 10; unit *= 1e6) {
+    const double length[3] = {unit, unit, unit};
+    bw_ns_channel_config c = ns_config(closed, 0.1 * unit);
+    c.side[0][0].kind = c.side[0][1].kind = BW_SIDE_INFLOW;
+    c.side[0][0].velocity[0] = c.side[0][1].velocity[0] = 1;
+    bw_ns_channel *ns = ns_solver(ns_grid(bw_check_world(), n, length, closed, 0, 1), &c);
+    bw_check_ok(bw_ns_channel_step(ns, 0.1 * bw_ns_channel_dt_max(ns)));
+    ns_free(&ns);
+  }
+}
+END_TEST
+
 static const bw_check_test tests[] = {
-    BW_TEST(ranks_do_not_show),         BW_TEST(two_dimensions_are_three_without_z),
-    BW_TEST(restart_is_exact),          BW_TEST(flow_rate_is_exact_with_a_body),
-    BW_TEST(limits_are_checked),        BW_TEST(what_is_not_finite_is_found),
-    BW_TEST(contradictions_are_refused)};
+    BW_TEST(ranks_do_not_show),          BW_TEST(two_dimensions_are_three_without_z),
+    BW_TEST(restart_is_exact),           BW_TEST(flow_rate_is_exact_with_a_body),
+    BW_TEST(limits_are_checked),         BW_TEST(what_is_not_finite_is_found),
+    BW_TEST(contradictions_are_refused), BW_TEST(inflows_that_balance_are_taken)};
 BW_CHECK_MAIN("ns_channel.step", tests)

@@ -126,6 +126,24 @@ START_TEST(materials_and_holes)
 }
 END_TEST
 
+/* A name is one word: the columns of a history are made of it. The first body's, too. */
+START_TEST(names_are_words)
+{
+  for (int q = 0; q < 2; q++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             BLOCK "bodies:\n"
+                   "  %s: {shape: {box: {from: [0, 0], to: [0.4, 0.3]}}, material: m,"
+                   " motion: elastic, spacing: 0.1}\n"
+                   "  %s: {shape: {box: {from: [2, 0], to: [2.4, 0.3]}}, material: m,"
+                   " motion: elastic, spacing: 0.1}\nphases: {until: 0.1}\n",
+             q == 0 ? "'a b'" : "a", q == 1 ? "'b c'" : "c");
+    ck_assert_ptr_null(scene_of(text));
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), "a name is one word"));
+  }
+}
+END_TEST
+
 /* Phases end by time and by steps, and damping belongs to them. */
 START_TEST(phases)
 {
@@ -254,13 +272,9 @@ START_TEST(fails_at)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(fails_at),
-                                      BW_TEST(a_metal_yields),
-                                      BW_TEST(weight),
-                                      BW_TEST(loads),
-                                      BW_TEST(prescribed),
-                                      BW_TEST(collision),
-                                      BW_TEST(materials_and_holes),
-                                      BW_TEST(phases),
-                                      BW_TEST(levels)};
+static const bw_check_test tests[] = {BW_TEST(fails_at),       BW_TEST(names_are_words),
+                                      BW_TEST(a_metal_yields), BW_TEST(weight),
+                                      BW_TEST(loads),          BW_TEST(prescribed),
+                                      BW_TEST(collision),      BW_TEST(materials_and_holes),
+                                      BW_TEST(phases),         BW_TEST(levels)};
 BW_CHECK_MAIN("scene.solids", tests)

@@ -17,6 +17,12 @@ static double length_of(const double v[3])
   return hypot(hypot(v[0], v[1]), v[2]);
 }
 
+/* Does it move by forces? */
+static bool driven(const bw_scene_body *b)
+{
+  return bw_scene__deforms(b) || b->motion == BW_SCENE_RIGID;
+}
+
 /* The step is what cells, stiffness and damping bear. */
 static bw_status check_steps(const bw_scene *s, double dt)
 {
@@ -87,11 +93,11 @@ static bw_status check_damping(bw_scene *s)
   for (int q = 0; q < s->n_solids && !s->sketched; q++)
     bw_solid_set_damping(s->solid[q].solid, c->numerics.damping_pair, c->numerics.damping_mean,
                          c->numerics.damping_absolute);
-  const double dt = bw_scene__solid_limit(s);
+  const double alone = bw_scene__solid_limit(s), dt = isfinite(alone) ? alone : bw_scene__limit(s);
   BW_TRY(bw_scene__phase_begin(s));
   for (int b = 0; b < c->n_bodies; b++) {
     const int m = bw_scene__material_named(c, c->bodies[b].material);
-    if (!bw_scene__deforms(&c->bodies[b]) || m < 0) continue;
+    if (!driven(&c->bodies[b]) || m < 0) continue;
     for (int p = 0; p < c->n_phases; p++) {
       const double rate = c->phases[p].damp / c->materials[m].density;
       BW_REQUIRE(rate * dt <= MOST_DAMPING, BW_EINPUT,
@@ -118,7 +124,7 @@ static bw_status check_motion(const bw_scene *s, const bw_scene_body *b, double 
              "unit",
              b->name, b->rotation.rate, turned, dt, MOST_SPACINGS);
   const double fall = length_of(s->config.gravity) * dt * dt / b->spacing;
-  BW_REQUIRE(bw_scene__deforms(b) == false || fall <= MOST_SPACINGS, BW_EINPUT,
+  BW_REQUIRE(!driven(b) || fall <= MOST_SPACINGS, BW_EINPUT,
              "gravity: by %g, %s falls %.3g of its spacings in a step of %g, at most %g; check its "
              "unit",
              length_of(s->config.gravity), b->name, fall, dt, MOST_SPACINGS);
@@ -179,7 +185,7 @@ static bw_status check_loads(const bw_scene *s, double dt)
 bw_status bw_scene__check_sizes(bw_scene *s)
 {
   const double dt = bw_scene__limit(s);
-  if (s->n_solids > 0) BW_TRY(check_damping(s));
+  if (s->n_solids > 0 || s->rigid != NULL) BW_TRY(check_damping(s));
   /* Nothing limits the step: that of a phase does, later. */
   if (!isfinite(dt)) return BW_OK;
   BW_TRY(check_steps(s, dt));
@@ -188,8 +194,7 @@ bw_status bw_scene__check_sizes(bw_scene *s)
   for (int b = 0; b < s->config.n_bodies; b++) {
     const bw_scene_body *body = &s->config.bodies[b];
     const int m = bw_scene__material_named(&s->config, body->material);
-    const bool moves = bw_scene__deforms(body) || body->motion == BW_SCENE_RIGID;
-    if (moves && m >= 0) BW_TRY(check_material(s, body, m));
+    if (driven(body) && m >= 0) BW_TRY(check_material(s, body, m));
     BW_TRY(check_motion(s, body, dt));
   }
   return check_loads(s, dt);

@@ -37,6 +37,45 @@ START_TEST(box_sides_shorten_and_block)
 }
 END_TEST
 
+/* Cells of 0.2 x 0.3 x 0.1: probes are 2 x 0.3 long whichever way they look, so that a side 0.5
+ * away is too near for all of them, and one 0.9 away for none. */
+START_TEST(the_longest_cell_is_the_measure)
+{
+  static const double spacing[3] = {0.2, 0.3, 0.1};
+  bw_grid_config g = bw_grid_config_default();
+  bw_probe_config c = bw_probe_config_default();
+  bw_grid *grid = NULL;
+  bw_probe *probe = NULL;
+  bw_real *u[3] = {NULL}, *p = NULL;
+  for (int d = 0; d < 3; d++)
+    g.n[d] = 16, g.length[d] = 16 * spacing[d];
+  g.halo = 2;
+  c.rho = RHO, c.nu = NU;
+  bw_check_ok(bw_grid_create(bw_check_world(), &g, &grid));
+  bw_check_ok(bw_probe_create(grid, &c, &probe));
+  for (int d = 0; d < 3; d++)
+    bw_check_ok(bw_field_create(grid, &u[d]));
+  bw_check_ok(bw_field_create(grid, &p));
+  for (int d = 0; d < 3; d++)
+    for (int near = 0; near < 2; near++) {
+      double X[3], N[3] = {0.0, 0.0, 0.0}, t[3];
+      unsigned char flag = 99;
+      for (int e = 0; e < 3; e++)
+        X[e] = 0.5 * g.length[e];
+      X[d] = g.length[d] - (near == 1 ? 0.5 : 0.9);
+      N[d] = 1.0;
+      bw_check_ok(bw_probe_set_points(probe, 1, X, N));
+      bw_probe_traction(probe, u, p, NULL, t, &flag);
+      ck_assert((flag == BW_PROBE_FREE) == (near == 0));
+    }
+  for (int d = 0; d < 3; d++)
+    bw_release(&u[d]);
+  bw_release(&p);
+  bw_probe_destroy(&probe);
+  bw_grid_destroy(&grid);
+}
+END_TEST
+
 typedef struct {
   double gap; /* in cells */
   unsigned char flag;
@@ -144,7 +183,7 @@ START_TEST(bad_input_is_refused_on_all_ranks)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(box_sides_shorten_and_block),
-                                      BW_TEST(obstacles_shorten_and_block),
-                                      BW_TEST(bad_input_is_refused_on_all_ranks)};
+static const bw_check_test tests[] = {
+    BW_TEST(box_sides_shorten_and_block), BW_TEST(the_longest_cell_is_the_measure),
+    BW_TEST(obstacles_shorten_and_block), BW_TEST(bad_input_is_refused_on_all_ranks)};
 BW_CHECK_MAIN("probe.flags", tests)

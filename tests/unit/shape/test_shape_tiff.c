@@ -86,6 +86,39 @@ START_TEST(pages_of_tiff)
 }
 END_TEST
 
+/* A page of three by three tiles, the last ones cut. */
+START_TEST(pages_of_several_tiles)
+{
+  enum { WIDE = 40, HIGH = 35, TILE = 16 };
+  TIFF *tif = TIFFOpen(path_of("t.tif"), "w");
+  bw_shape_mask *m = NULL;
+  ck_assert_ptr_nonnull(tif);
+  TIFFSetField(tif, TIFFTAG_IMAGEWIDTH, WIDE);
+  TIFFSetField(tif, TIFFTAG_IMAGELENGTH, HIGH);
+  TIFFSetField(tif, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tif, TIFFTAG_SAMPLESPERPIXEL, 1);
+  TIFFSetField(tif, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tif, TIFFTAG_TILEWIDTH, TILE);
+  TIFFSetField(tif, TIFFTAG_TILELENGTH, TILE);
+  for (uint32_t y = 0; y < HIGH; y += TILE)
+    for (uint32_t x = 0; x < WIDE; x += TILE) {
+      unsigned char tile[TILE * TILE];
+      for (uint32_t q = 0; q < TILE * TILE; q++)
+        tile[q] = (x + q % TILE) * (x + q % TILE) % 7 > (y + q / TILE) % 5;
+      ck_assert(TIFFWriteTile(tif, tile, x, y, 0, 0) > 0);
+    }
+  TIFFClose(tif);
+  bw_check_ok(bw_shape_mask_open_image(path_of("t.tif"), 1, 1, &m));
+  ck_assert(m->size[0] == WIDE && m->size[1] == HIGH && m->size[2] == 1);
+  bw_check_ok(bw_shape_mask_hold(m, 0, 1));
+  for (int y = 0; y < HIGH; y++)
+    for (int x = 0; x < WIDE; x++)
+      ck_assert_int_eq(m->solid[x + WIDE * y], x * x % 7 > y % 5);
+  bw_shape_mask_destroy(&m);
+  remove(path_of("t.tif"));
+}
+END_TEST
+
 /* One file a layer: 9 before 10, whatever the order of the letters is. */
 START_TEST(stacks_of_tiff)
 {
@@ -136,6 +169,6 @@ START_TEST(bits_of_tiff)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(pages_of_tiff), BW_TEST(stacks_of_tiff),
-                                      BW_TEST(bits_of_tiff)};
+static const bw_check_test tests[] = {BW_TEST(pages_of_tiff), BW_TEST(pages_of_several_tiles),
+                                      BW_TEST(stacks_of_tiff), BW_TEST(bits_of_tiff)};
 BW_CHECK_MAIN("shape.tiff", tests)

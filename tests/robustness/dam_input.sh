@@ -48,9 +48,9 @@ with shaken_solid "motion: a tank that moves does not move the solid" \
   --set 'motion={amplitude: [0.01, 0, 0], period: 1}'
 with solid_outside "solid.parts.0: from 0.3 to 0.9 in direction 0" \
   --set 'solid.parts=[{lower: [0.3, 0, 0], upper: [0.9, 0.1, 0]}]'
-with stiff_solid "sub-steps of the solid, more than 1000000" --check --set solid.young=1e45
+with stiff_solid "solid sub-steps, more than 1000000" --check --set solid.young=1e45
 with heavy_solid "times as dense as the fluid" --check --set solid.density=1e45
-with thick "time.end = 0.4 takes .* steps of" --check --set fluid.viscosity=1e45
+with thick "phases.0.until.time = 0.4 takes .* steps of" --check --set fluid.viscosity=1e45
 with no_young "solid.young" --set solid.young=-1
 with soft_bonds "nu = 0.47, but bonds fix it to 1/4" --set solid.law=bond
 case=$source/cases/dam_break/dam_break.yaml

@@ -149,7 +149,9 @@ static void measure_reference(bw_pd_interface *pi)
 
 static bw_status build(bw_pd_interface *pi)
 {
-  BW_REQUIRE(bw_solid_settings(pi->pd)->finer.n == 0, BW_EINPUT,
+  BW_REQUIRE(bw_solid_settings(pi->pd)->finer.n == 0 &&
+                 bw_solid_settings(pi->pd)->finer.refine.level == 0,
+             BW_EINPUT,
              "pd_interface: a solid with levels has particles of several spacings; surfaces and "
              "fragments are found for one: leave levels out");
   BW_TRY(bw_pd_interface__stencil_create(pi->pd, &pi->stencil));

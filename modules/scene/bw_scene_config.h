@@ -68,6 +68,15 @@ typedef struct {
   double from[3]; /* lower corner of a box along x, y, z [L] */
   double to[3];   /* upper corner [L] */
 } bw_scene_level;
+
+/* Where levels follow what happens (bw_solid.h). */
+typedef struct {
+  int level;             /* of the finest particles */
+  int trigger;           /* bw_pd_levels_trigger */
+  double at, coarsen_at; /* shares of what breaks [-] */
+  double buffer, ahead;  /* of fine cells, in horizons of the coarsest [-] */
+} bw_scene_refine;
+
 typedef struct {
   double rate;      /* [1/T], right-handed about the axis */
   double axis[3];   /* [-] */
@@ -109,6 +118,8 @@ typedef struct {
   bw_scene_crack cracks[BW_SCENE_CRACKS]; /* there from the start */
   int n_levels;                           /* how many of levels */
   bw_scene_level levels[BW_SCENE_LEVELS]; /* where it is finer */
+  bool has_refine;                        /* is it given? */
+  bw_scene_refine refine;                 /* and where it becomes so */
   int self_contact; /* does what breaks off collide with the rest? INT_MIN: if it breaks */
 } bw_scene_body;
 

@@ -141,11 +141,11 @@ static bw_status check_cracks(const bw_scene_config *c, const bw_scene_body *b,
 static bw_status check_levels(const bw_scene_config *c, const bw_scene_body *b,
                               const bw_scene__shapes *s)
 {
-  if (b->n_levels == 0) return BW_OK;
+  if (b->n_levels == 0 && !b->has_refine) return BW_OK;
   BW_REQUIRE(bw_scene__deforms(b) && !c->has_domain && b->turn == 0, BW_EINPUT,
-             "bodies.%s.levels: they are of bodies that deform, outside of a flow, without turn; "
+             "bodies.%s.%s: they are of bodies that deform, outside of a flow, without turn; "
              "leave them out",
-             b->name);
+             b->name, b->n_levels > 0 ? "levels" : "refine");
   for (int q = 0; q < b->n_levels; q++)
     BW_REQUIRE(meets(s, bw_scene__planar(c) ? 2 : 3, b->levels[q].from, b->levels[q].to), BW_EINPUT,
                "bodies.%s.levels.%d: nothing of the body is in it; it goes from (%g, %g, %g) to "

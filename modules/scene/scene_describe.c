@@ -18,6 +18,7 @@ static void describe_levels(const bw_scene *s, const bw_solid *p, bw_log *log)
   bw_comm_sum_int(s->comm, BW_PD_FINEST + 1, count);
   for (int b = 0; b < c->finer.n; b++)
     finest = c->finer.box[b].level > finest ? c->finer.box[b].level : finest;
+  finest = c->finer.refine.level > finest ? c->finer.refine.level : finest;
   for (int l = 0; l <= finest; l++) {
     bw_log_info(log, "           level %d: %lld particles of %g, horizon %g", l,
                 (long long)count[l], ldexp(c->ds, -l), ldexp(bw_solid_horizon(p), -l));
@@ -54,7 +55,8 @@ static void describe_solids(bw_scene *s, bw_log *log)
     bw_log_info(log, "solid      %s: %lld particles of %g, horizon %g, critical stretch %.3g",
                 names, (long long)bw_solid_total(p), bw_solid_settings(p)->ds, bw_solid_horizon(p),
                 bw_solid_critical_stretch(p));
-    if (bw_solid_settings(p)->finer.n > 0) describe_levels(s, p, log);
+    if (bw_solid_settings(p)->finer.n > 0 || bw_solid_settings(p)->finer.refine.level > 0)
+      describe_levels(s, p, log);
     bw_log_info(log, "           step at most %.3g for bonds, %.3g for contact", bw_solid_dt_max(p),
                 bw_solid_dt_contact(p));
   }

@@ -1,6 +1,6 @@
 /* The keys of materials, bodies and loads. */
-#include "bw_pd_body.h"
 #include "bw_shape.h"
+#include "bw_solid.h"
 #include "bw_solid_words.h"
 #include "scene_internal.h"
 
@@ -121,6 +121,23 @@ static const bw_config_field level_fields[] = {
       "1: half the spacing, 2: a quarter, and so on"),
     V(bw_scene_level, from, BW_REQUIRED, BW_POINT, "L", "lower corner of a box along x, y, z"),
     V(bw_scene_level, to, BW_REQUIRED, BW_POINT, "L", "upper corner"), BW_CONFIG_END};
+static const bw_config_word trigger_words[] = {
+    {"stretch", BW_PD_LEVELS_STRETCH, "of bonds over what breaks the finest ones"},
+    {"energy", BW_PD_LEVELS_ENERGY, "over the largest of all particles; for comparison"},
+    {"damage", BW_PD_LEVELS_DAMAGE, "of particles; for comparison, it comes late"},
+    {NULL, 0, NULL}};
+static const bw_config_field refine_fields[] = {
+    V(bw_scene_refine, level, BW_REQUIRED, BW_FROM_TO(1, BW_PD_FINEST), "",
+      "of the finest particles; 1: half the spacing, 2: a quarter, and so on"),
+    BW_CONFIG_WORD(bw_scene_refine, trigger, BW_OPTIONAL, trigger_words, "what is looked at"),
+    V(bw_scene_refine, at, BW_OPTIONAL, BW_BETWEEN(0, 1), "", "cells beyond it have to be fine"),
+    V(bw_scene_refine, coarsen_at, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "fine cells below it may be coarse again"),
+    V(bw_scene_refine, buffer, BW_OPTIONAL, BW_ABOVE(1), "",
+      "horizons of fine cells around those, at least"),
+    V(bw_scene_refine, ahead, BW_OPTIONAL, BW_AT_LEAST(0), "",
+      "horizons more that are made fine at once"),
+    BW_CONFIG_END};
 const bw_config_word bw_scene__motion_words[] = {
     {"fixed", BW_SCENE_FIXED, "it does not move"},
     {"prescribed", BW_SCENE_PRESCRIBED, "it moves as velocity, rotation and swing say"},
@@ -177,6 +194,8 @@ const bw_config_field bw_scene__body_fields[] = {
     BW_CONFIG_LIST(
         bw_scene_body, levels, n_levels, BW_OPTIONAL, level_fields,
         "boxes in which its particles are finer; cracks have to stay in the finest ones"),
+    BW_CONFIG_MAP_IF(bw_scene_body, refine, has_refine, refine_fields,
+                     "its particles become finer where it is about to crack, and coarser again"),
     BW_CONFIG_WORD(bw_scene_body, self_contact, BW_OPTIONAL, self_words,
                    "does what breaks off collide with the rest? Left out: if the body breaks"),
     BW_CONFIG_END};

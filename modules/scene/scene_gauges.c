@@ -147,6 +147,20 @@ static bool looks_at_particles(const bw_scene *s, const bw_scene_gauge_config *g
   return false;
 }
 
+bw_status bw_scene__gauges_aim(bw_scene *s)
+{
+  for (int g = 0; g < s->config.n_gauges; g++) {
+    if (s->aim[g].count == 0) continue;
+    for (int q = 0; q < s->n_solids; q++) {
+      bw_release(&s->aim[g].particle[q]);
+      s->aim[g].n[q] = 0;
+    }
+    s->aim[g].count = 0;
+    BW_TRY(take_aim(s, g));
+  }
+  return BW_OK;
+}
+
 bw_status bw_scene__gauges_create(bw_scene *s)
 {
   int n = 0;

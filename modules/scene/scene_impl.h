@@ -158,6 +158,15 @@ bw_status bw_scene__plan_describe(bw_scene *s, bw_log *log) BW_MUST_CHECK;
 /* scene_solids.c */
 bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__solids_destroy(bw_scene *s);
+/* scene_levels.c: boxes and refine of the bodies of a solid, to its settings. BW_EINPUT. Local. */
+bw_status bw_scene__levels_of(const bw_scene *s, const bw_scene__solid *q,
+                              bw_solid_config *c) BW_MUST_CHECK;
+/* What is kept per particle of a solid, of those that there are now. Collective. */
+bw_status bw_scene__solid_arrays(bw_scene *s, bw_scene__solid *q) BW_MUST_CHECK;
+/* A solid has other particles now: what is kept of them is made anew, loads and gauges too. */
+bw_status bw_scene__solid_renew(bw_scene *s, int solid) BW_MUST_CHECK;
+/* Before a step: levels follow what happens. */
+bw_status bw_scene__solids_adapt(bw_scene *s) BW_MUST_CHECK;
 /* Body of an own particle. */
 int bw_scene__body_of(const bw_scene__solid *q, size_t i);
 /* Volume of its particle i over that of the coarsest [-]. Local. */
@@ -197,6 +206,7 @@ bw_status bw_scene__fill_cracks(bw_scene *s, bw_scene__acting *a) BW_MUST_CHECK;
 /* What loads fill in the bodies of a list of names. Collective. */
 bw_status bw_scene__measure_cracks(bw_scene *s, const char *names,
                                    bw_solid_crack_size *out) BW_MUST_CHECK;
+bw_status bw_scene__loads_aim(bw_scene *s) BW_MUST_CHECK; /* which particles each acts on, anew */
 /* Share of a load at a time [T]. */
 double bw_scene__load_share(const bw_scene_load *l, double time);
 /* Where a point of a prescribed body is at a time. */
@@ -276,6 +286,7 @@ double bw_scene__end(const bw_scene *s);         /* of the scene [T]; NaN: not k
 
 /* scene_gauges.c, scene_gauges_solid.c, scene_gauges_fluid.c */
 bw_status bw_scene__gauges_create(bw_scene *s) BW_MUST_CHECK;
+bw_status bw_scene__gauges_aim(bw_scene *s) BW_MUST_CHECK; /* which particles each looks at, anew */
 void bw_scene__gauges_destroy(bw_scene *s);
 bw_status bw_scene__note_cuts(bw_scene *s) BW_MUST_CHECK;
 bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quantity *what,

@@ -116,6 +116,20 @@ static void set_push(const bw_scene *s, bw_scene__acting *a, double volume)
   if (s->planar) a->push[2] = 0.0;
 }
 
+bw_status bw_scene__loads_aim(bw_scene *s)
+{
+  for (int k = 0; k < s->n_acting; k++) {
+    bw_scene__acting *a = &s->acting[k];
+    double volume = 0.0;
+    if (bw_scene__in_cracks(&s->config.loads[a->load])) continue; /* of another solid */
+    bw_release(&a->particle);
+    a->n = 0;
+    BW_TRY(aim(s, a, &volume));
+    set_push(s, a, volume);
+  }
+  return BW_OK;
+}
+
 bw_status bw_scene__loads_create(bw_scene *s)
 {
   const double *g = s->config.gravity;

@@ -3,6 +3,7 @@
 
 #include "bw_memory.h"
 #include "bw_number.h"
+#include "bw_solid_levels.h"
 #include <limits.h>
 #include <math.h>
 
@@ -57,9 +58,32 @@ static bw_status restore_fluid(bw_scene *s, bw_checkpoint *ck)
   return st;
 }
 
+/* The levels of one solid, where they change: before its rows. */
+static bw_status levels_state(bw_scene *s, int q, bw_checkpoint *ck, bool read)
+{
+  bw_solid *solid = s->solid[q].solid;
+  const size_t n = bw_solid_levels_numbers(solid);
+  char name[48];
+  double *state = NULL;
+  if (n == 0) return BW_OK;
+  snprintf(name, sizeof name, "solid%d/levels", q);
+  bw_status st = bw_comm_agree(s->comm, BW_ALLOCATE(&state, n));
+  if (st == BW_OK && !read) {
+    bw_solid_get_levels(solid, state);
+    st = bw_checkpoint_put_numbers(ck, name, (int)n, state);
+  } else if (st == BW_OK) {
+    st = bw_checkpoint_get_numbers(ck, name, (int)n, state);
+    BW_THEN(st, bw_solid_set_levels(solid, state));
+    BW_THEN(st, bw_scene__solid_renew(s, q));
+  }
+  bw_release(&state);
+  return st;
+}
+
 /* Rows, sums and bonds of one solid; `read`: the way back. */
 static bw_status solid_state(bw_scene *s, int q, bw_checkpoint *ck, bool read)
 {
+  BW_TRY(levels_state(s, q, ck, read));
   bw_solid *solid = s->solid[q].solid;
   const size_t n = s->solid[q].n, width = bw_solid_restart_row(solid);
   const size_t bytes = bw_solid_bits_bytes(solid);

@@ -212,25 +212,6 @@ static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_co
     if (kind[d] == BW_SIDE_PERIODIC) c->period[d] = s->config.domain.length[d];
 }
 
-/* Boxes of all bodies that share the lattice. */
-static bw_status levels_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_config *c)
-{
-  for (int k = 0; k < q->n_bodies; k++) {
-    const bw_scene_body *b = &s->config.bodies[q->body[k]];
-    for (int r = 0; r < b->n_levels; r++) {
-      BW_REQUIRE(c->finer.n < BW_PD_BOXES, BW_EINPUT,
-                 "bodies.%s.levels: bodies that hold each other have more than %d boxes together; "
-                 "join some",
-                 b->name, (int)BW_PD_BOXES);
-      bw_pd_box *box = &c->finer.box[c->finer.n++];
-      box->level = b->levels[r].level;
-      for (int d = 0; d < (s->planar ? 2 : 3); d++)
-        box->lower[d] = b->levels[r].from[d], box->upper[d] = b->levels[r].to[d];
-    }
-  }
-  return BW_OK;
-}
-
 static bw_status cut_cracks(bw_scene *s, bw_scene__solid *q)
 {
   for (int k = 0; k < q->n_bodies; k++) {
@@ -324,20 +305,17 @@ static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
   /* Groups are numbered while sites are filled; materials follow them. */
   bw_status st = bw_scene__sites_make(s, q, &c, &sites);
   BW_THEN(st, materials_of(s, q, &c));
-  BW_THEN(st, levels_of(s, q, &c));
+  BW_THEN(st, bw_scene__levels_of(s, q, &c));
   BW_THEN(st, bw_scene__law_options(s, q, &room, &c.law_options));
   const bw_pd_sites given = {sites.n, sites.site, sites.kind, sites.group};
   BW_THEN(st, named(s, q, bw_solid_create(s->comm, &c, &given, &q->solid)));
   bw_scene__sites_release(&sites);
   BW_TRY(st);
-  q->n = bw_solid_count(q->solid);
-  st = BW_ALLOCATE(&q->X0, 3 * q->n);
-  BW_THEN(st, BW_ALLOCATE(&q->F, 3 * q->n));
-  BW_THEN(st, BW_ALLOCATE(&q->V, 3 * q->n));
-  BW_TRY(bw_comm_agree(s->comm, st));
-  bw_solid_get_reference(q->solid, q->X0);
+  BW_TRY(bw_scene__solid_arrays(s, q));
   BW_TRY(check_bonds(s, q));
-  return cut_cracks(s, q);
+  BW_TRY(cut_cracks(s, q));
+  /* Tips of cracks are fine where levels change. */
+  return bw_scene__solid_arrays(s, q);
 }
 
 /* Velocities at the start. */

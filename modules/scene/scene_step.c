@@ -154,6 +154,7 @@ static bw_status choose_step(bw_scene *s, double end, double *dt, bool *last)
 /* Solids without fluid. */
 static bw_status solids_step(bw_scene *s, double dt)
 {
+  BW_TRY(bw_scene__solids_adapt(s));
   BW_TRY(bw_scene__loads_apply(s, dt));
   if (s->assembly != NULL) return bw_solid_assembly_step(s->assembly, dt);
   for (int q = 0; q < s->n_solids; q++)

@@ -54,3 +54,21 @@ static inline double gauge(bw_scene *scene, const char *name)
   bw_check_ok(bw_scene_gauge(scene, name, &value));
   return value;
 }
+
+/* The state of a scene in a checkpoint, and a scene that goes on from it. */
+static inline bw_scene *again(bw_scene *s, const char *text)
+{
+  bw_comm *world = bw_check_world();
+  bw_checkpoint *ck = NULL;
+  const char *program = strrchr(__BASE_FILE__, '/') + 1;
+  char path[128];
+  snprintf(path, sizeof path, "%s_np%d.h5", program, bw_comm_size(world));
+  bw_check_ok(bw_checkpoint_create(world, path, &ck));
+  bw_check_ok(bw_scene_save(s, ck));
+  bw_check_ok(bw_checkpoint_close(&ck));
+  bw_scene *other = made(text);
+  bw_check_ok(bw_checkpoint_open(world, path, &ck));
+  bw_check_ok(bw_scene_restore(other, ck));
+  bw_check_ok(bw_checkpoint_close(&ck));
+  return other;
+}

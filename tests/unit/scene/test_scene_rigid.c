@@ -142,23 +142,6 @@ START_TEST(damping_stops_motion_and_spin)
 }
 END_TEST
 
-/* The state of a scene in a checkpoint, and a scene that goes on from it. */
-static bw_scene *again(bw_scene *s, const char *text)
-{
-  bw_comm *world = bw_check_world();
-  bw_checkpoint *ck = NULL;
-  char path[64];
-  snprintf(path, sizeof path, "test_scene_rigid_np%d.h5", bw_comm_size(world));
-  bw_check_ok(bw_checkpoint_create(world, path, &ck));
-  bw_check_ok(bw_scene_save(s, ck));
-  bw_check_ok(bw_checkpoint_close(&ck));
-  bw_scene *other = made(text);
-  bw_check_ok(bw_checkpoint_open(world, path, &ck));
-  bw_check_ok(bw_scene_restore(other, ck));
-  bw_check_ok(bw_checkpoint_close(&ck));
-  return other;
-}
-
 static void check_restart(const char *text, double until, const char *const names[])
 {
   bw_scene *s = made(text);

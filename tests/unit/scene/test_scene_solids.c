@@ -237,6 +237,38 @@ START_TEST(levels)
 }
 END_TEST
 
+/* Levels that change: tractions give the momentum that they say all along, a scene goes on from its
+ * checkpoint to the same numbers; what such levels do not go with is refused by name. */
+START_TEST(refine)
+{
+#define REFINED(more)                                                                              \
+  "plane: strain\nthickness: 2\nmaterials: {m: {density: 3, young_modulus: 100, fracture_energy: " \
+  "0.06}}\nnumerics: {surface_correction: none}\nbodies: {a: {shape: {box: {from: [0, 0], to: "    \
+  "[1.6, 1.2]}}, material: m, motion: breakable, spacing: 0.1, self_contact: false,"               \
+  " cracks: {from: [-0.1, 0.6], to: [0.5, 0.6]}, refine: {level: 1}}}\nloads:\n"                   \
+  "  - {on: a, kind: traction, where: y_upper, value: [1, 2.5]}\n"                                 \
+  "  - {on: a, kind: traction, where: y_lower, value: [0, -2.5]}\n"                                \
+  "phases: {until: 0.4}\ngauges: {v: {body: a, of: velocity}, e: {of: energy}" more "}\n"
+  bw_scene *s = made(REFINED(""));
+  const int64_t few = bw_solid_total(s->solid[0].solid);
+  ck_assert_int_gt(few, 16 * 12); /* the crack's tip is fine */
+  while (bw_scene_time(s) < 0.35)
+    bw_check_ok(bw_scene_step(s, 0.35));
+  ck_assert_int_gt(bw_solid_total(s->solid[0].solid), few);
+  bw_scene *other = again(s, REFINED(""));
+  run(s);
+  run(other);
+  ck_assert_int_eq(bw_solid_total(s->solid[0].solid), bw_solid_total(other->solid[0].solid));
+  bw_check_near(gauge(s, "v.x"), 1 * 1.6 * 2 * 0.4 / (3 * 1.92 * 2), 10 * TINY);
+  bw_check_near(gauge(other, "v.y"), gauge(s, "v.y"), 0.0);
+  bw_check_near(gauge(other, "e.elastic"), gauge(s, "e.elastic"), 1e2 * BW_REAL_EPSILON);
+  bw_scene_destroy(&s);
+  bw_scene_destroy(&other);
+  ck_assert_ptr_null(scene_of(REFINED(", t: {body: a, of: crack_tip, origin: [0.5, 0.6]}")));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "refine: gauges of crack_tip"));
+}
+END_TEST
+
 /* A strip in tension, sigma = 1: its middle fails at the strength over sigma; nothing is told
  * before it is loaded. */
 START_TEST(fails_at)
@@ -276,5 +308,6 @@ static const bw_check_test tests[] = {BW_TEST(fails_at),       BW_TEST(names_are
                                       BW_TEST(a_metal_yields), BW_TEST(weight),
                                       BW_TEST(loads),          BW_TEST(prescribed),
                                       BW_TEST(collision),      BW_TEST(materials_and_holes),
-                                      BW_TEST(phases),         BW_TEST(levels)};
+                                      BW_TEST(phases),         BW_TEST(levels),
+                                      BW_TEST(refine)};
 BW_CHECK_MAIN("scene.solids", tests)

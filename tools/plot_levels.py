@@ -25,7 +25,8 @@ def panel(name, forms):
     # Two blank lines between the blocks of data, so that `index` finds them.
     for points in forms.values():
         lines += [f"{length} {value}" for length, value in points] + ["", ""]
-    lines += ["E", f"set title '{name}'"]
+    wave, levels = name.split("_")
+    lines += ["E", f"set title '{wave} waves, levels above the coarsest: {levels}'"]
     parts = [f"$d_{name} index {q} using 1:2 with linespoints lw 2 pt 7 title '{form}'"
              for q, form in enumerate(forms)]
     return lines + ["plot " + ", ".join(parts)]
@@ -33,9 +34,10 @@ def panel(name, forms):
 
 def main():
     folder = Path(sys.argv[1])
-    lines = ["set terminal pngcairo size 1000,800",
+    lines = ["set terminal pngcairo noenhanced size 1000,800",
              f"set output '{folder / 'levels_reflection.png'}'", "set multiplot layout 2,2",
-             "set logscale xy", "set xlabel 'wavelength over coarse horizon'",
+             "set logscale xy", "set format y '%.0e'",
+             "set xlabel 'wavelength over coarse horizon'",
              "set ylabel 'reflected amplitude'", "set key bottom left"]
     for (levels, wave), forms in curves(folder / "levels_reflection.csv").items():
         lines += panel(f"{wave}_{levels}", forms)

@@ -68,7 +68,6 @@ typedef struct {
   double from[3]; /* lower corner of a box along x, y, z [L] */
   double to[3];   /* upper corner [L] */
 } bw_scene_level;
-
 /* Where levels follow what happens (bw_solid.h). */
 typedef struct {
   int level;             /* of the finest particles */
@@ -76,12 +75,13 @@ typedef struct {
   double at, coarsen_at; /* shares of what breaks [-] */
   double buffer, ahead;  /* of fine cells, in horizons of the coarsest [-] */
 } bw_scene_refine;
-
+/* A body that turns. */
 typedef struct {
   double rate;      /* [1/T], right-handed about the axis */
   double axis[3];   /* [-] */
   double centre[3]; /* a point of it [L] */
 } bw_scene_rotation;
+/* A body that swings to and fro. */
 typedef struct {
   double amplitude[3]; /* X = X0 + amplitude sin(2 pi frequency t) [L] */
   double frequency;    /* [1/T] */

@@ -1,6 +1,7 @@
 /* The table of what gauges can measure, and what a run would refuse of gauges. */
 #include "scene_quantity.h"
 
+#include "bw_ns_channel.h"
 #include "scene_check.h"
 #include <math.h>
 #include <string.h>
@@ -77,7 +78,9 @@ bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config
 {
   if (route == BW_SCENE__BY_REACTION) return true;
   if (bw_scene__any_rigid(c) || bw_scene__has_particles(c)) return false;
-  return route == BW_SCENE__BY_PROBES || bw_scene__names_all(c, g);
+  if (route == BW_SCENE__BY_PROBES) return true;
+  /* The implicit viscous term keeps no fluxes of which a box could make a balance. */
+  return c->numerics.viscous != BW_VISCOUS_IMPLICIT && bw_scene__names_all(c, g);
 }
 
 bool bw_scene__of_rigid(const bw_scene_config *c, const bw_scene_gauge_config *g,

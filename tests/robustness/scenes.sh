@@ -61,6 +61,8 @@ refused $beam "loads.0={on: beam, kind: pressure, where: crack, value: 1}" "beam
 refused hydraulic_crack "loads.0.where.box={from: [0.2, 0.2], to: [0.25, 0.25]}" "no crack of block begins in it"
 refused $beam loads.0.where=top "loads.0.where.side = top: must be one of x_lower"
 refused $beam "loads.0.where={side: x_upper, box: {from: [1, 1], to: [2, 2]}}" "nothing of beam is in it"
+refused $flow numerics.step_share=0.9 "numerics.step_share = 0.9: with bodies in a flow at most 0.8"
+refused $flow numerics.viscous=implicit "watch.drag.box.x: there is no such component"
 refused $beam bodies.beam.spacing=1e-9 "sites; check the unit"
 refused $beam bodies.beam.spaceing=1e-3 "did you mean bodies.beam.spacing?"
 refused $beam gauges.tip.of=tension "gauges.tip.of = tension: there is no such quantity"

@@ -1,0 +1,203 @@
+#!/usr/bin/python3
+"""What accuracy costs: scenes with known answers, run with every value of a knob.
+
+usage: trade.py [KNOB ...] [--out FOLDER]     (./run trade [KNOB ...]; --list names the knobs)
+Each scene of the table below has a reference that does not come from this code. Every value of a knob
+gives an error against it and a cost in core-seconds (processor time on one rank: it hardly depends on
+what else the machine does). Of the points of a scene those stand on the front that no other one beats
+in both; the others are dominated, and are named. Writes FOLDER/trade.json and, for every knob,
+FOLDER/KNOB.png; points that are there already, of the same commit, are not run again.
+"""
+import argparse
+import json
+import math
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+import estimate
+
+CYLINDER = ["accuracy=standard", "watch=[]"]
+# Scene: file, what is added to it, quantity and factor that make the number, reference, its source.
+SCENES = {
+    "cylinder": ("scenes/flow_past_cylinder/flow_past_cylinder.yaml", CYLINDER,
+                 "drag.reaction.x", 30.0, 5.386,
+                 "drag at Re 20, finite elements (data/confined_cylinder)"),
+    "cylinder, probes": ("scenes/flow_past_cylinder/flow_past_cylinder.yaml", CYLINDER,
+                         "drag.probe.x", 30.0, 5.386,
+                         "drag at Re 20, finite elements (data/confined_cylinder)"),
+    "plate": ("bench/trade/plate.yaml", [], "tip.x", 1.0, 0.1737,
+              "tip in a stream, finite elements (data/bending_plate)"),
+    "cantilever": ("bench/trade/cantilever.yaml", [], "tip.y", -1.0, 0.02300,
+                   "tip under a load, finite elements (data/clamped_beams)"),
+    "swing": ("bench/trade/swing.yaml", [], "tip.y frequency", 1.0, 3.588,
+              "lowest frequency, finite elements (data/clamped_beams)")}
+
+
+def each(key, values):
+    """One --set of a key for each value."""
+    return [(str(v), [f"{key}={v}"]) for v in values]
+
+
+FLOWS, COUPLED, SOLIDS = ["cylinder", "plate"], ["plate"], ["cantilever", "swing"]
+# Knob: scenes, and (name of the value, its --set arguments); a number alone scales the spacing.
+KNOBS = {
+    "accuracy": (["cylinder", "plate", "cantilever", "swing"],
+                 each("accuracy", ["quick", "standard", "careful"])),
+    "grid": (["cylinder", "plate", "cantilever", "swing"],
+             [("2 h", 2.0), ("h", 1.0), ("h/2", 0.5)]),
+    "forcing_iterations": (FLOWS, each("numerics.forcing_iterations", [1, 2, 4])),
+    "memory": (FLOWS, each("numerics.memory", [0, 0.1, 0.2, 0.4])),
+    "retraction": (FLOWS, [("best", [])] + each("numerics.retraction", [0, 0.25, 0.5])),
+    "step_share": (["cylinder", "plate", "swing"], each("numerics.step_share", [0.8, 0.6, 0.3])),
+    "viscous": (FLOWS, each("numerics.viscous", ["explicit", "implicit_y", "implicit"])),
+    "probe_length": (["cylinder, probes", "plate"], each("numerics.probe_length", [1, 1.5, 2, 3])),
+    "marker_spacing": (COUPLED, each("numerics.marker_spacing", [0, 0.5, 1, 2])),
+    "load": (COUPLED, each("numerics.load", ["probes", "reaction"])),
+    "load_relaxation": (COUPLED, each("numerics.load_relaxation", [0.03, 0.1, 0.3])),
+    "virtual_mass": (COUPLED, each("numerics.virtual_mass", [0, 0.5, 1, 2])),
+    "coupling_iterations": (COUPLED, each("numerics.coupling_iterations", [1, 5, 20])),
+    "solid_share": (COUPLED, each("numerics.solid_share", [0.9, 0.8, 0.5])),
+    "horizon_ratio": (SOLIDS + ["plate"], each("numerics.horizon_ratio", [2, 3, 4, 5])),
+    "surface_correction": (SOLIDS + ["plate"],
+                           each("numerics.surface_correction", ["none", "volume", "energy", "tensor"])),
+    "volume_fraction": (SOLIDS, each("numerics.volume_fraction", ["none", "linear", "exact"])),
+    "family_reach": (SOLIDS, each("numerics.family_reach", ["half_cell", "horizon"])),
+    "disorder": (SOLIDS, [("lattice", []),
+                          ("cloud of 0.3", ["numerics.disorder=0.3",
+                                            "numerics.surface_correction=volume"])]),
+    "integrator": (["swing", "cantilever"], each("numerics.integrator", ["verlet", "rk3"])),
+    "law": (SOLIDS, [(law, [f"materials.{m}.law={law}" for m in ("@",)])
+                     for law in ("bond", "ordinary", "correspondence")]),
+    "iterations x relaxation": (COUPLED, [
+        (f"{n}, {w}", [f"numerics.coupling_iterations={n}", f"numerics.load_relaxation={w}"])
+        for n in (1, 5) for w in (0.03, 0.1, 0.3)]),
+    "grid x horizon": (SOLIDS, [(f"{h} h, {m}", [h, f"numerics.horizon_ratio={m}"])
+                                for h in (2.0, 1.0) for m in (2, 3, 4)])}
+
+
+def settings(scene, value):
+    """--set arguments of a value on a scene, and the factor of its spacing."""
+    path, base, *_ = SCENES[scene]
+    words = [value] if isinstance(value, float) else list(value)
+    factor = math.prod(w for w in words if isinstance(w, float))
+    parsed = yaml.safe_load(Path(path).read_text())
+    material = next(iter(parsed.get("materials") or {"": None}))
+    sets = base + [w.replace("@", material) for w in words if not isinstance(w, float)]
+    if factor != 1.0:
+        sets += estimate.scaled(estimate.merged(parsed, base), factor)
+    # The state-based laws keep surfaces whole by themselves, and take Poisson's ratio by name.
+    if any(w.endswith(("law=ordinary", "law=correspondence")) for w in sets):
+        sets += [f"materials.{material}.poisson_ratio=0.3333333", "numerics.surface_correction=none"]
+    return sets, factor, estimate.one_cell_deep(parsed)
+
+
+def measure(scene, value, folder, program):
+    """{error, cost, ...} of one run; one that fails is a point without an error."""
+    path, _, quantity, scale, reference, _ = SCENES[scene]
+    sets, factor, flat = settings(scene, value)
+    command = [program, path, "--out", str(folder), "--quiet"]
+    for word in sets:
+        command += ["--set", word]
+    shutil.rmtree(folder, ignore_errors=True)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    point = {"set": sets, "core_seconds": after.ru_utime - before.ru_utime}
+    if done.returncode != 0:
+        point["failed"] = (done.stderr or done.stdout).strip().splitlines()[-1]
+        return point
+    values = estimate.values_of(folder, factor if flat else 1.0)
+    found = next(x for name, x in values.items() if name.partition("[")[0] == quantity)
+    point["found"] = scale * found
+    point["error"] = point["found"] / reference - 1
+    return point
+
+
+def dominated(points):
+    """{name: name of one that is no worse in both and better in one}; failed runs are left out."""
+    good = {n: p for n, p in points.items() if "error" in p}
+    beaten = {}
+    for n, p in good.items():
+        for m, q in good.items():
+            worse = abs(p["error"]) >= abs(q["error"]) and p["core_seconds"] >= 1.05 * q["core_seconds"]
+            if n != m and worse:
+                beaten[n] = m
+    return beaten
+
+
+def figure(knob, scenes, path):
+    """Error against cost, one curve per scene; a panel of gnuplot."""
+    blocks, parts = [], []
+    for q, (scene, points) in enumerate(scenes.items()):
+        good = [(p["core_seconds"], abs(p["error"]), n) for n, p in points.items() if "error" in p]
+        if not good:
+            continue
+        blocks += [f"$d{q} << E"] + [f'{c} {max(e, 1e-6)} "{n}"' for c, e, n in good] + ["E"]
+        parts += [f"$d{q} using 1:2 with linespoints lw 2 pt 7 lc {q + 1} title '{scene}'",
+                  f"$d{q} using 1:2:3 with labels left offset 0.7,0.5 font ',9' tc lt {q + 1} notitle"]
+    lines = blocks + ["set terminal pngcairo size 800,560 noenhanced font 'sans,11'",
+                      f"set output '{path}'", "set logscale xy", "set grid lc rgb '#dddddd'",
+                      "set offsets graph 0.05, graph 0.2, graph 0.1, graph 0.1",
+                      f"set title '{knob}'", "set xlabel 'core-seconds'", "set ylabel 'error'",
+                      "set format y '%.0e'", "set key outside top", "plot " + ", \\\n ".join(parts)]
+    done = subprocess.run(["gnuplot"], input="\n".join(lines) + "\n", text=True, capture_output=True)
+    if done.returncode != 0:
+        sys.exit(f"trade.py: gnuplot made no figure of {knob}:\n{done.stderr}")
+
+
+def tell(knob, scenes):
+    print(f"\n{knob}")
+    for scene, points in scenes.items():
+        beaten = dominated(points)
+        print(f"  {scene}: {SCENES[scene][5]}")
+        for name, p in points.items():
+            if "failed" in p:
+                print(f"    {name:24} {'-':>9} {p['core_seconds']:9.2f} core-s   ended: {p['failed'][:90]}")
+                continue
+            word = f"dominated by {beaten[name]}" if name in beaten else "on the front"
+            print(f"    {name:24} {100 * p['error']:+8.3f} % {p['core_seconds']:9.2f} core-s   {word}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("knobs", nargs="*", metavar="KNOB")
+    parser.add_argument("--out", default="build/trade")
+    parser.add_argument("--program", default="build/bin/breakwater")
+    parser.add_argument("--list", action="store_true")
+    args = parser.parse_args()
+    if args.list:
+        for knob, (scenes, values) in KNOBS.items():
+            print(f"{knob:24} {', '.join(n for n, _ in values)}   ({', '.join(scenes)})")
+        return
+    for knob in args.knobs:
+        if knob not in KNOBS:
+            sys.exit(f"trade.py: there is no knob {knob}; there are: {', '.join(KNOBS)}")
+    out = Path(args.out)
+    (out / "runs").mkdir(parents=True, exist_ok=True)
+    os.environ.setdefault("OMPI_MCA_hwloc_base_binding_policy", "none")
+    commit = subprocess.run([args.program, "--version"], capture_output=True, text=True).stdout.strip()
+    kept = json.loads((out / "trade.json").read_text()) if (out / "trade.json").is_file() else {}
+    if kept.get("program") != commit:
+        kept = {"program": commit, "points": {}}
+    for knob in args.knobs or KNOBS:
+        scenes, values = KNOBS[knob]
+        found = kept["points"].setdefault(knob, {})
+        for scene in scenes:
+            points = found.setdefault(scene, {})
+            for name, value in values:
+                if name not in points:
+                    points[name] = measure(scene, value, out / "runs" / "run", args.program)
+                    (out / "trade.json").write_text(json.dumps(kept, indent=1))
+        figure(knob, found, out / (knob.replace(" ", "_") + ".png"))
+        tell(knob, found)
+    print(f"\nwritten to {out}/trade.json")
+
+
+if __name__ == "__main__":
+    main()

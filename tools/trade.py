@@ -125,7 +125,9 @@ def dominated(points):
     beaten = {}
     for n, p in good.items():
         for m, q in good.items():
-            worse = abs(p["error"]) >= abs(q["error"]) and p["core_seconds"] >= 1.05 * q["core_seconds"]
+            # Two per cent of an error, and five of a cost, are taken for the same.
+            worse = (abs(p["error"]) >= 0.98 * abs(q["error"])
+                     and p["core_seconds"] >= 1.05 * q["core_seconds"])
             if n != m and worse:
                 beaten[n] = m
     return beaten

@@ -149,7 +149,7 @@ static const knob knobs[] = {
     {D(horizon_ratio), OF_SOLIDS, {3.0, 3.0, 3.0}},
     {I(surface_correction),
      OF_SOLIDS,
-     {BW_PD_SURFACE_VOLUME, BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR}},
+     {BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR}},
     {I(forcing_iterations), OF_MARKERS, {1, 1, 2}},
     {D(memory), OF_MARKERS, {0.2, 0.2, 0.2}},
     {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},

@@ -197,7 +197,9 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   fprintf(out, "what runs, and why:\n");
   bw_scene_blocks(s, out);
   static const char *const words[] = {"quick", "standard", "careful"};
-  fprintf(out, "accuracy: %s sets (promised error: not measured)\n", words[s->config.accuracy]);
+  fprintf(out, "accuracy: %s (", words[s->config.accuracy]);
+  bw_scene__promise(s, out);
+  fprintf(out, ") sets\n");
   bw_scene_knobs(&s->config, out);
   fclose(out);
   /* The log ends its lines by itself. */

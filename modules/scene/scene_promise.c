@@ -1,0 +1,64 @@
+/* What a setting of `accuracy` has been measured to give: the largest error over the scenes of a kind
+ * with known answers, on the file's grid and on one twice as fine where that errs more
+ * (tools/trade.py, docs/trade.md, docs/verification/trade). None of it is a bound for another scene. */
+#include "scene_impl.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef enum { FIXED_IN_FLOW, DEFORMS_IN_FLOW, BONDS_ALONE, OTHER } kind;
+
+typedef struct {
+  const char *what;
+  double error[3]; /* quick, standard, careful [-] */
+  double fine;     /* the coarsest it was measured with: cells or particles across what is thin */
+} measured;
+
+static const measured scenes[] = {
+    [FIXED_IN_FLOW] = {"the drag of a cylinder at Re 20", {0.0009, 0.0011, 0.0014}, 15.0},
+    [DEFORMS_IN_FLOW] = {"the tip of a plate bent by a stream", {0.051, 0.051, 0.058}, 8.0},
+    [BONDS_ALONE] = {"deflection and frequency of clamped beams", {0.038, 0.038, 0.038}, 10.0}};
+
+static kind kind_of(const bw_scene_config *c)
+{
+  bool bonds = true;
+  for (int q = 0; q < c->n_materials; q++)
+    bonds = bonds && strcmp(c->materials[q].law, "bond") == 0;
+  if (bw_scene__any_rigid(c) || !bonds || c->n_bodies == 0) return OTHER;
+  if (!bw_scene__has_fluid(c)) return bw_scene__any_deforms(c) ? BONDS_ALONE : OTHER;
+  if (c->fluid.model != BW_SCENE_INCOMPRESSIBLE) return OTHER;
+  return bw_scene__any_deforms(c) ? DEFORMS_IN_FLOW : FIXED_IN_FLOW;
+}
+
+/* Cells, or particles of what deforms, across the thinnest body. */
+static double fineness(const bw_scene *s)
+{
+  const bw_scene_config *c = &s->config;
+  double least = HUGE_VAL;
+  for (int b = 0; b < c->n_bodies; b++) {
+    bw_scene__shapes shapes;
+    const bool solid = bw_scene__deforms(&c->bodies[b]);
+    if (solid != bw_scene__any_deforms(c)) continue;
+    const bw_status st = bw_scene__shapes_make(c, b, &shapes);
+    const double unit = solid ? c->bodies[b].spacing : bw_grid_look(s->grid)->spacing[1];
+    for (int d = 0; st == BW_OK && d < (s->planar ? 2 : 3); d++)
+      least = fmin(least, (shapes.upper[d] - shapes.lower[d]) / unit);
+    bw_scene__shapes_release(&shapes);
+  }
+  return least;
+}
+
+void bw_scene__promise(const bw_scene *s, FILE *out)
+{
+  const kind k = kind_of(&s->config);
+  if (k == OTHER) {
+    fprintf(out, "its error was not measured on a scene of this kind");
+    return;
+  }
+  const double error = 100.0 * scenes[k].error[s->config.accuracy];
+  fprintf(out, "error measured: %.2g %% in %s", error, scenes[k].what);
+  const double across = fineness(s);
+  if (across < 0.99 * scenes[k].fine)
+    fprintf(out, "; this scene is coarser, %.2g across what is thin instead of %g", across,
+            scenes[k].fine);
+}

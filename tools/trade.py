@@ -36,7 +36,11 @@ SCENES = {
     "cantilever": ("bench/trade/cantilever.yaml", [], "tip.y", -1.0, 0.02300,
                    "tip under a load, finite elements (data/clamped_beams)"),
     "swing": ("bench/trade/swing.yaml", [], "tip.y frequency", 1.0, 3.588,
-              "lowest frequency, finite elements (data/clamped_beams)")}
+              "lowest frequency, finite elements (data/clamped_beams)"),
+    "dam break": ("scenes/dam_break/dam_break.yaml",
+                  ["phases.0.until.time=0.4249", "gauges={water: {of: front}}", "watch=[]"],
+                  "water", 1.0, 1.6,
+                  "place of the front when it met the wall in the experiment (data/particle_fluid)")}
 
 
 def each(key, values):
@@ -45,9 +49,10 @@ def each(key, values):
 
 
 FLOWS, COUPLED, SOLIDS = ["cylinder", "plate"], ["plate"], ["cantilever", "swing"]
+PARTICLES = ["dam break"]
 # Knob: scenes, and (name of the value, its --set arguments); a number alone scales the spacing.
 KNOBS = {
-    "accuracy": (["cylinder", "plate", "cantilever", "swing"],
+    "accuracy": (["cylinder", "plate", "cantilever", "swing", "dam break"],
                  each("accuracy", ["quick", "standard", "careful"])),
     "grid": (["cylinder", "plate", "cantilever", "swing"],
              [("2 h", 2.0), ("h", 1.0), ("h/2", 0.5)]),
@@ -74,6 +79,13 @@ KNOBS = {
     "integrator": (["swing", "cantilever"], each("numerics.integrator", ["verlet", "rk3"])),
     "law": (SOLIDS, [(law, [f"materials.{m}.law={law}" for m in ("@",)])
                      for law in ("bond", "ordinary", "correspondence")]),
+    "particle spacing": (PARTICLES, [
+        (f"{h:g} mm", ["domain.length=[1.6,0.9,1]", f"domain.cells=[{1600 / h:.0f},{900 / h:.0f},1]"])
+        for h in (20.0, 12.5, 10.0)]),
+    "sound_speed": (PARTICLES, each("numerics.sound_speed", [35, 50, 70])),
+    "artificial_viscosity": (PARTICLES, each("numerics.artificial_viscosity", [0, 0.01, 0.02, 0.05])),
+    "density_diffusion": (PARTICLES, each("numerics.density_diffusion", [0.05, 0.1, 0.2])),
+    "shifting": (PARTICLES, [("default", [])] + each("numerics.shifting", [0])),
     "iterations x relaxation": (COUPLED, [
         (f"{n}, {w}", [f"numerics.coupling_iterations={n}", f"numerics.load_relaxation={w}"])
         for n in (1, 5) for w in (0.03, 0.1, 0.3)]),

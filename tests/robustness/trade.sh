@@ -29,7 +29,8 @@ for knob, (scenes, values) in trade.KNOBS.items():
 kept = json.loads(Path("docs/verification/trade/trade.json").read_text())["points"]
 alike = {"scenes/flow_past_cylinder/flow_past_cylinder.yaml": ["cylinder"],
          "bench/trade/plate.yaml": ["plate"],
-         "bench/trade/cantilever.yaml": ["cantilever", "swing"]}
+         "bench/trade/cantilever.yaml": ["cantilever", "swing"],
+         "scenes/dam_break/dam_break.yaml": ["dam break"]}
 for path, scenes in alike.items():
     for accuracy in ("quick", "standard", "careful"):
         told = subprocess.run([sys.argv[1], path, "--check", "--set", f"accuracy={accuracy}"],

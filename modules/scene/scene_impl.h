@@ -303,7 +303,8 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
 
 /* scene_describe.c: warnings of what will be poor. */
 void bw_scene__warn(bw_scene *s, bw_log *log);
-/* scene_promise.c: the error that this accuracy was measured to have on scenes of this kind. Local. */
+/* scene_promise.c: the error that this accuracy was measured to have on scenes of this kind.
+ * Local. */
 void bw_scene__promise(const bw_scene *s, FILE *out);
 /* scene_gaps.c: refuses bodies that block the stream, warns of gaps that cells do not see.
  * Collective. */

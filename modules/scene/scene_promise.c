@@ -1,6 +1,6 @@
-/* What a setting of `accuracy` has been measured to give: the largest error over the scenes of a kind
- * with known answers, on the file's grid and on one twice as fine where that errs more
- * (tools/trade.py, docs/trade.md, docs/verification/trade). None of it is a bound for another scene. */
+/* What a setting of `accuracy` has been measured to give: the largest error over the scenes of a
+ * kind with known answers, on the file's grid and on one twice as fine where that errs more
+ * (tools/trade.py, docs/trade.md, docs/verification/trade). None is a bound for another scene. */
 #include "scene_impl.h"
 
 #include <math.h>

@@ -215,7 +215,7 @@ bw_status bw_scene_check(const bw_scene_config *c)
              "the scene holds neither a body nor a fluid; give bodies, or domain and fluid");
   /* Around a body the fluid may speed up by a fifth within the first steps. */
   BW_REQUIRE(
-      !(c->numerics.step_share > 0.8) || !c->has_domain || c->n_bodies == 0, BW_EINPUT,
+      !(c->numerics.step_share > 0.8) || !bw_scene__has_fluid(c) || c->n_bodies == 0, BW_EINPUT,
       "numerics.step_share = %g: with bodies in a flow at most 0.8, as velocities around them "
       "rise within a step when they begin to move",
       c->numerics.step_share);

@@ -157,6 +157,8 @@ static inline bw_status flap_make(const bw_comm *comm, flap *f)
   c.marker_spacing = 1.0;
   c.coupling_residual = 1e-3;
   c.coupling_iterations = f->of.iterations;
+  /* With memory, and all else the same, the flap of FSI3 swings by 1.9 mm in place of 31. */
+  if (f->of.iterations > 1) c.iterations = 2, c.memory = 0.0;
   c.load = f->of.load;
   BW_TRY(bw_coupler_create(&c, f->fluid, f->solid, &f->coupler));
   bw_coupler_hold_solid(f->coupler, false);

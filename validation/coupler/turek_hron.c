@@ -11,7 +11,9 @@
  *            is the benchmark's. 12 particles across, horizon 2 spacings, surface correction
  *            `tensor`, as in bending_plate_fem; waves of the lattice are damped at a thirtieth of
  *            its own rate, which is 1e-4 of a period for the first mode.
- * Coupling   load by probes, iterated to 1e-3 (FSI1: explicit); all else by default.
+ * Coupling   load by probes, iterated to 1e-3, forcing of two iterations without memory (FSI1:
+ *            explicit, with memory); all else by default. With memory the swing does not come up
+ *            (docs/verification/coupler).
  * Measured   (max + min)/2 and (max - min)/2 of each period, mean over the last ten. Forces on
  *            cylinder and flap per depth: the markers' reaction with the inertia of the fluid
  *            inside taken out, rho_f d/dt sum V_h v_h; those of the probes beside.

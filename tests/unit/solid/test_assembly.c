@@ -189,7 +189,7 @@ static void bounce_as_one(bool finer)
   two[1] = pd_make(bw_check_world(), &c, &right);
   bw_solid_assembly *set = NULL;
   bw_check_ok(bw_solid_assembly_create(2, two, &set));
-  const double dt = 0.1 * bw_solid_dt_max(one);
+  const double dt = (finer ? 0.25 : 0.1) * bw_solid_dt_max(one);
   pd_set(one, NULL, towards);
   pd_set(two[0], NULL, towards);
   pd_set(two[1], NULL, towards);

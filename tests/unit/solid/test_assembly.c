@@ -30,10 +30,15 @@ static double bounce(double factor, double height)
   return sqrt(error2 / touching);
 }
 
+#ifdef __SANITIZE_ADDRESS__ /* slow: the way is gone once, orders are not measured */
+enum { THROWS = 1, ORDERS = 0 };
+#else
+enum { THROWS = 8, ORDERS = 1 };
+#endif
+
 /* Root mean square over throws from a little further away each. */
 static double bounces(double factor)
 {
-  enum { THROWS = 8 };
   double sum = 0;
   for (int q = 0; q < THROWS; q++)
     sum += pow(bounce(factor, HEIGHT + 0.0137 * q), 2);
@@ -45,9 +50,10 @@ static double bounces(double factor)
  * factor of two for one bounce; over eight throws a third of it is left either way. */
 START_TEST(a_ball_bounces_off_a_turned_plate)
 {
-  const double coarse = bounces(0.2), fine = bounces(0.1);
+  const double coarse = bounces(0.2);
   ck_assert_double_lt(coarse, 0.001);
-  if (BW_REAL_EPSILON > 1e-10) return; /* rounding hides the order */
+  if (!ORDERS || BW_REAL_EPSILON > 1e-10) return; /* rounding hides the order */
+  const double fine = bounces(0.1);
   ck_assert_double_gt(coarse / fine, 2.7);
   ck_assert_double_lt(coarse / fine, 5.3);
 }

@@ -86,9 +86,11 @@ static void by_stretch(bw_pd_body *pd, const bw_pd_levels_glance *g, uint8_t fla
   }
 }
 
-/* value (n) <- energy per volume of those that may break, over the largest of all. Collective. */
+/* value (n) <- energy per volume of those that may break, over the largest of all; 0 where even
+ * that one is of rounding: strains of some units in the last place. Collective. */
 static void energies(const bw_pd_body *pd, double value[])
 {
+  const double noise = 1e2 * BW_REAL_EPSILON, least = pd->config.material[0].E * noise * noise;
   double most = 0;
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
@@ -103,8 +105,8 @@ static void energies(const bw_pd_body *pd, double value[])
     }
   }
   bw_comm_max(pd->comm, 1, &most);
-  for (size_t i = 0; i < pd->n && most > 0; i++)
-    value[i] /= most;
+  for (size_t i = 0; i < pd->n; i++)
+    value[i] = most > least ? value[i] / most : 0;
 }
 
 bw_status bw_pd_levels_look(bw_pd_body *pd, const bw_pd_levels_glance *g, uint8_t flag[])

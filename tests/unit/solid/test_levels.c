@@ -1,10 +1,8 @@
 /* Bodies of several levels: cells, forces by an independent sum over pairs, momenta, energy, ranks,
  * restart, cracks on the finest level alone, refusals.
  * TEST ranks=1,2,3,4 */
+#include "levels_test.h"
 #include "pd_bond.h"
-#include "pd_test.h"
-
-#include <string.h>
 
 /* A plate or a block with a finer corner in it; the pieces of a nest when level is 2. */
 static bw_solid_config nested(bw_pd_geometry geometry, int level, bw_pd_jump jump)
@@ -24,16 +22,9 @@ static void shake(const double X0[3], double v[3])
   v[2] = 0.2 * sin(X0[2] * X0[0]);
 }
 
-static void shift(const double X0[3], double u[3])
-{
-  u[0] = 0.02 * sin(2 * X0[0] + 3 * X0[1]);
-  u[1] = 0.03 * cos(X0[1] - X0[0]);
-  u[2] = 0;
-}
-
 static void shift_3d(const double X0[3], double u[3])
 {
-  shift(X0, u);
+  levels_shift(X0, u);
   u[2] = 0.02 * sin(X0[2] + X0[0]);
 }
 
@@ -123,7 +114,7 @@ START_TEST(forces_are_those_of_a_sum_over_pairs)
     if (way >= 4) c.horizon_ratio = 2;
     pd_body body = way < 4 ? pd_box(13, 11, 1) : pd_box(8, 7, 5);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
-    pd_set(pd, way < 4 ? shift : shift_3d, NULL);
+    pd_set(pd, way < 4 ? levels_shift : shift_3d, NULL);
     bw_check_ok(bw_solid_evaluate(pd));
     crowd q = crowd_of(pd);
     double all = 0;
@@ -167,7 +158,7 @@ START_TEST(momenta_are_kept_with_balanced_factors)
     if (way % 2 == 1) c.surface_correction = BW_PD_SURFACE_TENSOR;
     pd_body body = way < 2 ? pd_box(13, 11, 1) : pd_box(10, 8, 6);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
-    pd_set(pd, way < 2 ? shift : shift_3d, NULL);
+    pd_set(pd, way < 2 ? levels_shift : shift_3d, NULL);
     bw_check_ok(bw_solid_evaluate(pd));
     crowd q = crowd_of(pd);
     check_momenta(&c, &q);
@@ -344,35 +335,24 @@ START_TEST(a_box_that_meets_nothing_changes_nothing)
 }
 END_TEST
 
-static void refused(const bw_solid_config *c, const char *word)
-{
-  pd_body body = pd_box(6, 5, 4);
-  bw_solid *pd = NULL;
-  ck_assert_int_eq(bw_solid_create_same(bw_check_world(), c, body.n, body.site, body.kind, &pd),
-                   BW_EINPUT);
-  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "%s is not in: %s", word,
-                bw_last_message());
-  pd_body_release(&body);
-}
-
 START_TEST(what_levels_do_not_go_with_is_refused)
 {
   const bw_solid_config good = nested(BW_PD_3D, 1, BW_PD_JUMP_BALANCED);
   bw_solid_config c = good;
   c.surface_correction = BW_PD_SURFACE_VOLUME;
-  refused(&c, "tensor");
+  levels_refused(&c, "tensor");
   c = good, c.disorder = 0.2;
-  refused(&c, "disorder");
+  levels_refused(&c, "disorder");
   c = good, c.damping.pair = 1;
-  refused(&c, "damping.absolute");
+  levels_refused(&c, "damping.absolute");
   c = good, c.finer.box[0].level = 0;
-  refused(&c, "levels[0].level");
+  levels_refused(&c, "levels[0].level");
   c = good, c.finer.box[0].upper[2] = c.finer.box[0].lower[2];
-  refused(&c, "lower");
+  levels_refused(&c, "lower");
   c = good, c.finer.n = 99;
-  refused(&c, "99 boxes");
+  levels_refused(&c, "99 boxes");
   c = good, c.choice.law = BW_SOLID_ORDINARY, c.surface_correction = BW_PD_SURFACE_VOLUME;
-  refused(&c, "law = ordinary");
+  levels_refused(&c, "law = ordinary");
 }
 END_TEST
 

@@ -1,10 +1,8 @@
 /* Levels that change while a body moves: what stays, and when; ranks, restart, refusals.
  * TEST ranks=1,2,3,4 */
 #include "bw_solid_levels.h"
+#include "levels_test.h"
 #include "pd_body.h"
-#include "pd_test.h"
-
-#include <string.h>
 
 /* A plate or block of which boxes become finer and coarser. */
 static bw_solid_config changing(bw_pd_geometry geometry, int level)
@@ -21,13 +19,6 @@ static void shake(const double X0[3], double v[3])
   v[0] = 0.3 * sin(2 * X0[0] + X0[1]);
   v[1] = 0.2 * cos(3 * X0[1]) + 0.1 * X0[0];
   v[2] = 0;
-}
-
-static void shift(const double X0[3], double u[3])
-{
-  u[0] = 0.02 * sin(2 * X0[0] + 3 * X0[1]);
-  u[1] = 0.03 * cos(X0[1] - X0[0]);
-  u[2] = 0;
 }
 
 /* All energy there is and was, with what changes of levels took. */
@@ -60,7 +51,7 @@ START_TEST(momentum_and_book_are_kept)
         changing(space ? BW_PD_3D : BW_PD_PLANE_STRESS, way < 2 ? 2 - space : 1);
     pd_body body = space ? pd_box(10, 8, 6) : pd_box(17, 13, 1);
     bw_solid *pd = pd_make(bw_check_world(), &c, &body);
-    pd_set(pd, shift, shake);
+    pd_set(pd, levels_shift, shake);
     const double dt = 0.2 * bw_solid_dt_max(pd);
     const int64_t few = bw_solid_total(pd);
     for (int turn = 0; turn < 4; turn++) {
@@ -316,35 +307,24 @@ START_TEST(overdue_looks_and_thin_buffers_are_told)
 }
 END_TEST
 
-static void refused(const bw_solid_config *c, const char *word)
-{
-  pd_body body = pd_box(6, 5, 1);
-  bw_solid *pd = NULL;
-  ck_assert_int_eq(bw_solid_create_same(bw_check_world(), c, body.n, body.site, body.kind, &pd),
-                   BW_EINPUT);
-  ck_assert_msg(strstr(bw_last_message(), word) != NULL, "%s is not in: %s", word,
-                bw_last_message());
-  pd_body_release(&body);
-}
-
 START_TEST(what_changing_levels_do_not_go_with_is_refused)
 {
   const bw_solid_config good = breaking(0);
   bw_solid_config c = good;
   c.finer.refine.level = 99;
-  refused(&c, "refine.level = 99");
+  levels_refused(&c, "refine.level = 99");
   c = good, c.finer.refine.at = 1.5;
-  refused(&c, "refine.at = 1.5");
+  levels_refused(&c, "refine.at = 1.5");
   c = good, c.finer.refine.coarsen_at = 0.7;
-  refused(&c, "coarsen_at = 0.7");
+  levels_refused(&c, "coarsen_at = 0.7");
   c = good, c.finer.refine.buffer = 1;
-  refused(&c, "buffer = 1");
+  levels_refused(&c, "buffer = 1");
   c = good, c.contact = true;
-  refused(&c, "contact");
+  levels_refused(&c, "contact");
   c = good, c.ds = NAN;
-  refused(&c, "ds");
+  levels_refused(&c, "ds");
   c = good, c.choice.law = BW_SOLID_ORDINARY, c.surface_correction = BW_PD_SURFACE_VOLUME;
-  refused(&c, "law = ordinary");
+  levels_refused(&c, "law = ordinary");
   /* A solid of one level has none that change. */
   pd_body body = pd_box(6, 5, 1);
   c = good, c.finer.refine.level = 0;

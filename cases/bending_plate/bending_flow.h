@@ -36,6 +36,7 @@ typedef struct {
   double damping_pair;     /* k_d of POROUS 3.41 [M/(L^6 T)]   default 0 */
   double damping_absolute; /* against rest [M/(L^3 T)]         default 0 */
   int surface_correction;  /* bw_pd_surface_correction         default volume */
+  int skin;                /* columns beside either face that are twice as fine    default 0 */
 } bending_plate;
 
 /* The whole set-up. */
@@ -195,6 +196,11 @@ static inline bw_solid_config bending_material(const bending_flow *f)
   s.damping.pair = p->damping_pair;
   s.damping.absolute = p->damping_absolute;
   s.origin[0] = p->front;
+  for (int q = 0; q < (p->skin > 0 ? 2 : 0); q++) {
+    const double out = q == 0 ? p->front : p->front + p->thickness, in = (p->skin - 0.5) * f->ds;
+    s.finer.box[s.finer.n++] = (bw_pd_box){
+        .level = 1, .lower = {out - in, -p->height}, .upper = {out + in, 2 * p->height}};
+  }
   s.origin[2] = 0.5 * f->h;
   return s;
 }

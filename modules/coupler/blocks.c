@@ -41,8 +41,8 @@ static int8_t face_of(const double axes[3][3], const double N[3])
   return (int8_t)best;
 }
 
-/* Which block of k^3 lattice sites a reference position lies in, packed. */
-static int64_t block_of(const bw_solid_config *s, int k, const double X0[3])
+/* Which block of k^3 sites of the finest lattice, ds apart, a reference place lies in, packed. */
+static int64_t block_of(const bw_solid_config *s, double ds, int k, const double X0[3])
 {
   int64_t packed = 0;
   for (int d = 0; d < 3; d++) {
@@ -50,7 +50,8 @@ static int64_t block_of(const bw_solid_config *s, int k, const double X0[3])
     double along = 0.0;
     for (int e = 0; e < 3; e++)
       along += (X0[e] - s->origin[e]) * s->axes[d][e];
-    const double block = floor(floor(along / s->ds) / k);
+    /* Coarser particles have their centres between the sites. */
+    const double block = floor(floor(along / ds + 0.25) / k);
     /* Masked, as block numbers may be negative. */
     packed = (packed << BITS) | ((int64_t)block & (((int64_t)1 << BITS) - 1));
   }
@@ -71,8 +72,9 @@ bw_status bw_coupler__blocks_create(bw_coupler *c)
   /* The first surface: faces and blocks belong to the reference shape and never change. */
   const bw_pd_surface surface = bw_pd_interface_surface(c->interface);
   bw_solid_get_reference(c->solid, c->X);
+  const double ds = ldexp(s->ds, -bw_solid_finest(c->solid));
   for (size_t i = 0; i < c->n; i++) {
-    b->block[i] = block_of(s, c->block, c->X + 3 * i);
+    b->block[i] = block_of(s, ds, c->block, c->X + 3 * i);
     b->face[i] = -1;
   }
   for (size_t q = 0; q < surface.n; q++)

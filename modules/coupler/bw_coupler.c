@@ -36,6 +36,16 @@ static bw_status check_density(double rho, double solid)
   return BW_OK;
 }
 
+/* Loads and memories of a step go on by particles, which another set of levels does not keep. */
+static bw_status check_solid(const bw_solid_config *s)
+{
+  BW_REQUIRE(s->finer.refine.level == 0, BW_EINPUT,
+             "coupler: the solid has refine.level = %d: a flow does not follow levels that change; "
+             "give boxes of levels that stay",
+             s->finer.refine.level);
+  return BW_OK;
+}
+
 static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
 {
   /* Required values start as NaN, which fails every comparison. */
@@ -245,6 +255,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   *out = NULL;
   BW_TRY(check_config(config, g));
   BW_TRY(check_density(config->rho, bw_solid_settings(solid)->rho));
+  BW_TRY(check_solid(bw_solid_settings(solid)));
   bw_status st = BW_ALLOCATE(&c, 1);
   st = bw_comm_agree(bw_grid_comm(grid), st);
   if (st != BW_OK) return st;
@@ -262,7 +273,8 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   BW_THEN(st, create_parts(c));
   BW_THEN(st, bw_comm_agree(bw_grid_comm(grid), create_arrays(c)));
   /* Whole particles share a marker; a spacing below one of theirs gives each its own. */
-  const double k = c->config.marker_spacing * c->h / bw_solid_settings(solid)->ds;
+  const double ds = ldexp(bw_solid_settings(solid)->ds, -bw_solid_finest(solid));
+  const double k = c->config.marker_spacing * c->h / ds;
   c->block = (int)fmin(1e9, fmax(1.0, floor(k + 1e-9)));
   BW_THEN(st, bw_coupler__bodies_create(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);

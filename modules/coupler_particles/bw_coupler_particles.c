@@ -29,6 +29,9 @@ static bw_status check(const bw_coupler_particles_config *q, const bw_ulph_confi
   BW_REQUIRE(q->step_share > 0 && q->step_share <= 1, BW_EINPUT,
              "coupler_particles: step_share is %g; it must be above 0 and at most 1",
              q->step_share);
+  const bw_solid_finer *finer = &bw_solid_settings(solid)->finer;
+  BW_REQUIRE(finer->n == 0 && finer->refine.level == 0, BW_EINPUT,
+             "coupler_particles: a body in a fluid of particles has one spacing; leave levels out");
   static const double least = 1e-6, most = 1e9;
   const double density = bw_solid_settings(solid)->rho / f->rho0;
   BW_REQUIRE(density >= least && density <= most, BW_EINPUT,

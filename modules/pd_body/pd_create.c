@@ -168,6 +168,7 @@ static void release_level(bw_pd_level *level)
   bw_release(&s->xi);
   bw_release(&s->r0);
   bw_release(&s->fraction);
+  bw_release(&s->volume);
   bw_release(&s->tough);
   bw_release(&s->other);
   bw_release(&s->sure);

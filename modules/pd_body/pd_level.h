@@ -38,6 +38,8 @@ typedef struct {
   double *r0;       /* (n) |xi| [L] */
   double *fraction; /* (n) Gamma [-]; between levels what takes its place beside the micromodulus of
                        the coarser end (pd_stencil_levels.c) */
+  double *volume;   /* (n) part of the partner's cell in the owner's horizon, over dv of the owner
+                       [-]: fraction, but between levels */
   double *tough;    /* (n) square of the critical stretch over that of the coarser end [-] */
   uint8_t *other;   /* (n) level at the other end */
   bool *sure;       /* (n) in a cloud: a bond wherever both sites are occupied */

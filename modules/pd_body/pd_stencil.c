@@ -121,6 +121,7 @@ bw_status bw_pd_body_stencil_room(bw_pd_body *pd, int l, int n)
   BW_TRY(BW_ALLOCATE(&s->xi, 3 * rows));
   BW_TRY(BW_ALLOCATE(&s->r0, rows));
   BW_TRY(BW_ALLOCATE(&s->fraction, rows));
+  BW_TRY(BW_ALLOCATE(&s->volume, rows));
   BW_TRY(BW_ALLOCATE(&s->tough, rows));
   BW_TRY(BW_ALLOCATE(&s->other, rows));
   BW_TRY(BW_ALLOCATE(&s->sure, rows));
@@ -170,7 +171,9 @@ bw_status bw_pd_body_stencil(bw_pd_body *pd)
     s->number[(o[0] + s->reach) + side * ((o[1] + s->reach) + side * (o[2] + s->reach))] =
         (int16_t)q;
   }
-  return fractions(pd, s);
+  BW_TRY(fractions(pd, s));
+  memcpy(s->volume, s->fraction, (size_t)s->n * sizeof *s->volume);
+  return BW_OK;
 }
 
 static void level_rows(bw_pd_body *pd, bw_pd_level *level)

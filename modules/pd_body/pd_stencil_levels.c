@@ -58,22 +58,27 @@ static bw_status gamma_of(const pair *x, int l, int p, const int o[3], double *g
 }
 
 /* What the stencil says of an offset; fraction 0: there is no bond. */
-static bw_status bond_of(const pair *x, const int o[3], double *fraction, double *tough)
+typedef struct {
+  double fraction, volume, tough;
+} said;
+
+static bw_status bond_of(const pair *x, const int o[3], said *out)
 {
   const bw_pd_level *level = x->pd->level;
   const int a = x->l < x->other ? x->l : x->other, b = x->l < x->other ? x->other : x->l;
   double ab, ba;
-  *tough = 1;
-  if (a == b) return gamma_of(x, a, a, o, fraction);
   BW_TRY(gamma_of(x, a, b, o, &ab));
+  *out = (said){ab, ab, 1};
+  if (a == b) return BW_OK;
   BW_TRY(gamma_of(x, b, a, o, &ba));
+  out->volume = (x->l == a ? ab : ba) * level[x->other].dv / level[x->l].dv;
   ba *= level[b].stiff / level[a].stiff;
-  *fraction = x->pd->config.finer.jump != BW_PD_JUMP_ONE_SIDED ? (ab + ba) / 2
-              : x->l == a                                      ? ab
-                                                               : ba;
+  out->fraction = x->pd->config.finer.jump != BW_PD_JUMP_ONE_SIDED ? (ab + ba) / 2
+                  : x->l == a                                      ? ab
+                                                                   : ba;
   /* By energy: the finer half bears more. */
   const double s2 = pow(level[b].stretch / level[a].stretch, 2);
-  if (ab + ba > 0) *tough = (ab + ba * s2) / (ab + ba);
+  if (ab + ba > 0) out->tough = (ab + ba * s2) / (ab + ba);
   return BW_OK;
 }
 
@@ -88,15 +93,16 @@ static bw_status list_pair(const pair *x, bw_pd_stencil *s, int *n)
     for (int y = first; y <= most; y += every)
       for (int i = first; i <= most; i += every) {
         const int o[3] = {i, y, z};
-        double fraction, tough;
+        said bond;
         if (i == 0 && y == 0 && z == 0) continue;
-        BW_TRY(bond_of(x, o, &fraction, &tough));
-        if (!(fraction > 0)) continue;
+        BW_TRY(bond_of(x, o, &bond));
+        if (!(bond.fraction > 0)) continue;
         if (s->offset != NULL) {
           for (int k = 0; k < 3; k++)
             s->offset[3 * *n + k] = o[k] * x->step;
-          s->fraction[*n] = fraction;
-          s->tough[*n] = tough;
+          s->fraction[*n] = bond.fraction;
+          s->volume[*n] = bond.volume;
+          s->tough[*n] = bond.tough;
           s->other[*n] = (uint8_t)x->other;
         }
         ++*n;

@@ -5,26 +5,36 @@
 #include <math.h>
 #include <string.h>
 
+/* Is h, resolved last, surface where these sectors are empty? In a body of one level those that
+ * never held anyone tell open sides. Beside another level a sector may hold nobody though no side
+ * is open, and at a step of two fine cells all hold somebody though one is: there sides tell. */
+static bool shows(const bw_pd_interface *pi, size_t h, uint32_t empty)
+{
+  uint32_t not_held, never = 0;
+  if (pi->n_stencil > 1) {
+    if (bw_pd_interface__has_open_side(pi, h)) return true;
+    bw_pd_interface__bare_sectors(pi, h, &not_held, &never);
+  }
+  return bw_pd_interface__is_open(pi->stencil, empty & ~never, pi->config.n_empty);
+}
+
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
   /* POROUS 3.42: mean present distance to broken partners, sector by sector. */
   bw_pd_interface__locate(pi, h, now);
   const uint32_t empty = bw_pd_interface__empty_sectors(pi, h);
-  return !pi->wall.outside[h] && bw_pd_interface__is_open(s, empty, pi->config.n_empty);
+  return !pi->wall.outside[h] && shows(pi, h, empty);
 }
 
 /* Is h surface whatever the gaps, or never, or does it depend on them? */
 static void classify(bw_pd_interface *pi, size_t h)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
   uint32_t not_held, never;
   /* Without any place: which sectors hold nothing now, and which never held anything. */
   bw_pd_interface__resolve(pi, h, false);
-  bw_pd_interface__bare_sectors(pi, &not_held, &never);
+  bw_pd_interface__bare_sectors(pi, h, &not_held, &never);
   /* A sector that never held a partner stays empty; one that lost all may close again. */
-  const bool always = bw_pd_interface__is_open(s, never, pi->config.n_empty);
-  const bool possible = bw_pd_interface__is_open(s, not_held, pi->config.n_empty);
+  const bool always = shows(pi, h, never), possible = shows(pi, h, not_held);
   pi->surface[h] = always && !pi->wall.outside[h];
   pi->watch.undecided[h] = possible && !always && !pi->wall.outside[h];
   /* Its partners have changed: row, normal and line elements are made anew. */
@@ -99,9 +109,10 @@ static bool make_room(bw_pd_interface *pi, size_t more)
 /* Write the row of h, resolved last: its present partners. */
 static void write_row(bw_pd_interface *pi, size_t h)
 {
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   size_t count = 0;
   /* How many partners hold; a row that has become too short is written at the end of the pool. */
-  for (int q = 0; q < pi->stencil.slots; q++)
+  for (int q = 0; q < s->slots; q++)
     count += pi->seen.state[q] == BW_PD_INTERFACE__INTACT;
   if (count > pi->rows.row_room[h]) {
     pi->rows.row_room[h] = 0;
@@ -112,11 +123,13 @@ static void write_row(bw_pd_interface *pi, size_t h)
   }
   size_t at = pi->rows.row[h];
   pi->fit.border[h] = false;
-  for (int q = 0; q < pi->stencil.slots; q++) {
+  for (int q = 0; q < s->slots; q++) {
     if (pi->seen.state[q] != BW_PD_INTERFACE__INTACT) continue;
     const bw_pd_interface__near near = pi->seen.near[q];
-    /* Images and copies do not know h as a partner: change has to reach h from them. */
-    pi->fit.border[h] = pi->fit.border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n;
+    /* Images and copies do not know h as a partner, nor do finer ones beyond whose horizon it is:
+     * change has to reach h from them. */
+    pi->fit.border[h] = pi->fit.border[h] || near.cross != 0 || near.partner >= (int32_t)pi->n ||
+                        s->other[q] != s->level;
     pi->rows.pool[at++] = near;
   }
   pi->rows.row_n[h] = (uint16_t)count;
@@ -134,7 +147,7 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
     if (pi->rows.stale[h]) {
       uint32_t not_held, never;
       bw_pd_interface__resolve(pi, h, reference);
-      bw_pd_interface__bare_sectors(pi, &not_held, &never);
+      bw_pd_interface__bare_sectors(pi, h, &not_held, &never);
       bw_pd_interface__tell_normal(pi, h, not_held);
       bw_pd_interface__anchor(pi, h);
       write_row(pi, h);
@@ -154,7 +167,7 @@ static void tell_heights(bw_pd_interface *pi)
     const size_t h = (size_t)pi->now.list[row];
     const double *n = &pi->fit.own_normal[3 * h];
     double sum = 0.0;
-    for (int d = 0; d < pi->stencil.dims; d++)
+    for (int d = 0; d < pi->stencil->dims; d++)
       sum += fabs(c->axes[d][0] * n[0] + c->axes[d][1] * n[1] + c->axes[d][2] * n[2]);
     /* On ridges and edges there is no plane that the sides are steps of. */
     pi->now.smooth[row] = bw_pd_interface__is_smooth(pi, h);

@@ -168,7 +168,7 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], bw_pd_
 {
   if (out != NULL) *out = (bw_pd_fragments){0};
   const bw_pd_extended all = bw_solid_get_extended(pi->pd);
-  joiner j = {.pd = pi->pd, .n = pi->n, .n_all = all.n};
+  joiner j = {.pd = pi->pd, .n = bw_solid_count(pi->pd), .n_all = all.n};
   memcpy(j.period, bw_solid_settings(pi->pd)->period, sizeof j.period);
   bw_status st = bw_comm_agree(bw_solid_comm(pi->pd), prepare(&j));
   if (st == BW_OK) {

@@ -44,7 +44,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
 {
   enum { ROWS = BW_PD_INTERFACE__ROWS };
   /* Everything an update may need, so that none allocates (but for rows of new crack faces). */
-  const size_t n = pi->n, slots = (size_t)pi->stencil.slots;
+  const size_t n = pi->n, slots = (size_t)bw_solid_max_family(pi->pd);
   bw_status st = BW_ALLOCATE(&pi->surface, n);
   BW_THEN(st, BW_ALLOCATE(&pi->first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->wall.outside, n));
@@ -97,8 +97,9 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
 static void place_walls(bw_pd_interface *pi)
 {
   const bw_pd_interface_config *c = &pi->config;
-  const double reach = pi->stencil.reach * pi->stencil.ds, tie = 1e-6 * pi->stencil.ds;
   for (size_t h = 0; h < pi->n; h++) {
+    const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
+    const double reach = s->reach * s->unit, tie = 1e-6 * s->ds;
     for (int d = 0; d < 3; d++)
       for (int side = 0; side < 2; side++) {
         if (!c->walled[d][side]) continue;
@@ -134,7 +135,7 @@ static void measure_reference(bw_pd_interface *pi)
     double n[3];
     bw_pd_interface__resolve(pi, h, true);
     const double facing = bw_pd_interface__facing_area(pi, h, &pi->fit.own_normal[3 * h]);
-    const bool known = bw_pd_interface__normal_of(pi, n); /* else a sheet open on both sides */
+    const bool known = bw_pd_interface__normal_of(pi, h, n); /* else a sheet open on both sides */
     const double side = bw_pd_interface__side_area(pi, h);
     pi->area_first[h] = known ? fmax(facing, 0.25 * side) : side; /* a ridge is a marker, too */
     total[1] += 1.0;
@@ -149,14 +150,13 @@ static void measure_reference(bw_pd_interface *pi)
 
 static bw_status build(bw_pd_interface *pi)
 {
-  BW_REQUIRE(bw_solid_settings(pi->pd)->finer.n == 0 &&
-                 bw_solid_settings(pi->pd)->finer.refine.level == 0,
-             BW_EINPUT,
-             "pd_interface: a solid with levels has particles of several spacings; surfaces and "
-             "fragments are found for one: leave levels out");
-  BW_TRY(bw_pd_interface__stencil_create(pi->pd, &pi->stencil));
-  BW_TRY(check_config(&pi->config, pi->stencil.sectors, bw_solid_settings(pi->pd)->disorder));
-  if (pi->config.n_empty == 0) pi->config.n_empty = pi->stencil.dims == 2 ? 2 : 1;
+  const int levels = bw_solid_finest(pi->pd) + 1;
+  BW_TRY(BW_ALLOCATE(&pi->stencil, (size_t)levels));
+  pi->n_stencil = levels;
+  for (int l = 0; l < levels; l++)
+    BW_TRY(bw_pd_interface__stencil_create(pi->pd, l, &pi->stencil[l]));
+  BW_TRY(check_config(&pi->config, pi->stencil->sectors, bw_solid_settings(pi->pd)->disorder));
+  if (pi->config.n_empty == 0) pi->config.n_empty = pi->stencil->dims == 2 ? 2 : 1;
   return allocate_arrays(pi);
 }
 
@@ -182,7 +182,9 @@ static bw_status establish(bw_pd_interface *pi)
 static void release_all(bw_pd_interface *p)
 {
   /* May be half built: what was never allocated is NULL. */
-  bw_pd_interface__stencil_release(&p->stencil);
+  for (int l = 0; l < p->n_stencil; l++)
+    bw_pd_interface__stencil_release(&p->stencil[l]);
+  bw_release(&p->stencil);
   void **array[] = {(void **)&p->surface,
                     (void **)&p->first,
                     (void **)&p->wall.outside,

@@ -23,6 +23,9 @@
  * along the lattice's directions (ERRATA 33): the planes that cut off the particles' own volume. On
  * ridges and edges ds/2.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
+ * Several levels: all of this by each particle's own spacing and horizon. Partners that its own
+ * horizon does not reach tell nothing, cells of another size weigh as their volume (3.45), and what
+ * has an open side is surface whatever the sectors say.
  * Sides of the domain against which the solid leans (a wall of the channel) are not surface: give
  * them as planes in the config (refused for a disordered cloud, which no plane mirrors). There
  * partners are taken as mirrored in the plane, until the particle has moved from the wall by more

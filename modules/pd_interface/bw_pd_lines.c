@@ -25,12 +25,12 @@ static const int8_t spans[][2] = {{2, 2}, {1, 1}, {2, 0}, {0, 2}, {1, 0}, {0, 1}
 /* The partner that holds some steps along lattice direction r; h itself at none; -1: nobody. */
 static int32_t partner_at(const bw_pd_interface *pi, size_t h, int r, int steps)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   if (steps == 0) return (int32_t)h;
   double xi[3];
   for (int d = 0; d < 3; d++)
     xi[d] = steps * s->ds * s->axes[r][d];
-  const int q = bw_pd_interface__slot_of(s, xi);
+  const int q = bw_pd_interface__slot_of(s, xi, s->level);
   const bool there =
       q >= 0 && pi->seen.state[q] == BW_PD_INTERFACE__INTACT && pi->seen.near[q].cross == 0;
   return there ? pi->seen.near[q].partner : -1;
@@ -43,9 +43,9 @@ void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
     uint8_t *steps = &pi->steps[3 * h + (size_t)r];
     /* Without partners on this line the element is missing: `complete` makes one. */
     end[0] = end[1] = (int32_t)h;
-    *steps = r >= pi->stencil.dims; /* across a plane: ds, for good */
+    *steps = r >= pi->stencil->dims; /* across a plane: ds, for good */
     /* The first span of the list of which both ends hold. */
-    for (size_t q = 0; r < pi->stencil.dims && q < sizeof spans / sizeof *spans; q++) {
+    for (size_t q = 0; r < pi->stencil->dims && q < sizeof spans / sizeof *spans; q++) {
       const int32_t to = partner_at(pi, h, r, spans[q][0]);
       const int32_t from = partner_at(pi, h, r, -spans[q][1]);
       if (to < 0 || from < 0) continue;
@@ -60,14 +60,14 @@ void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h)
 static void at_rest(const bw_pd_interface *pi, size_t block, lanes a[3][3])
 {
   const bw_pd_interface__lines *l = &pi->now.lines[block];
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = pi->stencil;
   /* Whole steps of the lattice ... */
   for (int r = 0; r < 3; r++)
     for (int d = 0; d < 3; d++) {
-      const double step = s->ds * s->axes[r][d];
+      const double axis = s->axes[r][d];
 #pragma omp simd
       for (int k = 0; k < ROWS; k++)
-        a[r][d][k] = step * l->steps[r][k];
+        a[r][d][k] = l->spacing[k] * axis * l->steps[r][k];
     }
   /* ... and in a cloud what its particles differ from it. */
   if (pi->now.off_lattice == NULL) return;
@@ -146,7 +146,7 @@ static void present(const bw_pd_interface *pi, size_t block, const bw_pd_motion 
 /* What the particle's line elements differ from the lattice's, in a cloud. */
 static void note_cloud(bw_pd_interface *pi, size_t row, size_t h)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = pi->stencil;
   double *more = &pi->now.off_lattice[9 * ROWS * (row / ROWS) + row % ROWS];
   for (size_t r = 0; r < 3; r++) {
     double to[3], from[3];
@@ -169,6 +169,7 @@ void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_motion *now)
     const size_t h = (size_t)pi->now.list[row], k = row % ROWS;
     bw_pd_interface__lines *l = &pi->now.lines[row / ROWS];
     if (k == 0) l->whole = row + ROWS <= pi->now.n_list;
+    l->spacing[k] = bw_solid_spacing(pi->pd, h);
     for (size_t r = 0; r < 3; r++) {
       l->steps[r][k] = pi->steps[3 * h + r];
       l->whole = l->whole && l->steps[r][k] != 0;

@@ -42,12 +42,12 @@ void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty)
   double *n = &pi->normal[3 * h];
   const double *first = &pi->first_normal[3 * h];
   /* POROUS 3.45 over what holds now. */
-  if (bw_pd_interface__normal_of(pi, n)) return;
+  if (bw_pd_interface__normal_of(pi, h, n)) return;
   /* The partners balance (a sheet): what it looked like before anything broke, or a guess. */
   if (first[0] != 0.0 || first[1] != 0.0 || first[2] != 0.0)
     memcpy(n, first, 3 * sizeof *n);
   else
-    guess_normal(&pi->stencil, empty, n);
+    guess_normal(pi->stencil, empty, n);
 }
 
 static void cross(const double a[3], const double b[3], double c[3])
@@ -95,6 +95,7 @@ static void partner_normal(const bw_pd_interface__near *near, const double all[]
 static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit_sums *sums)
 {
   const bw_pd_interface__near *near = &pi->rows.pool[pi->rows.row[h]];
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   const double *n = &all[3 * h];
   const size_t count = pi->rows.stale[h] ? 0 : pi->rows.row_n[h];
   double t[2][3], other[3];
@@ -106,7 +107,7 @@ static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit
     partner_normal(&near[q], all, other);
     if (!(dot(n, other) > 0.5)) continue; /* 60 degrees; 0 where there is no surface */
     /* Reference places: the fit is a function of the bonds that hold, not of how the body moved. */
-    const double *xi = &pi->stencil.xi[3 * near[q].slot];
+    const double *xi = &s->xi[3 * near[q].slot];
     const double f[3] = {1.0, dot(t[0], xi), dot(t[1], xi)};
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++) {
@@ -190,7 +191,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
     memcpy(n, there ? &pi->normal[3 * h] : none, sizeof n);
     if (there) sum_fit(pi, h, from, &sums);
     double bend = 0.0;
-    const double rms = there ? solve_fit(&sums, pi->stencil.dims, n, &bend) : INFINITY;
+    const double rms = there ? solve_fit(&sums, pi->stencil->dims, n, &bend) : INFINITY;
     pi->fit.bend[h] = bend; /* that of the last pass stays */
     /* First judgement: where the fit of a fit is rough, the
      * particle keeps 3.45 and is not seen any more. */

@@ -9,7 +9,7 @@ static bool reflect(const bw_pd_interface *pi, const double X0[3], const double 
                     double image[3], uint8_t *cross)
 {
   const bw_pd_interface_config *c = &pi->config;
-  const double tie = 1e-6 * pi->stencil.ds; /* a partner on the plane itself is inside */
+  const double tie = 1e-6 * pi->stencil->ds; /* a partner on the plane itself is inside */
   *cross = 0;
   for (int d = 0; d < 3; d++) {
     const double x = X0[d] + xi[d];
@@ -28,7 +28,7 @@ static bool reflect(const bw_pd_interface *pi, const double X0[3], const double 
  * bond across it counts as it is. Images read directions inside, which stay as they are. */
 static void fill_images(bw_pd_interface *pi, size_t h)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   const double *X0 = &pi->X0[3 * h];
   for (int q = 0; q < s->slots; q++) {
     double image[3], nothing[3];
@@ -39,7 +39,7 @@ static void fill_images(bw_pd_interface *pi, size_t h)
     /* A particle on the wall may be its own image. */
     const double still = sqrt(image[0] * image[0] + image[1] * image[1] + image[2] * image[2]);
     const bool itself = still < 0.25 * s->ds;
-    const int m = itself ? -2 : bw_pd_interface__slot_of(s, image);
+    const int m = itself ? -2 : bw_pd_interface__slot_of(s, image, s->other[q]);
     const bool trapped = reflect(pi, X0, image, nothing, &again);
     bw_pd_interface__near *near = &pi->seen.near[q];
     near->slot = (int16_t)q;
@@ -52,7 +52,7 @@ static void fill_images(bw_pd_interface *pi, size_t h)
     } else if (m >= 0 && !trapped) {
       pi->seen.state[q] = pi->seen.state[m];
       near->partner = pi->seen.near[m].partner;
-    } else if (m == -1 && !trapped) {
+    } else if ((m == -1 && !trapped) || s->other[q] != s->level) {
       pi->seen.state[q] = BW_PD_INTERFACE__ABSENT;
     } else { /* no mirror on this lattice (or between two walls): the wall counts as solid */
       pi->seen.state[q] = BW_PD_INTERFACE__INTACT;
@@ -77,13 +77,16 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd
 
 void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   /* Nobody is there, but for those that the solid lists. */
   memset(pi->seen.state, BW_PD_INTERFACE__ABSENT, (size_t)s->slots);
   const int family = bw_solid_links(pi->pd, h, pi->seen.link);
   for (int q = 0; q < family; q++) {
     const bw_pd_link *l = &pi->seen.link[q];
     const bool intact = l->intact || reference;
+    /* Coarser partners beyond the own horizon, whose own one h is in, tell nothing of its surface.
+     */
+    if (s->other[l->slot] != s->level && !(s->fraction[l->slot] > 0.0)) continue;
     pi->seen.state[l->slot] = intact ? BW_PD_INTERFACE__INTACT : BW_PD_INTERFACE__BROKEN;
     pi->seen.near[l->slot] = (bw_pd_interface__near){.partner = l->neighbour, .slot = l->slot};
   }
@@ -95,7 +98,7 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference)
 static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_motion *now,
                        const bw_pd_interface__near *near, double x[3])
 {
-  memcpy(x, &pi->stencil.xi[3 * near->slot], 3 * sizeof *x);
+  memcpy(x, &bw_pd_interface__stencil_of(pi, h)->xi[3 * near->slot], 3 * sizeof *x);
   if (now == NULL || near->partner < 0) return;
   const size_t l = (size_t)near->partner;
   /* In a cloud partners are not where the stencil has them. */
@@ -114,14 +117,15 @@ static void locate_one(const bw_pd_interface *pi, size_t h, const bw_pd_motion *
 
 void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *now)
 {
-  for (int q = 0; q < pi->stencil.slots; q++)
+  for (int q = 0; q < bw_pd_interface__stencil_of(pi, h)->slots; q++)
     if (pi->seen.state[q] != BW_PD_INTERFACE__ABSENT)
       locate_one(pi, h, now, &pi->seen.near[q], &pi->seen.place[3 * q]);
 }
 
-void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never)
+void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, size_t h, uint32_t *not_held,
+                                   uint32_t *never)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   uint32_t held = 0, known = 0;
   /* A direction on a border belongs to several sectors. */
   for (int q = 0; q < s->slots; q++) {
@@ -135,11 +139,11 @@ void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held
 
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi, size_t h)
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   double sum[BW_PD_INTERFACE__SECTORS] = {0.0}, broken[BW_PD_INTERFACE__SECTORS] = {0.0};
   const double opening = bw_pd_interface__opening(pi, h);
   uint32_t empty, never;
-  bw_pd_interface__bare_sectors(pi, &empty, &never);
+  bw_pd_interface__bare_sectors(pi, h, &empty, &never);
   /* Only sectors without an intact bond can be empty; their broken partners tell how far. */
   for (int q = 0; q < s->slots; q++) {
     if (pi->seen.state[q] != BW_PD_INTERFACE__BROKEN || (s->sector_of[q] & empty) == 0) continue;
@@ -153,9 +157,9 @@ uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi, size_t h)
   return empty;
 }
 
-bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3])
+bool bw_pd_interface__normal_of(const bw_pd_interface *pi, size_t h, double n[3])
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   double mean[3] = {0.0, 0.0, 0.0}, weight = 0.0;
   /* POROUS 3.45: minus the centroid of what is there, in the reference shape. */
   for (int q = 0; q < s->slots; q++) {
@@ -177,58 +181,65 @@ bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3])
  * about the face itself, cut off linearly over the last ds. Half in the solid and half outside it
  * sees no bias from curvature (a normal at the particle has one of 0.2 ds times the sum of the
  * principal curvatures); with m = 3 the ball just fits into the family. */
-static double face_projection(const bw_pd_interface *pi, const double e[3])
+static double face_projection(const bw_pd_interface__stencil *s, const uint8_t state[],
+                              const double e[3])
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
   const double half = 0.5 * s->ds, c[3] = {half * e[0], half * e[1], half * e[2]};
-  const double radius = s->family - 0.5 * s->ds;
   double v[3] = {-c[0] * s->ds, -c[1] * s->ds, -c[2] * s->ds}; /* the particle itself, weight ds */
   /* Centroid, about the face, of the partners in the ball. */
   for (int q = 0; q < s->slots; q++) {
-    if (pi->seen.state[q] != BW_PD_INTERFACE__INTACT) continue;
-    const double *xi = &s->xi[3 * q];
+    if (state[q] != BW_PD_INTERFACE__INTACT) continue;
+    /* A cell of another size weighs as its volume, and the rim cuts it off over its own width. */
+    const double ds = ldexp(s->ds, s->level - s->other[q]), radius = s->family - s->ds + 0.5 * ds;
+    const double face = ldexp(1.0, (s->dims - 1) * (s->level - s->other[q])), *xi = &s->xi[3 * q];
     const double x[3] = {xi[0] - c[0], xi[1] - c[1], xi[2] - c[2]};
     const double weight = radius - sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     for (int d = 0; d < 3; d++)
-      v[d] += fmin(fmax(weight, 0.0), s->ds) * x[d];
+      v[d] += face * fmin(fmax(weight, 0.0), ds) * x[d];
   }
   const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   return fabs(v[0] * e[0] + v[1] * e[1] + v[2] * e[2]) / length;
 }
 
-/* The open sides of the particle resolved last: outward unit normals e, (6,3) at most. */
-static int open_sides(const bw_pd_interface *pi, double e[][3])
+/* The open sides of h, resolved last: outward unit normals e, (6,3) at most. */
+static int open_sides(const bw_pd_interface *pi, size_t h, double e[][3])
 {
-  const bw_pd_interface__stencil *s = &pi->stencil;
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
+  unsigned closed = 0;
   int open = 0;
-  /* A side is open when its neighbour on the lattice is missing altogether. */
+  /* A side is open when nobody ever touched it: cells are split as wholes, so that one finer
+   * neighbour there is as good as all. */
+  for (int q = 0; q < s->slots; q++)
+    if (pi->seen.state[q] != BW_PD_INTERFACE__ABSENT) closed |= s->faces[q];
   for (int r = 0; r < s->dims; r++)
     for (int side = -1; side <= 1; side += 2) {
-      double xi[3];
+      if (closed >> (2 * r + (side > 0)) & 1u) continue;
       for (int d = 0; d < 3; d++)
-        xi[d] = side * s->ds * s->axes[r][d];
-      const int q = bw_pd_interface__slot_of(s, xi);
-      if (q < 0 || pi->seen.state[q] != BW_PD_INTERFACE__ABSENT) continue;
-      for (int d = 0; d < 3; d++)
-        e[open][d] = xi[d] / s->ds;
+        e[open][d] = side * s->axes[r][d];
       open++;
     }
   return open;
 }
 
+bool bw_pd_interface__has_open_side(const bw_pd_interface *pi, size_t h)
+{
+  double e[6][3];
+  return open_sides(pi, h, e) > 0;
+}
+
 double bw_pd_interface__open_area(const bw_pd_interface *pi, size_t h)
 {
   double e[6][3], area = 0.0;
-  const int open = open_sides(pi, e);
+  const int open = open_sides(pi, h, e);
   for (int f = 0; f < open; f++)
-    area += face_projection(pi, e[f]);
+    area += face_projection(bw_pd_interface__stencil_of(pi, h), pi->seen.state, e[f]);
   return area * bw_pd_interface__side_area(pi, h);
 }
 
 double bw_pd_interface__facing_area(const bw_pd_interface *pi, size_t h, const double n[3])
 {
   double e[6][3], area = 0.0;
-  const int open = open_sides(pi, e);
+  const int open = open_sides(pi, h, e);
   for (int f = 0; f < open; f++)
     area += e[f][0] * n[0] + e[f][1] * n[1] + e[f][2] * n[2];
   return area * bw_pd_interface__side_area(pi, h);

@@ -80,11 +80,39 @@ static bool lattice_offset(const bw_pd_interface__stencil *s, const double xi[3]
   bool on = true;
   for (int r = 0; r < 3; r++) {
     const double *a = s->axes[r];
-    const double q = (xi[0] * a[0] + xi[1] * a[1] + xi[2] * a[2]) / s->ds;
+    const double q = (xi[0] * a[0] + xi[1] * a[1] + xi[2] * a[2]) / s->unit;
     o[r] = (int)lround(q);
     on = on && fabs(q - o[r]) < 0.25;
   }
   return on;
+}
+
+/* Can a particle of level `other` be at an offset? Of the own level at whole spacings; of another
+ * one at odd multiples of half the finer spacing (pd_level.h). */
+static bool may_be(const bw_pd_interface__stencil *s, const int o[3], int other)
+{
+  const bool own = other == s->level;
+  const int finer = other > s->level ? other : s->level;
+  const int step = s->finest == 0 ? 1 : 1 << (s->finest - finer + own);
+  bool can = true;
+  for (int d = 0; d < s->dims; d++)
+    can = can && o[d] % step == 0 && (own || o[d] / step % 2 != 0);
+  return can;
+}
+
+/* The faces of the own cell that a cell at an offset touches. */
+static uint8_t faces_of(const bw_pd_interface__stencil *s, const int o[3], int other)
+{
+  /* Between the centres of cells side by side, in units. */
+  const double apart = 0.5 * (s->ds + ldexp(s->ds, s->level - other)) / s->unit;
+  unsigned bits = 0;
+  for (int r = 0; r < s->dims; r++) {
+    bool beside = fabs(abs(o[r]) - apart) < 0.25;
+    for (int d = 0; d < s->dims; d++)
+      beside = beside && (d == r || abs(o[d]) < apart - 0.25);
+    if (beside) bits |= 1u << (2 * r + (o[r] > 0));
+  }
+  return (uint8_t)bits;
 }
 
 static size_t slot_index(const bw_pd_interface__stencil *s, const int o[3])
@@ -94,30 +122,50 @@ static size_t slot_index(const bw_pd_interface__stencil *s, const int o[3])
          (size_t)(o[0] + s->reach);
 }
 
-int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3])
+int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3], int other)
 {
   int o[3];
-  /* Within a quarter of a spacing of a site, else it is none. */
-  if (!lattice_offset(s, xi, o)) return -2;
+  /* Within a quarter of a unit of a site, else it is none. */
+  if (!lattice_offset(s, xi, o) || !may_be(s, o, other)) return -2;
   for (int d = 0; d < 3; d++)
     if (abs(o[d]) > s->reach) return -1;
   return s->slot_at[slot_index(s, o)];
 }
 
-bw_status bw_pd_interface__stencil_create(const bw_solid *pd, bw_pd_interface__stencil *s)
+/* The farthest component of an offset, in units. */
+static int farthest(const bw_solid *pd, const bw_pd_interface__stencil *s)
+{
+  const bw_solid_config *c = bw_solid_settings(pd);
+  /* A cloud's partners may stand in sites beyond the horizon, by twice the disorder. */
+  int most = s->finest > 0 ? 0 : (int)floor(c->horizon_ratio + 0.5 + 2.0 * c->disorder);
+  for (int q = 0; q < s->slots && s->finest > 0; q++) {
+    int o[3];
+    lattice_offset(s, bw_solid_leads(pd, s->level, q).xi, o);
+    for (int d = 0; d < 3; d++)
+      most = abs(o[d]) > most ? abs(o[d]) : most;
+  }
+  return most;
+}
+
+bw_status bw_pd_interface__stencil_create(const bw_solid *pd, int level,
+                                          bw_pd_interface__stencil *s)
 {
   const bw_solid_config *c = bw_solid_settings(pd);
   memset(s, 0, sizeof *s);
   s->dims = c->geometry == BW_PD_3D ? 3 : 2;
-  s->ds = c->ds;
-  s->family = c->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
+  s->level = level;
+  s->finest = bw_solid_finest(pd);
+  s->ds = ldexp(c->ds, -level);
+  s->unit = s->finest > 0 ? ldexp(c->ds, -s->finest - 1) : c->ds;
+  s->family = s->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
-  s->slots = bw_solid_max_family(pd);
-  /* A cloud's partners may stand in sites beyond the horizon, by twice the disorder. */
-  s->reach = (int)floor(c->horizon_ratio + 0.5 + 2.0 * c->disorder);
+  s->slots = bw_solid_directions(pd, level);
+  s->reach = farthest(pd, s);
   const size_t n = (size_t)s->slots, w = (size_t)(2 * s->reach + 1);
   BW_TRY(BW_ALLOCATE(&s->xi, 3 * n));
   BW_TRY(BW_ALLOCATE(&s->fraction, n));
+  BW_TRY(BW_ALLOCATE(&s->other, n));
+  BW_TRY(BW_ALLOCATE(&s->faces, n));
   BW_TRY(BW_ALLOCATE(&s->sector_of, n));
   BW_TRY(BW_ALLOCATE(&s->slot_at, w * w * w));
   /* No slot but for the stencil's own offsets. */
@@ -127,12 +175,15 @@ bw_status bw_pd_interface__stencil_create(const bw_solid *pd, bw_pd_interface__s
   /* Every direction of the solid's stencil finds its sectors, once. */
   for (int q = 0; q < s->slots; q++) {
     int o[3];
-    memcpy(&s->xi[3 * q], bw_solid_stencil_offset(pd, q), 3 * sizeof(double));
-    s->fraction[q] = bw_solid_stencil_fraction(pd, q);
+    const bw_solid_direction way = bw_solid_leads(pd, level, q);
+    memcpy(&s->xi[3 * q], way.xi, sizeof way.xi);
+    s->fraction[q] = way.volume;
+    s->other[q] = (uint8_t)way.other;
     const bool on = lattice_offset(s, &s->xi[3 * q], o);
     BW_ASSERT(on);
     (void)on;
     s->slot_at[slot_index(s, o)] = (int16_t)q;
+    s->faces[q] = faces_of(s, o, way.other);
     s->sector_of[q] = s->dims == 2 ? sectors_in_plane(o) : sectors_in_space(o);
   }
   return BW_OK;
@@ -142,6 +193,8 @@ void bw_pd_interface__stencil_release(bw_pd_interface__stencil *s)
 {
   bw_release(&s->xi);
   bw_release(&s->fraction);
+  bw_release(&s->other);
+  bw_release(&s->faces);
   bw_release(&s->sector_of);
   bw_release(&s->slot_at);
 }

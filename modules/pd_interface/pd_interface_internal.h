@@ -4,25 +4,31 @@
 
 enum { BW_PD_INTERFACE__SECTORS = 24 }; /* 3D; 8 of them are used in 2D */
 
-/* Directions of the stencil and the sectors they belong to. `slot_at` maps a lattice offset
- * (each component -reach..reach) to its slot, -1: none. */
+/* Directions of the stencil of a level and the sectors they belong to. `slot_at` maps an offset in
+ * `unit` (each component -reach..reach) to its slot, -1: none. */
 typedef struct {
   int dims, sectors, slots, reach;
+  int level, finest;   /* of the owner; of the body's finest particles */
   double ds, family;   /* spacing; radius of the family [L] */
+  double unit;         /* of an offset [L]: ds, with several levels half of the finest one */
   double axes[3][3];   /* lattice directions */
   double *xi;          /* (slots,3) [L] */
-  double *fraction;    /* (slots) Gamma */
+  double *fraction;    /* (slots) part of the partner's cell in the horizon, over the own volume */
+  uint8_t *other;      /* (slots) level of the partner */
+  uint8_t *faces;      /* (slots) bit 2 r + (upper side): touches the own cell's face there */
   uint32_t *sector_of; /* (slots) bit s: the direction lies in sector s */
   int16_t *slot_at;    /* ((2 reach + 1)^3) */
   uint32_t adjacent[BW_PD_INTERFACE__SECTORS];
   double direction[BW_PD_INTERFACE__SECTORS][3]; /* middle of the sector, unit */
 } bw_pd_interface__stencil;
 
-bw_status bw_pd_interface__stencil_create(const bw_solid *pd, bw_pd_interface__stencil *s);
+bw_status bw_pd_interface__stencil_create(const bw_solid *pd, int level,
+                                          bw_pd_interface__stencil *s);
 void bw_pd_interface__stencil_release(bw_pd_interface__stencil *s);
 
-/* Slot of the direction xi [L]; -1: none, -2: xi is no lattice offset (within ds/4). Local. */
-int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3]);
+/* Slot of the direction xi [L] to a particle of a level; -1: none, -2: no such particle can be
+ * there (within a quarter of a unit). Local. */
+int bw_pd_interface__slot_of(const bw_pd_interface__stencil *s, const double xi[3], int other);
 
 /* The sectors of `empty` that touch its lowest one, directly or through others of it. Local. */
 uint32_t bw_pd_interface__group(const bw_pd_interface__stencil *s, uint32_t empty);
@@ -44,6 +50,7 @@ typedef struct {
   int32_t end[3][2][BW_PD_INTERFACE__ROWS]; /* storage places: to, from */
   double hold[3][BW_PD_INTERFACE__ROWS];    /* n0.a0: what stays along each [L] */
   uint8_t steps[3][BW_PD_INTERFACE__ROWS];  /* lattice steps between the ends; 0: missing */
+  double spacing[BW_PD_INTERFACE__ROWS];    /* of the row's particle [L] */
   bool whole;                               /* none is missing in any row */
 } bw_pd_interface__lines;
 
@@ -112,10 +119,11 @@ typedef struct {
 struct bw_pd_interface {
   bw_solid *pd; /* borrowed */
   bw_pd_interface_config config;
-  bw_pd_interface__stencil stencil;
-  int64_t revision;     /* of the solid that all this is for */
-  size_t n, n_extended; /* own particles; own and copies */
-  double area_total;    /* of the reference shape [L^2] */
+  int n_stencil;
+  bw_pd_interface__stencil *stencil; /* (n_stencil) a row per level */
+  int64_t revision;                  /* of the solid that all this is for */
+  size_t n, n_extended;              /* own particles; own and copies */
+  double area_total;                 /* of the reference shape [L^2] */
   double *area_first;   /* (n) of those that are surface in the reference shape [L^2] */
   bool *surface;        /* (n) now */
   bool *first;          /* (n) in the reference shape */
@@ -134,6 +142,13 @@ struct bw_pd_interface {
   bw_pd_interface__fit fit;
 };
 
+/* Directions of an own particle. */
+static inline const bw_pd_interface__stencil *bw_pd_interface__stencil_of(const bw_pd_interface *pi,
+                                                                          size_t h)
+{
+  return pi->stencil + (pi->n_stencil > 1 ? bw_solid_level(pi->pd, h) : 0);
+}
+
 /* Mean distance that opens a sector of an own particle; area of one side of it, as of a crack face.
  * Local. */
 static inline double bw_pd_interface__opening(const bw_pd_interface *pi, size_t h)
@@ -144,7 +159,7 @@ static inline double bw_pd_interface__opening(const bw_pd_interface *pi, size_t 
 static inline double bw_pd_interface__side_area(const bw_pd_interface *pi, size_t h)
 {
   const double ds = bw_solid_spacing(pi->pd, h);
-  return ds * (pi->stencil.dims == 2 ? bw_solid_settings(pi->pd)->thickness : ds);
+  return ds * (pi->stencil->dims == 2 ? bw_solid_settings(pi->pd)->thickness : ds);
 }
 
 enum { BW_PD_INTERFACE__ABSENT, BW_PD_INTERFACE__INTACT, BW_PD_INTERFACE__BROKEN };
@@ -159,14 +174,18 @@ void bw_pd_interface__resolve(bw_pd_interface *pi, size_t h, bool reference);
 /* Fills place of the particle resolved last, h; now NULL: in the reference shape. */
 void bw_pd_interface__locate(bw_pd_interface *pi, size_t h, const bw_pd_motion *now);
 
-/* Of the particle resolved last: bits of the sectors where nothing intact is, and of those where
- * nothing ever was; located too: bits of its empty sectors (3.42). Local. */
-void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, uint32_t *not_held, uint32_t *never);
+/* Of h, resolved last: bits of the sectors where nothing intact is, and of those where nothing ever
+ * was; located too: bits of its empty sectors (3.42). Local. */
+void bw_pd_interface__bare_sectors(const bw_pd_interface *pi, size_t h, uint32_t *not_held,
+                                   uint32_t *never);
 uint32_t bw_pd_interface__empty_sectors(const bw_pd_interface *pi, size_t h);
 
-/* Unit normal 3.45 of the particle resolved last in the reference shape; false, and n unchanged,
+/* Unit normal 3.45 of h, resolved last, in the reference shape; false, and n unchanged,
  * when its present partners balance. Local. */
-bool bw_pd_interface__normal_of(const bw_pd_interface *pi, double n[3]);
+bool bw_pd_interface__normal_of(const bw_pd_interface *pi, size_t h, double n[3]);
+
+/* Has h, resolved last, a side that nobody ever touched? Local. */
+bool bw_pd_interface__has_open_side(const bw_pd_interface *pi, size_t h);
 
 /* Area [L^2] of the open lattice faces of the particle resolved last, each projected on the
  * normal there (reference shape). Local. */

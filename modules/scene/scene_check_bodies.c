@@ -137,15 +137,18 @@ static bw_status check_cracks(const bw_scene_config *c, const bw_scene_body *b,
   return BW_OK;
 }
 
-/* Finer boxes: of bodies that deform by bonds, alone on their lattice, which is not turned. */
+/* Finer boxes: of bodies that deform by bonds, on a lattice that is not turned. */
 static bw_status check_levels(const bw_scene_config *c, const bw_scene_body *b,
                               const bw_scene__shapes *s)
 {
   if (b->n_levels == 0 && !b->has_refine) return BW_OK;
-  BW_REQUIRE(bw_scene__deforms(b) && !c->has_domain && b->turn == 0, BW_EINPUT,
-             "bodies.%s.%s: they are of bodies that deform, outside of a flow, without turn; "
-             "leave them out",
+  BW_REQUIRE(bw_scene__deforms(b) && !bw_scene__has_particles(c) && b->turn == 0, BW_EINPUT,
+             "bodies.%s.%s: they are of bodies that deform, outside of a fluid of particles, "
+             "without turn; leave them out",
              b->name, b->n_levels > 0 ? "levels" : "refine");
+  BW_REQUIRE(!b->has_refine || !c->has_domain, BW_EINPUT,
+             "bodies.%s.refine: a flow does not follow levels that change; give levels that stay",
+             b->name);
   for (int q = 0; q < b->n_levels; q++)
     BW_REQUIRE(meets(s, bw_scene__planar(c) ? 2 : 3, b->levels[q].from, b->levels[q].to), BW_EINPUT,
                "bodies.%s.levels.%d: nothing of the body is in it; it goes from (%g, %g, %g) to "

@@ -40,9 +40,9 @@ static bw_status refine_of(const bw_scene *s, const bw_scene__solid *q, bw_solid
                "bodies.%s.refine: contact does not follow levels that change; give self_contact: "
                "false, or contact: {between: none}",
                b->name);
-    BW_REQUIRE(!bw_scene__asked(s, "crack_tip") && !bw_scene__asked(s, "fragments"), BW_EINPUT,
-               "bodies.%s.refine: gauges of crack_tip or fragments do not follow levels that "
-               "change; leave them out",
+    BW_REQUIRE(!bw_scene__asked(s, "crack_tip"), BW_EINPUT,
+               "bodies.%s.refine: gauges of crack_tip do not follow levels that change; leave them "
+               "out",
                b->name);
     for (int l = 0; l < s->config.n_loads; l++)
       BW_REQUIRE(!bw_scene__in_cracks(&s->config.loads[l]), BW_EINPUT,

@@ -271,6 +271,17 @@ int bw_solid_max_family(const bw_solid *solid);
 const double *bw_solid_stencil_offset(const bw_solid *solid, int slot);
 /* Gamma of a direction [-]; in a cloud that of the sites' distance. */
 double bw_solid_stencil_fraction(const bw_solid *solid, int slot);
+/* Those two are of level 0 alone. Of any level, 0 .. bw_solid_finest: how many directions its
+ * stencil has, and where one leads. Local. */
+typedef struct {
+  double xi[3];  /* from site to site [L] */
+  double volume; /* what of the partner's cell is within the owner's horizon, over the owner's own
+                    volume [-]: Gamma where both are of one level */
+  int other;     /* level of the partner */
+} bw_solid_direction;
+int bw_solid_finest(const bw_solid *solid);
+int bw_solid_directions(const bw_solid *solid, int level);
+bw_solid_direction bw_solid_leads(const bw_solid *solid, int level, int slot);
 
 /* Own particles and copies. id: global id; X: present position, copies shifted to where they act.
  * n_extended >= count; borrowed until the next step. Collective (updates the copies). */

@@ -193,6 +193,23 @@ double bw_solid_stencil_fraction(const bw_solid *s, int slot)
   return s->body->level[0].stencil.fraction[slot];
 }
 
+int bw_solid_finest(const bw_solid *s)
+{
+  return s->body->finest;
+}
+
+int bw_solid_directions(const bw_solid *s, int level)
+{
+  return s->body->level[level].stencil.n;
+}
+
+bw_solid_direction bw_solid_leads(const bw_solid *s, int level, int slot)
+{
+  const bw_pd_stencil *stencil = &s->body->level[level].stencil;
+  const double *xi = stencil->xi + 3 * slot;
+  return (bw_solid_direction){{xi[0], xi[1], xi[2]}, stencil->volume[slot], stencil->other[slot]};
+}
+
 bw_pd_extended bw_solid_get_extended(bw_solid *s)
 {
   return bw_pd_body_get_extended(s->body);

@@ -6,15 +6,25 @@
 #include <math.h>
 
 static const double turned[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}};
+/* With the corner at the origin twice as fine. */
+static bw_solid_config finer(bool planar)
+{
+  bw_solid_config c = body_config(planar);
+  c.surface_correction = BW_PD_SURFACE_NONE;
+  c.finer.n = 1;
+  c.finer.box[0] = (bw_pd_box){1, {-1, -1, -1}, {3, 3, 3}};
+  return c;
+}
+
 static const double turned_in_plane[3][3] = {{0.8, -0.6, 0}, {0.6, 0.8, 0}, {0, 0, 1}};
 
 /* Of a body that has turned already. */
-static void check_spin(bool planar, const bw_shape *shape, const double spin[3], double scale)
+static void check_spin(const bw_solid_config *c, const bw_shape *shape, const double spin[3],
+                       double scale)
 {
-  const double(*R)[3] = planar ? turned_in_plane : turned;
+  const double(*R)[3] = c->geometry != BW_PD_3D ? turned_in_plane : turned;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_solid_config c = body_config(planar);
-  body b = body_create(1, shape, &c, &ic);
+  body b = body_create(1, shape, c, &ic);
   const size_t n = bw_solid_count(b.pd);
   double *X = NULL, *V = NULL, *found = NULL;
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
@@ -42,35 +52,40 @@ static void check_spin(bool planar, const bw_shape *shape, const double spin[3],
 
 START_TEST(rigid_rotation_is_exact)
 {
+  const bw_solid_config space = body_config(false), plane = body_config(true);
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {6, 5, 4}},
                  sheet = {.kind = BW_SHAPE_BOX, .upper = {7, 7, 1}},
                  disc = {.kind = BW_SHAPE_CYLINDER, .centre = {5, 5}, .radius = 4, .axis = 2};
-  check_spin(false, &block, (double[3]){0.2, -0.1, 0.4}, 1.0);
-  check_spin(false, &sheet, (double[3]){0.2, -0.1, 0.4}, 1.0);
-  check_spin(true, &disc, (double[3]){0.0, 0.0, 0.4}, 1.0);
+  check_spin(&space, &block, (double[3]){0.2, -0.1, 0.4}, 1.0);
+  check_spin(&space, &sheet, (double[3]){0.2, -0.1, 0.4}, 1.0);
+  check_spin(&plane, &disc, (double[3]){0.0, 0.0, 0.4}, 1.0);
+  const bw_solid_config space2 = finer(false), plane2 = finer(true);
+  check_spin(&space2, &block, (double[3]){0.2, -0.1, 0.4}, 1.0);
+  check_spin(&plane2, &disc, (double[3]){0.0, 0.0, 0.4}, 1.0);
 }
 END_TEST
 
 /* About a rod's own axis, and for a lone particle, there is nothing to tell: zero, not noise. */
 START_TEST(no_inertia_no_spin)
 {
+  const bw_solid_config space = body_config(false), plane = body_config(true);
   const bw_shape rod = {.kind = BW_SHAPE_BOX, .upper = {7, 1, 1}},
                  pair = {.kind = BW_SHAPE_BOX, .upper = {2, 1, 1}},
                  lone = {.kind = BW_SHAPE_BOX, .upper = {1, 1, 1}};
-  check_spin(false, &rod, (double[3]){0.2, 0.0, 0.0}, 0.0);
-  check_spin(true, &rod, (double[3]){0.0, 0.0, 0.4}, 1.0); /* in a plane there is */
-  check_spin(false, &pair, (double[3]){0.2, 0.1, 0.3}, 0.0);
-  check_spin(false, &lone, (double[3]){0.2, 0.1, 0.3}, 0.0);
+  check_spin(&space, &rod, (double[3]){0.2, 0.0, 0.0}, 0.0);
+  check_spin(&plane, &rod, (double[3]){0.0, 0.0, 0.4}, 1.0); /* in a plane there is */
+  check_spin(&space, &pair, (double[3]){0.2, 0.1, 0.3}, 0.0);
+  check_spin(&space, &lone, (double[3]){0.2, 0.1, 0.3}, 0.0);
 }
 END_TEST
 
 /* Random moments and velocities: what bears the moments has no resultant, their sum as moment, and
  * their power. */
-static void check_twist(bool planar, const bw_shape *shape)
+static void check_twist(const bw_solid_config *c, const bw_shape *shape)
 {
+  const bool planar = c->geometry != BW_PD_3D;
   const bw_pd_interface_config ic = bw_pd_interface_config_default();
-  const bw_solid_config c = body_config(planar);
-  body b = body_create(1, shape, &c, &ic);
+  body b = body_create(1, shape, c, &ic);
   const size_t n = bw_solid_count(b.pd), rows = bw_pd_interface_surface(b.pi).n;
   double *X = NULL, *V = NULL, *M = NULL, *spin = NULL, *F = NULL, sum[2][7] = {{0.0}};
   bw_check_ok(BW_ALLOCATE(&X, 3 * n));
@@ -113,14 +128,18 @@ static void check_twist(bool planar, const bw_shape *shape)
 
 START_TEST(moments_are_borne_as_the_surface_turns)
 {
+  const bw_solid_config space = body_config(false), plane = body_config(true);
   const bw_shape block = {.kind = BW_SHAPE_BOX, .upper = {6, 5, 4}},
                  sheet = {.kind = BW_SHAPE_BOX, .upper = {7, 7, 1}},
                  disc = {.kind = BW_SHAPE_CYLINDER, .centre = {5, 5}, .radius = 4, .axis = 2},
                  beam = {.kind = BW_SHAPE_BOX, .upper = {7, 1, 1}};
-  check_twist(false, &block);
-  check_twist(false, &sheet);
-  check_twist(true, &disc);
-  check_twist(true, &beam);
+  check_twist(&space, &block);
+  check_twist(&space, &sheet);
+  check_twist(&plane, &disc);
+  check_twist(&plane, &beam);
+  const bw_solid_config space2 = finer(false), plane2 = finer(true);
+  check_twist(&space2, &block);
+  check_twist(&plane2, &disc);
 }
 END_TEST
 

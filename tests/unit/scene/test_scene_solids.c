@@ -234,6 +234,19 @@ START_TEST(levels)
                                     " levels: {level: 1, from: [0, 0], to: [1, 1]}}}\n"
                                     "phases: {until: 0.5}\n"));
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "turn"));
+  /* In a flow: the plate is pushed along the stream, and moves that way. */
+#define IN_FLOW(finer)                                                                             \
+  "domain: {length: [2, 1, 0.1], cells: [20, 10, 1]}\nfluid: {density: 1, viscosity: 0.1, sides: " \
+  "{x: {lower: {kind: inflow, profile: poiseuille, mean: 1}, upper: {kind: outflow}}, y: {lower: " \
+  "{kind: wall}, upper: {kind: wall}}}}\nmaterials: {m: {density: 10, young_modulus: 1.0e3}}\n"    \
+  "numerics: {surface_correction: none}\nbodies: {a: {shape: {box: {from: [0.5, -0.2], to: [0.8, " \
+  "0.5]}}, material: m, motion: elastic, spacing: 0.1, held: {side: y_lower, layers: 2}, " finer   \
+  "}}\nphases: {until: 0.2}\ngauges: {v: {body: a, of: velocity}, d: {body: a, of: force}}\n"
+  bw_scene *s = made(IN_FLOW("levels: {level: 1, from: [0.4, 0.3], to: [0.9, 0.6]}"));
+  run(s);
+  ck_assert_double_gt(gauge(s, "d.reaction.x"), 0.0);
+  ck_assert_double_gt(gauge(s, "v.x"), 0.0);
+  bw_scene_destroy(&s);
 }
 END_TEST
 
@@ -248,7 +261,8 @@ START_TEST(refine)
   " cracks: {from: [-0.1, 0.6], to: [0.5, 0.6]}, refine: {level: 1}}}\nloads:\n"                   \
   "  - {on: a, kind: traction, where: y_upper, value: [1, 2.5]}\n"                                 \
   "  - {on: a, kind: traction, where: y_lower, value: [0, -2.5]}\n"                                \
-  "phases: {until: 0.4}\ngauges: {v: {body: a, of: velocity}, e: {of: energy}" more "}\n"
+  "phases: {until: 0.4}\ngauges: {v: {body: a, of: velocity}, e: {of: energy}, f: {of: "           \
+  "fragments}" more "}\n"
   bw_scene *s = made(REFINED(""));
   const int64_t few = bw_solid_total(s->solid[0].solid);
   ck_assert_int_gt(few, 16 * 12); /* the crack's tip is fine */
@@ -261,11 +275,15 @@ START_TEST(refine)
   ck_assert_int_eq(bw_solid_total(s->solid[0].solid), bw_solid_total(other->solid[0].solid));
   bw_check_near(gauge(s, "v.x"), 1 * 1.6 * 2 * 0.4 / (3 * 1.92 * 2), 10 * TINY);
   bw_check_near(gauge(other, "v.y"), gauge(s, "v.y"), 0.0);
+  bw_check_near(gauge(other, "f"), gauge(s, "f"), 0.0);
+  ck_assert_double_ge(gauge(s, "f"), 2); /* the crack has gone through */
   bw_check_near(gauge(other, "e.elastic"), gauge(s, "e.elastic"), 1e2 * BW_REAL_EPSILON);
   bw_scene_destroy(&s);
   bw_scene_destroy(&other);
   ck_assert_ptr_null(scene_of(REFINED(", t: {body: a, of: crack_tip, origin: [0.5, 0.6]}")));
   ck_assert_ptr_nonnull(strstr(bw_last_message(), "refine: gauges of crack_tip"));
+  ck_assert_ptr_null(scene_of(IN_FLOW("refine: {level: 1}")));
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "refine: a flow"));
 }
 END_TEST
 

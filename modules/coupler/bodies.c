@@ -2,6 +2,7 @@
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
 #include <string.h>
 
@@ -63,6 +64,7 @@ void bw_coupler__push_solid(bw_coupler *c)
     }
   }
   bw_solid_set_force(c->solid, c->V);
+  if (c->films != NULL) bw_coupler__solid_films_base(c, c->V);
 }
 
 /* Is the whole cube of particle i, at x, beyond an outflow (open), or any side of the box? */

@@ -2,6 +2,7 @@
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,7 +22,8 @@ bw_coupler_config bw_coupler_config_default(void)
                              .virtual_mass = 1.0,
                              .coupling_iterations = 1,
                              .coupling_residual = 1e-4,
-                             .check_book = true};
+                             .check_book = true,
+                             .films = {.limit = NAN, .roughness = NAN, .least = -INFINITY}};
 }
 
 /* Of solids in fluids, in reason: foam in mercury, osmium in a thin gas. */
@@ -104,7 +106,8 @@ static bw_status create_parts(bw_coupler *c)
   if (c->config.coupling_iterations > 1 && c->config.load == BW_LOAD_REACTION)
     BW_TRY(bw_ibm_mdf_create(grid, &ibm, &c->inside_fluid));
   BW_TRY(bw_probe_create(grid, &probe, &c->probe));
-  return bw_pd_interface_create(c->solid, &surface, &c->interface);
+  BW_TRY(bw_pd_interface_create(c->solid, &surface, &c->interface));
+  return c->config.films.on ? bw_coupler__solid_films_create(c) : BW_OK;
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
@@ -152,6 +155,7 @@ static bw_status particle_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->id, n));
   if (n > 0) memcpy(c->id, bw_solid_id(c->solid), n * sizeof *c->id);
   c->events = -1; /* not asked yet */
+  if (c->films != NULL) BW_TRY(bw_coupler__solid_films_rows(c));
   /* Iterations repeat a step from a state that has to be kept. */
   return c->config.coupling_iterations > 1 ? bw_coupler__iteration_create(c) : BW_OK;
 }
@@ -293,6 +297,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
   bw_timer_destroy(&c->timer);
   bw_release(&c->p_mean);
   bw_release(&c->inside);
+  bw_coupler__solid_films_destroy(&c->films);
   bw_pd_interface_destroy(&c->interface);
   bw_probe_destroy(&c->probe);
   bw_ibm_mdf_destroy(&c->ibm);

@@ -71,6 +71,7 @@
  * otherwise. */
 #pragma once
 #include "bw_checkpoint.h"
+#include "bw_coupler_films.h"
 #include "bw_ibm_mdf.h"
 #include "bw_log.h"
 #include "bw_ns_channel.h"
@@ -125,6 +126,7 @@ typedef struct {
   bool count_work;   /* work_given, work_late of the report (an exchange a step) default false */
   bool walled[3][2]; /* [direction][lower, upper]: sides of the box the solid leans on, where it
                         has no surface                                     default false */
+  bw_coupler_films films; /* between faces of the solid, and walls           default none */
 } bw_coupler_config;
 
 /* Defaults as above, rho and nu NaN. Pure. */
@@ -184,8 +186,13 @@ typedef struct {
   double work_received;           /* by the solid from the load since the start; given = unseen +
                                      late + received but for what the sampling of the motion makes,
                                      of the order of the step (book.c) [M L^2/T^2] */
-  double slip_rms;                /* velocity mismatch at the markers after forcing [L/T] */
-  double slip;                    /* that over the largest speed of inflows, walls and bodies, or of
+  double work_film;         /* taken by films since the start, beside what the load brings: the
+                                     solid's ledger has it in external [M L^2/T^2] */
+  int64_t film_nodes;       /* surface points with a film; 0 without films */
+  double film_gap;          /* the least of their gaps [L]; INFINITY: no film */
+  double film_pressure;     /* their largest pressure [M/(L T^2)] */
+  double slip_rms;          /* velocity mismatch at the markers after forcing [L/T] */
+  double slip;              /* that over the largest speed of inflows, walls and bodies, or of
                                      the fluid's mean where all of them rest [-] */
   double leak;              /* flux through the surface, (1/2) sum |(U - V).N| A, over that past
                                      it, the same speed times the largest of the three frontal areas
@@ -236,6 +243,17 @@ bw_timer *bw_coupler_timer(bw_coupler *c);
 
 /* The solid's interface, for fragments and the surface; borrowed. Local. */
 bw_pd_interface *bw_coupler_edit_interface(bw_coupler *c);
+/* load (n,3): the force of the fluid on each own particle of the solid in the last step, not yet
+ * relaxed, with films, without weight [M L/T^2]; nothing of a solid that was held. Local. */
+void bw_coupler_get_load(const bw_coupler *c, double load[]);
+/* What films have taken since the start, as work_film of the report [M L^2/T^2]. Collective. */
+double bw_coupler_film_energy(const bw_coupler *c);
+/* The least gap of a film in the last step, as in the report [L]; INFINITY: there was none.
+ * Local. */
+double bw_coupler_film_gap(const bw_coupler *c);
+/* What flows in the films of the last step through the plane through x (3) with the normal n (3)
+ * [L^3/T]; the same on all ranks. Local. */
+double bw_coupler_film_flux(const bw_coupler *c, const double x[3], const double n[3]);
 /* The forcing, for its cost and report; borrowed. Local. */
 bw_ibm_mdf *bw_coupler_markers(bw_coupler *c);
 

@@ -29,7 +29,7 @@ bw_coupler_rigid_config bw_coupler_rigid_config_default(void)
                                    .nu = NAN,
                                    .virtual_mass = 1.0,
                                    .body = bw_ibm_mdf_config_default(),
-                                   .films = {.limit = NAN, .roughness = NAN}};
+                                   .films = {.limit = NAN, .roughness = NAN, .least = -INFINITY}};
 }
 
 static bw_status check(const bw_coupler_rigid_config *c, const bw_grid_view *g, const bw_rigid *r)
@@ -320,6 +320,21 @@ bw_status bw_coupler_rigid_step(bw_coupler_rigid *c, double dt)
   /* u and p at t + dt around the bodies at t. */
   BW_TRY(bw_ns_channel_check(c->fluid, dt));
   return bw_coupler_rigid_advance(c, dt);
+}
+
+double bw_coupler_rigid_film_energy(const bw_coupler_rigid *c)
+{
+  return c->films == NULL ? 0.0 : bw_coupler__films_taken(c->films);
+}
+
+double bw_coupler_rigid_film_gap(const bw_coupler_rigid *c)
+{
+  return c->films == NULL ? INFINITY : bw_coupler__films_gap(c->films);
+}
+
+void bw_coupler_rigid_set_film_energy(bw_coupler_rigid *c, double energy)
+{
+  if (c->films != NULL) bw_coupler__films_count(c->films, energy);
 }
 
 bw_status bw_coupler_rigid_measure(bw_coupler_rigid *c, bw_coupler_rigid_report report[])

@@ -25,6 +25,7 @@
  * by one: begin; force after each bw_ns_channel_predict; advance.
  * Life: create -> { step, or begin, 3 force, advance } -> destroy. Collective. */
 #pragma once
+#include "bw_coupler_films.h"
 #include "bw_ibm_mdf.h"
 #include "bw_ns_channel.h"
 #include "bw_rigid.h"
@@ -35,18 +36,6 @@ extern "C" {
 
 /* Fluid, rigid bodies, and what joins them. Opaque. */
 typedef struct bw_coupler_rigid bw_coupler_rigid;
-
-/* Films between bodies, and between bodies and walls, that no cell resolves (bw_film.h).
- * Where two faces are nearer than `limit`, the markers of a body keep away from the other face by
- * that much (half of what is missing, where both are bodies), so that the grid carries a film of
- * that gap, which it resolves; what it lacks, D1 - D0, brakes the bodies,
- *   (M + dt D) v_{n+1} = M v*,   v* by all other forces,
- * film after film: opposite impulses in one line, which take energy whatever the step. */
-typedef struct {
-  bool on;          /*                                                   default false */
-  double limit;     /* gap from which the grid carries the film [L]      default three cells */
-  double roughness; /* least gap of a film [L]            required where on, at most a cell */
-} bw_coupler_films;
 
 /* What a user chooses. */
 typedef struct {
@@ -93,6 +82,13 @@ typedef struct {
 /* report (bodies), the same on all ranks. */
 bw_status bw_coupler_rigid_measure(bw_coupler_rigid *coupler,
                                    bw_coupler_rigid_report report[]) BW_MUST_CHECK;
+
+/* What all films have taken since the start [M L^2/T^2], and the least gap of one in the last step
+ * [L]; INFINITY: there was none. The same on all ranks. */
+double bw_coupler_rigid_film_energy(const bw_coupler_rigid *coupler);
+double bw_coupler_rigid_film_gap(const bw_coupler_rigid *coupler);
+/* Goes on counting from there, after a restart. */
+void bw_coupler_rigid_set_film_energy(bw_coupler_rigid *coupler, double energy);
 
 /* What a restart needs beside the fluid and bw_rigid_save: the memory of the markers, M (n,3) in
  * the order of the surface points of this rank (bw_rigid_point_id says which they are), and the

@@ -4,10 +4,10 @@
 #include "bw_exchange.h"
 
 /* Of the fluid on the solid since the start, this rank's share [M L^2/T^2]: given through the
- * markers; by the load; of that, what is held back; what the solid received. */
-enum { BW_COUPLER__WORKS = 4 };
+ * markers; by the load; of that, what is held back; what the solid received. What films took. */
+enum { BW_COUPLER__WORKS = 5 };
 typedef struct {
-  double given, late, loaded, received;
+  double given, late, loaded, received, film;
 } bw_coupler__work;
 
 /* What the book of the coupling sums over the steps of a window (book.c), of this rank. */
@@ -34,6 +34,7 @@ typedef struct {
   double sums[BW_SOLID_RESTART_SUMS], work[BW_COUPLER__WORKS]; /* of all ranks */
   uint8_t *bits;                                               /* (n, bits_bytes) */
   double *V_before, *F, *M;                                    /* (n,3) */
+  double *edge; /* (n) pressure at the edges of films; NULL: no films */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
@@ -75,6 +76,7 @@ struct bw_coupler {
   bw_ibm_mdf *ibm;
   bw_ibm_mdf *inside_fluid; /* reads the fluid where the particles are; NULL: nobody does */
   bw_probe *probe;
+  struct bw_coupler__solid_films *films; /* NULL: none */
   bool held;
   size_t n;         /* particles of this rank */
   int64_t *id;      /* (n) theirs */
@@ -155,6 +157,12 @@ bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
 /* Force of the fluid on each surface particle, c->force (n_surface,3) [M L/T^2], by probes (dt:
  * the step whose velocities give the acceleration) or by the markers' reaction. Collective. */
 bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;
+/* Does a point meet the fluid: is it inside all sides that are not periodic? */
+bool bw_coupler__within_box(const bw_grid_view *g, const double x[3]);
+/* What probes must not end in, if that has changed. Collective. */
+bw_status bw_coupler__find_obstacles(bw_coupler *c) BW_MUST_CHECK;
+/* The pressure that probes read: over rho, with valid halos. */
+const bw_real *bw_coupler__read_pressure(const bw_coupler *c);
 /* Will probes read the pressure of this step? */
 bool bw_coupler__probes_look(const bw_coupler *c);
 void bw_coupler__find_reach(bw_coupler *c); /* Collective */

@@ -1,9 +1,11 @@
 /* What a step did: forces by three routes, slip, counts, and its cost by part. */
 #include "bw_coupler.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static void count_probes(const bw_coupler *c, int64_t count[2])
 {
@@ -60,7 +62,7 @@ double bw_coupler__reference_speed(bw_coupler *c)
 static double measure_leak(bw_coupler *c, double speed)
 {
   const bw_comm *comm = bw_grid_comm(bw_ns_channel_grid(c->fluid));
-  double *U = c->load, sum[4] = {0.0}; /* scratch; through, frontal areas */
+  double *U = c->moment, sum[4] = {0.0}; /* scratch; through, frontal areas */
   /* Markers that are not those of the present surface tell nothing about it. */
   double other = c->handed != (c->block > 1 ? c->blocks.n : c->n_surface);
   bw_comm_max(comm, 1, &other);
@@ -80,6 +82,12 @@ static double measure_leak(bw_coupler *c, double speed)
   bw_comm_sum(comm, 4, sum);
   const double past = speed * fmax(sum[1], fmax(sum[2], sum[3]));
   return past > 0.0 ? sum[0] / past : 0.0;
+}
+
+void bw_coupler_get_load(const bw_coupler *c, double load[])
+{
+  if (c->n > 0) memcpy(load, c->load, 3 * c->n * sizeof *load);
+  if (c->films != NULL) bw_coupler__solid_films_add(c, load);
 }
 
 enum { IN_A_ROW = 5 }; /* reports */
@@ -154,6 +162,7 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .work_late = c->work.late,
                          .work_unseen = c->work.given - c->work.loaded,
                          .work_received = c->work.received,
+                         .work_film = c->work.film,
                          .iterations = c->iterations,
                          .residual = c->residual,
                          .unconverged = c->unconverged};
@@ -184,6 +193,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   bw_comm_sum(comm, 1, &r.work_late);
   bw_comm_sum(comm, 1, &r.work_unseen);
   bw_comm_sum(comm, 1, &r.work_received);
+  bw_comm_sum(comm, 1, &r.work_film);
+  bw_coupler__solid_films_look(c, &r);
   /* What is inside, passing out and gone. */
   bw_coupler__count_mass(c, mass);
   r.mass_inside = mass[0], r.mass_out = mass[1], r.mass_left = mass[2];

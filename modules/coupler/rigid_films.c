@@ -19,9 +19,10 @@ struct bw_coupler__films {
   int dims, walls;
   double cell, limit, period[3]; /* 0: not periodic */
   face wall[6];
-  double *change; /* (bodies,6) what the bodies' twists become in the step */
-  double *wrench; /* (bodies,6) of the last step */
-  double *power;  /* (bodies) */
+  double *change;    /* (bodies,6) what the bodies' twists become in the step */
+  double *wrench;    /* (bodies,6) of the last step */
+  double *power;     /* (bodies) */
+  double taken, gap; /* since the start; least of the last step, INFINITY: none */
 };
 
 static double distance_of(const void *context, const double x[3])
@@ -30,18 +31,6 @@ static double distance_of(const void *context, const double x[3])
   if (f->body < 0) return f->end == 0 ? x[f->d] - f->at : f->at - x[f->d];
   const double y[3] = {x[0] - f->shift[0], x[1] - f->shift[1], x[2] - f->shift[2]};
   return bw_rigid_distance(f->rigid, f->body, y);
-}
-
-static bw_status check(const bw_coupler_films *c, double cell)
-{
-  BW_REQUIRE(c->roughness > 0.0 && c->roughness <= cell, BW_EINPUT,
-             "films.roughness = %g: must be above 0 and at most a cell, %g: rougher faces have no "
-             "film that the grid does not see",
-             c->roughness, cell);
-  BW_REQUIRE(isnan(c->limit) || c->limit >= cell, BW_EINPUT,
-             "films.limit = %g: must be a cell, %g, at least; leave it out for three", c->limit,
-             cell);
-  return BW_OK;
 }
 
 static void find_walls(bw_coupler__films *f, const bw_grid_view *g, const bw_ns_channel *fluid)
@@ -65,9 +54,13 @@ bw_status bw_coupler__films_create(const bw_coupler_films *config, double mu, bw
   bw_coupler__films *f = NULL;
   bw_film_config film = bw_film_config_default();
   *out = NULL;
-  BW_TRY(check(config, cell));
+  BW_TRY(bw_coupler__films_check(config, cell));
+  BW_REQUIRE(config->least == -INFINITY, BW_EINPUT,
+             "films.least = %g: films between rigid bodies bear any pressure; leave it out",
+             config->least);
   bw_status st = BW_ALLOCATE(&f, 1);
   if (st == BW_OK) {
+    f->gap = INFINITY;
     f->rigid = rigid, f->dims = planar ? 2 : 3, f->cell = cell;
     f->limit = isnan(config->limit) ? 3.0 * cell : config->limit;
     find_walls(f, g, fluid);
@@ -281,6 +274,8 @@ static bw_status brake(bw_coupler__films *f, const face *a, const face *b, const
   }
   give(f, b, 1.0, J, dt);
   give(f, a, -1.0, J, dt);
+  f->taken += dt * power;
+  f->gap = fmin(f->gap, bw_film_look(f->film).gap);
   f->power[b->body] += a->body < 0 ? power : 0.5 * power;
   if (a->body >= 0) f->power[a->body] += 0.5 * power;
   return BW_OK;
@@ -339,6 +334,7 @@ bw_status bw_coupler__films_brake(bw_coupler__films *f, double dt, double F[], d
   const size_t n = (size_t)bw_rigid_count(f->rigid);
   memset(f->wrench, 0, 6 * n * sizeof *f->wrench);
   memset(f->power, 0, n * sizeof *f->power);
+  f->gap = INFINITY;
   predict(f, dt, F, T);
   for (int q = 0; q < (int)n; q++)
     BW_TRY(brake_body(f, q, dt));
@@ -348,6 +344,21 @@ bw_status bw_coupler__films_brake(bw_coupler__films *f, double dt, double F[], d
       T[3 * q + d] += f->wrench[6 * q + 3 + d];
     }
   return BW_OK;
+}
+
+double bw_coupler__films_taken(const bw_coupler__films *f)
+{
+  return f->taken;
+}
+
+double bw_coupler__films_gap(const bw_coupler__films *f)
+{
+  return f->gap;
+}
+
+void bw_coupler__films_count(bw_coupler__films *f, double taken)
+{
+  f->taken = taken;
 }
 
 double bw_coupler__films_of(const bw_coupler__films *f, int q, double wrench[6])

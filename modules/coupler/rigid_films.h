@@ -20,3 +20,11 @@ bw_status bw_coupler__films_brake(bw_coupler__films *films, double dt, double F[
                                   double T[]) BW_MUST_CHECK;
 /* Of the last step: wrench (6) on a body; returns the power taken. Local. */
 double bw_coupler__films_of(const bw_coupler__films *films, int body, double wrench[6]);
+/* What all have taken since the start [M L^2/T^2], from where the count goes on; least gap of the
+ * last step [L]. Local. */
+double bw_coupler__films_taken(const bw_coupler__films *f);
+void bw_coupler__films_count(bw_coupler__films *f, double taken);
+double bw_coupler__films_gap(const bw_coupler__films *f);
+/* BW_EINPUT names a roughness, limit or least pressure of films, of bodies of any kind, that
+ * cannot be with cells of edge `cell`. Local. */
+bw_status bw_coupler__films_check(const bw_coupler_films *config, double cell) BW_MUST_CHECK;

@@ -2,12 +2,15 @@
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { N_FIELDS = 4 };
 static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "solid/body";
 static const char more_work_name[] = "solid/work_of_load";
+static const char film_name[] = "solid/film_edge", film_work_name[] = "solid/work_of_films";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
@@ -20,6 +23,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->V_before);
   bw_release(&s->F);
   bw_release(&s->M);
+  bw_release(&s->edge);
   s->filled = false;
 }
 
@@ -42,6 +46,7 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
+  if (c->films != NULL) BW_TRY(BW_ALLOCATE(&s->edge, c->n));
   return BW_ALLOCATE(&s->M, 3 * c->n);
 }
 
@@ -60,7 +65,7 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   bw_solid_get_restart(c->solid, s->rows, s->sums);
   /* Work is kept as the sum of all ranks, which a restart may divide otherwise. */
   const double work[BW_COUPLER__WORKS] = {c->work.given, c->work.late, c->work.loaded,
-                                          c->work.received};
+                                          c->work.received, c->work.film};
   memcpy(s->work, work, sizeof work);
   bw_comm_sum(bw_solid_comm(c->solid), BW_COUPLER__WORKS, s->work);
   bw_solid_get_bits(c->solid, s->bits);
@@ -68,6 +73,7 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
+  if (c->films != NULL) memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
   s->filled = true;
 }
 
@@ -131,6 +137,10 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, load_name, total, c->n, id, 3, BW_CK_DOUBLE, s->F));
   BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
+  if (c->films != NULL) {
+    BW_TRY(bw_checkpoint_put_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
+    BW_TRY(bw_checkpoint_put_numbers(ck, film_work_name, 1, s->work + 4));
+  }
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -147,7 +157,7 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   BW_TRY(bw_checkpoint_get_numbers(ck, "fluid/time_and_gradient", 2, s->fluid_numbers));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_get_numbers(ck, "solid/work_of_fluid", 2, s->work));
-  s->work[2] = s->work[3] = 0.0;
+  s->work[2] = s->work[3] = s->work[4] = 0.0;
   if (bw_checkpoint_has(ck, more_work_name))
     BW_TRY(bw_checkpoint_get_numbers(ck, more_work_name, 2, s->work + 2));
   /* Rows find their particles by id. */
@@ -165,6 +175,13 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   memset(s->M, 0, 3 * c->n * sizeof *s->M);
   if (bw_checkpoint_has(ck, memory_name))
     BW_TRY(bw_checkpoint_get_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
+  /* Films that begin with the restart know no pressure yet. */
+  for (size_t i = 0; c->films != NULL && i < c->n; i++)
+    s->edge[i] = NAN;
+  if (c->films != NULL && bw_checkpoint_has(ck, film_name)) {
+    BW_TRY(bw_checkpoint_get_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
+    BW_TRY(bw_checkpoint_get_numbers(ck, film_work_name, 1, s->work + 4));
+  }
   return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -188,6 +205,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
+  if (c->films != NULL) memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
   return BW_OK;
 }
 
@@ -213,7 +231,7 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
   /* Work was saved as the sum of all ranks: one of them gets it. */
   const double own = bw_comm_rank(comm) == 0 ? 1.0 : 0.0;
   c->work = (bw_coupler__work){own * c->kept.work[0], own * c->kept.work[1], own * c->kept.work[2],
-                               own * c->kept.work[3]};
+                               own * c->kept.work[3], own * c->kept.work[4]};
   memset(c->book.window, 0, sizeof c->book.window); /* windows begin anew */
   c->book.steps = 0;
   BW_TRY(bw_coupler__state_restore(c, &c->kept));

@@ -1,6 +1,7 @@
 /* The recipe of POROUS 4.3: what happens in one time step, in this order. */
 #include "bw_coupler.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
 #include <limits.h>
 #include <math.h>
@@ -42,7 +43,8 @@ bw_status bw_coupler_check_substeps(const bw_coupler *c, double dt)
 
 bool bw_coupler__probes_look(const bw_coupler *c)
 {
-  return c->watched || (c->config.load == BW_LOAD_PROBES && !c->held);
+  const bool loads = c->config.load == BW_LOAD_PROBES || bw_coupler__solid_films_any(c);
+  return c->watched || (loads && !c->held);
 }
 
 /* What p/rho acts with in sub-step r: u^{n+1} - u^n holds -dt sum_r gamma_r grad p_r. Gathered
@@ -74,6 +76,7 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   c->stepped = true;
+  if (c->films != NULL) BW_TRY(bw_coupler__solid_films_find(c));
   bw_timer_start(c->timer, BW_PART_FORCING);
   /* Markers of the surface at t, with its velocity; their force of the step begins at zero. */
   const bw_status st = bw_coupler__place_markers(c);
@@ -113,6 +116,8 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   if (probes) st = bw_coupler__probe_force(c, dt);
   /* Forces act on the surface, outside the centres: they bring a moment with them. */
   bw_coupler__carry_force(c, !probes);
+  /* Where a film stands for the grid, what the grid did between the faces goes out of it. */
+  if (c->films != NULL) BW_THEN(st, bw_coupler__solid_films_replace(c, dt, relaxation));
   bw_coupler__free_inside(c, dt);
   /* F' <- (1 - w) F' + w F against the added mass (bw_coupler.h). */
   bw_coupler__relax_load(c, dt, relaxation);
@@ -133,8 +138,12 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
   /* The surface's acceleration over the step will be told from it. */
   bw_solid_get_velocity(c->solid, c->V_before);
   BW_THEN(st, bw_coupler__resist(c, dt, relaxation));
-  for (int q = 0; q < n; q++)
+  for (int q = 0; q < n; q++) {
+    /* Films are stiffer than any sub-step: their force is that at its end. */
+    if (c->films != NULL) BW_THEN(st, bw_coupler__solid_films_press(c, dt / n));
     BW_THEN(st, bw_solid_step(c->solid, dt / n));
+    if (c->films != NULL && st == BW_OK) bw_coupler__solid_films_book(c, dt / n);
+  }
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
   bw_coupler__book_motion(c, dt);

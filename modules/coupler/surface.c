@@ -3,13 +3,14 @@
 #include "bw_exchange.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "solid_films.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Particles beyond a side of the box (ghost layers under a wall, fragments that left) do not
  * meet the fluid. */
-static bool within_box(const bw_grid_view *g, const double x[3])
+bool bw_coupler__within_box(const bw_grid_view *g, const double x[3])
 {
   for (int d = 0; d < 3; d++)
     if (!g->periodic[d] && (g->halo[d] > 0 || g->n[d] > 1) && !(x[d] > 0.0 && x[d] < g->length[d]))
@@ -85,7 +86,7 @@ static void place(bw_coupler *c)
   for (size_t q = 0; q < s.n; q++) {
     const double *X = s.X + 3 * q, *N = s.N + 3 * q;
     /* Ghost layers and what has left do not meet the fluid. */
-    if (!within_box(g, X)) continue;
+    if (!bw_coupler__within_box(g, X)) continue;
     c->particle[n] = s.particle[q];
     c->height[n] = s.H[q];
     /* A normal is of use where it is one, and where there is memory: what pushes across a ridge
@@ -156,7 +157,8 @@ static bw_status mark_inside(bw_coupler *c)
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
   /* Every particle, not only the surface, to the rank that owns its cell. */
   for (size_t p = 0; st == BW_OK && p < c->n; p++) {
-    const int rank = within_box(g, c->X + 3 * p) ? bw_grid_owner(grid, c->X + 3 * p) : -1;
+    const int rank =
+        bw_coupler__within_box(g, c->X + 3 * p) ? bw_grid_owner(grid, c->X + 3 * p) : -1;
     if (rank < 0) continue;
     memcpy(send + 3 * n, c->X + 3 * p, 3 * sizeof *send);
     owner[n++] = rank;
@@ -199,17 +201,20 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
   /* They are handed over at the next step's beginning:
    * until then the old forces can be asked for. */
   c->markers_moved = true;
+  if (c->films != NULL) BW_TRY(bw_coupler__solid_films_follow(c));
   bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
   return BW_OK;
 }
 
-/* The memory of the surface points: that of their particles, none where a bond has broken. */
+/* The memory of the surface points: that of their particles, none where a bond has broken or a film
+ * stands for the grid: both faces of a gap ask the same cells for two velocities. */
 static void place_memory(bw_coupler *c)
 {
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     for (size_t d = 0; d < 3; d++)
-      c->marker_M[3 * q + d] = c->broken[p] > 0 ? NAN : c->M[3 * p + d];
+      c->marker_M[3 * q + d] =
+          c->broken[p] > 0 || bw_coupler__solid_films_whole(c, p) ? NAN : c->M[3 * p + d];
   }
 }
 
@@ -288,12 +293,22 @@ static void surface_motion(bw_coupler *c, double dt)
   }
 }
 
+bw_status bw_coupler__find_obstacles(bw_coupler *c)
+{
+  return inside_is_stale(c) ? mark_inside(c) : BW_OK;
+}
+
+const bw_real *bw_coupler__read_pressure(const bw_coupler *c)
+{
+  return c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
+}
+
 bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
-  const bw_real *p = c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
+  const bw_real *p = bw_coupler__read_pressure(c);
   /* Obstacles before points: setting points decides which probes are shortened. */
-  if (inside_is_stale(c)) BW_TRY(mark_inside(c));
+  BW_TRY(bw_coupler__find_obstacles(c));
   BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
   /* Velocity, spin and acceleration of the roots. */
   surface_motion(c, dt);

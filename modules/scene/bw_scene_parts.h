@@ -143,8 +143,9 @@ typedef struct {
   bw_scene_start start;     /* the flow at the beginning */
   bool has_forcing;         /* is it given? */
   bw_scene_forcing forcing; /* what drives the flow */
-  double film_roughness;    /* of films between rigid bodies and walls [L]; NaN: no films */
+  double film_roughness;    /* of films between bodies, faces of cracks, walls [L]; NaN: none */
   double film_limit;        /* gap from which the grid carries them [L]; NaN: three cells */
+  double film_least;        /* pressure below which they cavitate [M/(L T^2)]; NaN: never */
   int n_shape;              /* of a fluid of particles: how many of shape */
   bw_scene_shape shape[BW_SCENE_PARTS]; /* where it is at first, without the bodies */
   double speed;                         /* of it, the largest expected [L/T]; NaN: 2 sqrt(g H) */

@@ -63,19 +63,28 @@ static bw_status check_no_water(const bw_scene_config *c)
   return BW_OK;
 }
 
-/* Films are those of rigid bodies in a flow, and thinner than the grid. */
+/* Films are those of bodies in a flow, and thinner than the grid. */
 static bw_status check_films(const bw_scene_config *c)
 {
   const double h = c->domain.length[1] / c->domain.cells[1], limit = c->fluid.film_limit;
   const double roughness = c->fluid.film_roughness;
+  const double least = c->fluid.film_least;
+  BW_REQUIRE(isnan(least) || !isnan(roughness), BW_EINPUT,
+             "fluid.film_least = %g: films have a fluid.film_roughness; give it, or leave both out",
+             least);
   BW_REQUIRE(isnan(limit) || !isnan(roughness), BW_EINPUT,
              "fluid.film_limit = %g: films have a fluid.film_roughness; give it, or leave both out",
              limit);
   if (isnan(roughness)) return BW_OK;
-  BW_REQUIRE(bw_scene__any_rigid(c), BW_EINPUT,
-             "fluid.film_roughness = %g: films are between rigid bodies and walls, and no body has "
-             "motion: rigid; leave it out",
+  BW_REQUIRE(bw_scene__any_rigid(c) || bw_scene__any_deforms(c), BW_EINPUT,
+             "fluid.film_roughness = %g: films brake bodies that are rigid or deform, and there is "
+             "none; leave it out",
              roughness);
+  BW_REQUIRE(isnan(least) || !bw_scene__any_rigid(c), BW_EINPUT,
+             "fluid.film_least = %g: films between rigid bodies bear any pressure; leave it out",
+             least);
+  BW_REQUIRE(isnan(least) || least <= 0.0, BW_EINPUT,
+             "fluid.film_least = %g: a film bears the pressure 0; give 0, or less", least);
   BW_REQUIRE(roughness <= h, BW_EINPUT,
              "fluid.film_roughness = %g: must be at most a cell, %g: the grid resolves the gap of "
              "rougher faces; leave it out",

@@ -37,6 +37,7 @@ static bw_status check_no_grid(const bw_scene_config *c)
               {"fluid.forcing", "gravity drives it", f->has_forcing},
               {"fluid.film_roughness", "its particles fill the gaps", !isnan(f->film_roughness)},
               {"fluid.film_limit", "its particles fill the gaps", !isnan(f->film_limit)},
+              {"fluid.film_least", "its particles fill the gaps", !isnan(f->film_least)},
               {"fluid.start.developed", "there is no inflow", f->start.developed},
               {"fluid.start.vortices", "it starts from velocity", f->start.n_vortices > 0},
               {"fluid.start.file", "it starts from velocity", f->start.file[0] != '\0'},

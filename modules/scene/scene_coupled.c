@@ -46,5 +46,8 @@ bw_status bw_scene__coupled_create(bw_scene *s)
   for (int d = 0; d < 3; d++)
     c.gravity[d] = s->config.gravity[d];
   find_leaning(s, &c);
+  c.films.on = !isnan(s->config.fluid.film_roughness);
+  c.films.limit = s->config.fluid.film_limit, c.films.roughness = s->config.fluid.film_roughness;
+  if (!isnan(s->config.fluid.film_least)) c.films.least = s->config.fluid.film_least;
   return bw_coupler_create(&c, s->fluid, s->solid[0].solid, &s->coupler);
 }

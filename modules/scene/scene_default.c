@@ -67,7 +67,7 @@ static void default_fluid(bw_scene_config *c)
   c->fluid.sides = (bw_scene_sides){pair, pair, pair, false};
   c->fluid.start.vortices[0] = (bw_scene_vortex){{NAN, NAN, NAN}, NAN, NAN};
   c->fluid.forcing = (bw_scene_forcing){INT_MIN, 0, NAN};
-  c->fluid.film_roughness = c->fluid.film_limit = NAN;
+  c->fluid.film_roughness = c->fluid.film_limit = c->fluid.film_least = NAN;
 }
 
 static void default_numerics(bw_scene_numerics *n)

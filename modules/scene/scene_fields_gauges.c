@@ -61,7 +61,8 @@ const bw_config_field bw_scene__gauge_fields[] = {
     V(OURS, of, BW_REQUIRED, BW_TEXTS, "",
       "quantities: displacement, position, velocity, force, force_on_support, crack_tip, damage, "
       "fragments, broken_bonds, energy, pressure, flow_rate, bulk_velocity, tortuosity, "
-      "divergence; failure (by what the load has to grow until the first place fails), "
+      "film_energy (taken so far), film_gap (the least), divergence; failure (by what the load has "
+      "to grow until the first place fails), "
       "failure_place; of a fluid of particles: depth, front, height, wall_pressure, wall_force, "
       "fluid_energy, work, mass, outside"),
     V(OURS, body, BW_OPTIONAL, BW_TEXTS, "", "bodies"),

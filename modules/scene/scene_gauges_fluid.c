@@ -124,6 +124,18 @@ static void tortuosity(bw_scene *s, const bw_scene_gauge_config *g, double value
     if (fabs(value[axis]) > 1e6) value[axis] = NAN;
 }
 
+/* Least gap of a film in the last step, empty where there is none; or what films have taken.
+ * Collective. */
+static double film_value(const bw_scene *s, bool of_gap)
+{
+  if (!of_gap)
+    return s->coupler != NULL ? bw_coupler_film_energy(s->coupler)
+                              : bw_coupler_rigid_film_energy(s->floats);
+  const double gap =
+      s->coupler != NULL ? bw_coupler_film_gap(s->coupler) : bw_coupler_rigid_film_gap(s->floats);
+  return isinf(gap) ? NAN : gap;
+}
+
 bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,
                                   double value[BW_SCENE__COMPONENTS])
 {
@@ -139,6 +151,10 @@ bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quanti
                               : bw_scene__surface_force(s, g->body, value);
   if (strcmp(what->word, "tortuosity") == 0) {
     tortuosity(s, g, value);
+    return BW_OK;
+  }
+  if (strncmp(what->word, "film_", 5) == 0) {
+    value[0] = film_value(s, strcmp(what->word, "film_gap") == 0);
     return BW_OK;
   }
   if (strcmp(what->word, "divergence") == 0) {

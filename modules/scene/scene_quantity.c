@@ -47,6 +47,8 @@ const bw_scene__quantity bw_scene__quantities[] = {
     {"bulk_velocity", BW_SCENE__OF_FLUID, 1, false, false, {""}, "L/T"},
     {"kinetic_energy", BW_SCENE__OF_FLUID, 1, false, false, {""}, "M L2/T2"},
     {"tortuosity", BW_SCENE__OF_FLUID, 3, true, false, XYZ, "-"},
+    {"film_energy", BW_SCENE__OF_FLUID, 1, false, false, {""}, "M L2/T2"},
+    {"film_gap", BW_SCENE__OF_FLUID, 1, false, false, {""}, "L"},
     {"divergence", BW_SCENE__OF_FLUID, 1, false, false, {""}, "-"},
     {"depth", BW_SCENE__OF_COLUMN, 1, false, false, {""}, "L"},
     {"front", BW_SCENE__OF_WATER, 1, false, false, {""}, "L"},
@@ -167,6 +169,11 @@ static bw_status check_model(const bw_scene_config *c, const bw_scene_gauge_conf
       "gauges.%s.of = work: that of the fluid on bodies that deform, of which there is none; "
       "leave it out",
       g->name);
+  BW_REQUIRE(
+      strncmp(q->word, "film_", 5) != 0 || !isnan(c->fluid.film_roughness), BW_EINPUT,
+      "gauges.%s.of = %s: films are asked for by fluid.film_roughness; give it, or leave the "
+      "gauge out",
+      g->name, q->word);
   for (const char *rest = g->body; water && bw_scene__next_name(&rest, name);) {
     const int b = bw_scene__body_named(c, name);
     BW_REQUIRE(

@@ -205,8 +205,8 @@ static bw_status join(bw_scene *s)
   c.virtual_mass = n->virtual_mass;
   c.body.n_iter = n->forcing_iterations;
   c.body.memory = n->memory;
-  c.films = (bw_coupler_films){!isnan(s->config.fluid.film_roughness), s->config.fluid.film_limit,
-                               s->config.fluid.film_roughness};
+  c.films.on = !isnan(s->config.fluid.film_roughness);
+  c.films.limit = s->config.fluid.film_limit, c.films.roughness = s->config.fluid.film_roughness;
   memcpy(c.gravity, s->config.gravity, sizeof c.gravity);
   return bw_coupler_rigid_create(&c, s->fluid, s->rigid, &s->floats);
 }

@@ -122,6 +122,18 @@ static bw_status solid_state(bw_scene *s, int q, bw_checkpoint *ck, bool read)
   return st;
 }
 
+/* What films of rigid bodies have taken; older files do not have it. */
+static bw_status film_energy(bw_scene *s, bw_checkpoint *ck, bool read)
+{
+  static const char name[] = "rigid/film_energy";
+  double taken = bw_coupler_rigid_film_energy(s->floats);
+  if (!read) return bw_checkpoint_put_numbers(ck, name, 1, &taken);
+  if (!bw_checkpoint_has(ck, name)) return BW_OK;
+  BW_TRY(bw_checkpoint_get_numbers(ck, name, 1, &taken));
+  bw_coupler_rigid_set_film_energy(s->floats, taken);
+  return BW_OK;
+}
+
 bw_status bw_scene_save(bw_scene *s, bw_checkpoint *ck)
 {
   const double numbers[NUMBERS] = {s->time,
@@ -136,6 +148,7 @@ bw_status bw_scene_save(bw_scene *s, bw_checkpoint *ck)
   if (s->water != NULL) return bw_scene__water_save(s, ck);
   if (s->fluid != NULL) BW_TRY(save_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_save(s, ck));
+  if (s->floats != NULL) BW_TRY(film_energy(s, ck, false));
   for (int q = 0; q < s->n_solids; q++)
     BW_TRY(solid_state(s, q, ck, false));
   return BW_OK;
@@ -166,6 +179,7 @@ bw_status bw_scene_restore(bw_scene *s, bw_checkpoint *ck)
   if (s->water != NULL) return bw_scene__water_restore(s, ck);
   if (s->fluid != NULL) BW_TRY(restore_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_restore(s, ck));
+  if (s->floats != NULL) BW_TRY(film_energy(s, ck, true));
   for (int q = 0; q < s->n_solids; q++)
     BW_TRY(solid_state(s, q, ck, true));
   return BW_OK;

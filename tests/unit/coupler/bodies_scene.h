@@ -17,6 +17,9 @@ typedef struct {
   bool no_contact, still;   /* still: fluid at rest */
   bw_coupler_load_kind load;
   int iterations; /* of the coupling; 0: explicit */
+  bw_coupler_films films;
+  double lower[4];     /* how far the particles of each block are moved down [cells] */
+  const bw_comm *comm; /* NULL: the world */
 } bodies_set_up;
 
 typedef struct {
@@ -25,6 +28,7 @@ typedef struct {
   bw_solid *solid;
   bw_coupler *coupler;
   size_t n, total;
+  const bw_comm *comm;
 } bodies_scene;
 
 static inline void bodies_destroy(bodies_scene *s)
@@ -62,7 +66,7 @@ static inline void bodies_make_fluid(const bodies_set_up *b, bodies_scene *s)
     flow.forcing_value = b->still ? 0.0 : 12.0 * flow.nu;
   }
   flow.side[2][0].kind = flow.side[2][1].kind = BW_SIDE_PERIODIC;
-  bw_check_ok(bw_grid_create(bw_check_world(), &grid, &s->grid));
+  bw_check_ok(bw_grid_create(s->comm, &grid, &s->grid));
   bw_check_ok(bw_ns_channel_create(s->grid, &flow, &s->fluid));
   if (!b->still) bw_check_ok(bw_ns_channel_set_velocity(s->fluid, bodies_stream, NULL, 0.0));
 }
@@ -93,11 +97,35 @@ static inline void bodies_make_solid(const bodies_set_up *b, bodies_scene *s)
   }
   const bw_shape_lattice lattice = bw_shape_lattice_straight(H, c.origin, true);
   bw_check_ok(bw_shape_fill(b->n_block, shape, &lattice, 0, 1, &n, &site, &kind, NULL));
-  bw_check_ok(bw_solid_create_same(bw_check_world(), &c, n, site, kind, &s->solid));
+  bw_check_ok(bw_solid_create_same(s->comm, &c, n, site, kind, &s->solid));
   bw_release(&site);
   bw_release(&kind);
   s->n = bw_solid_count(s->solid);
   s->total = (size_t)n;
+}
+
+/* Each block down by what it is lowered. */
+static inline void bodies_lower(const bodies_set_up *b, bodies_scene *s)
+{
+  double *X = NULL, *V = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * s->n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * s->n));
+  bw_solid_get_position(s->solid, X);
+  bool moved = false;
+  for (size_t i = 0; i < s->n; i++)
+    for (int q = 0; q < b->n_block; q++) {
+      const int *k = b->block[q];
+      const double x = X[3 * i] / H, y = X[3 * i + 1] / H;
+      if (b->lower[q] == 0.0 || x < k[0] || x > k[2] || y < k[1] || y > k[3]) continue;
+      X[3 * i + 1] -= b->lower[q] * H;
+      moved = true;
+      break;
+    }
+  int64_t any = moved;
+  bw_comm_sum_int(s->comm, 1, &any);
+  if (any > 0) bw_solid_set_state(s->solid, X, V);
+  bw_release(&X);
+  bw_release(&V);
 }
 
 static inline bw_coupler_config bodies_coupling(const bodies_set_up *b)
@@ -109,15 +137,17 @@ static inline bw_coupler_config bodies_coupling(const bodies_set_up *b)
   c.load_relaxation = 0.3;
   if (b->iterations > 0) c.coupling_iterations = b->iterations;
   c.gravity[1] = -b->gravity;
+  if (b->films.on) c.films = b->films;
   return c;
 }
 
 static inline bodies_scene bodies_build(const bodies_set_up *b)
 {
-  bodies_scene s = {0};
+  bodies_scene s = {.comm = b->comm != NULL ? b->comm : bw_check_world()};
   const bw_coupler_config c = bodies_coupling(b);
   bodies_make_fluid(b, &s);
   bodies_make_solid(b, &s);
+  bodies_lower(b, &s);
   bw_check_ok(bw_coupler_create(&c, s.fluid, s.solid, &s.coupler));
   bw_coupler_hold_solid(s.coupler, false);
   return s;
@@ -144,6 +174,6 @@ static inline void bodies_gather(const bodies_scene *s, void (*get)(const bw_sol
   for (size_t i = 0; i < s->n; i++)
     for (size_t k = 0; k < 3; k++)
       all[3 * (size_t)bw_solid_id(s->solid)[i] + k] = mine[3 * i + k];
-  bw_comm_sum(bw_check_world(), (int)(3 * s->total), all);
+  bw_comm_sum(s->comm, 3 * s->total, all);
   bw_release(&mine);
 }

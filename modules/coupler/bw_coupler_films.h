@@ -1,0 +1,27 @@
+/* bw_coupler_films.h -- what a user chooses of films that no cell resolves (bw_film.h,
+ * bw_film_net.h).
+ *
+ * Between rigid bodies, and between these and walls (bw_coupler_rigid.h): where two faces are
+ * nearer than `limit`, the markers of a body keep away from the other face by that much (half of
+ * what is missing, where both are bodies), so that the grid carries a film of that gap, which it
+ * resolves; what it lacks, D1 - D0, brakes the bodies,
+ *   (M + dt D) v_{n+1} = M v*,   v* by all other forces,
+ * film after film: opposite impulses in one line, which take energy whatever the step.
+ *
+ * Between faces of solids of particles, and between these and walls (bw_coupler.h): crack faces,
+ * fragments, bodies. Markers stay, so that no face leaks that was tight. A network of facing
+ * particles has the film (bw_film_net.h), with the pressure that probes read at its edges. Below
+ * two thirds of the limit its forces stand in the place of the grid's, from there to the limit
+ * more and more of the grid's: of the load of two faces the half of the difference, so that
+ * momentum stays. It is implicit in each sub-step of the solid. */
+#pragma once
+#include <stdbool.h>
+
+/* What a user chooses. */
+typedef struct {
+  bool on;          /*                                                   default false */
+  double limit;     /* gap from which the grid carries the film [L]      default three cells */
+  double roughness; /* least gap of a film [L]            required where on, at most a cell */
+  double least;     /* pressure below which a film between particles cavitates, at most 0
+                       [M/(L T^2)]                            default -INFINITY: it bears any */
+} bw_coupler_films;

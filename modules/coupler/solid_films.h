@@ -1,0 +1,76 @@
+/* solid_films.h -- films between the faces of a solid of particles; of the coupler only. */
+#pragma once
+#include "bw_coupler.h"
+#include "bw_film_net.h"
+
+enum { BW_COUPLER__SPREAD = 64 };
+
+/* Of a surface point, as ranks tell each other. */
+typedef struct {
+  int64_t id;
+  int32_t rank, particle;
+  double X[3], N[3], H, A, mobility;
+} bw_coupler__film_point;
+
+typedef struct bw_coupler__solid_films {
+  bw_film_net *net;
+  double spread[BW_COUPLER__SPREAD + 1]; /* part of a marker's force beyond a distance, of equal
+                                            steps up to the radius of its kernel */
+  bw_pd_interface *interface;
+  int rank;
+  bool stale;                                     /* the films are those of an earlier surface */
+  size_t n, room;                                 /* points of all ranks */
+  bw_coupler__film_point *list;                   /* (n) by rising id */
+  double *X, *N, *H, *A, *mobility, *V, *L, *F;   /* of the points; vectors (room,3) */
+  double *edge;                                   /* (room) pressure at the edges */
+  double *probe_X, *probe_N, *probe_A, *traction; /* (room,3) of own edges */
+  int32_t *probe_of;                              /* (room) which edge */
+  unsigned char *flag;                            /* (room) */
+  double *T, *p_mid; /* (room,3), (room) what the grid does between the faces of nodes */
+  size_t n_nodes, n_used, n_edges;
+  const bw_film_node *node;
+  const int32_t *used, *edge_point;
+  /* (particles) */
+  double *base, *density; /* (particles,3) force per volume without films, and theirs */
+  double *before, *v, *a; /* (particles,3) places and velocities before a sub-step; scratch */
+  double *edge_p;         /* pressure at an edge, relaxed; NaN: not known */
+  int32_t *row;           /* of the coupler's surface; -1: none */
+  bool *whole;
+} bw_coupler__solid_films;
+
+static inline bool bw_coupler__film_own(const bw_coupler__solid_films *f, int32_t s)
+{
+  return f->list[s].rank == f->rank;
+}
+
+/* BW_EINPUT names what is wrong with the coupler's configuration; BW_EMEM. Collective. */
+bw_status bw_coupler__solid_films_create(bw_coupler *c) BW_MUST_CHECK;
+void bw_coupler__solid_films_destroy(bw_coupler__solid_films **films);
+/* What has a row per particle. Local. */
+bw_status bw_coupler__solid_films_rows(bw_coupler *c) BW_MUST_CHECK;
+
+/* The surface has moved. Its films are found at the beginning of the next step, so that those of
+ * the last one can be asked for until then. Both collective. */
+bw_status bw_coupler__solid_films_follow(bw_coupler *c) BW_MUST_CHECK;
+bw_status bw_coupler__solid_films_find(bw_coupler *c) BW_MUST_CHECK;
+/* Are there any? The same on all ranks. */
+bool bw_coupler__solid_films_any(const bw_coupler *c);
+/* Does the film of own particle p stand in the grid's place? Local. */
+bool bw_coupler__solid_films_whole(const bw_coupler *c, size_t p);
+
+/* After c->load is that of c->force: the pressure at the edges of the films, `relaxation` of it
+ * new; what the grid does between faces out of c->load. Collective. */
+bw_status bw_coupler__solid_films_replace(bw_coupler *c, double dt,
+                                          double relaxation) BW_MUST_CHECK;
+/* The force on the solid without films (n,3), per volume, as pushed. Local. */
+void bw_coupler__solid_films_base(bw_coupler *c, const double F[]);
+/* Before and after a sub-step of dt of the solid: its force, with films; what they took. press is
+ * collective. */
+bw_status bw_coupler__solid_films_press(bw_coupler *c, double dt) BW_MUST_CHECK;
+void bw_coupler__solid_films_book(bw_coupler *c, double dt);
+/* film_nodes, film_gap, film_pressure of a report. Local, the same on all ranks. */
+void bw_coupler__solid_films_look(const bw_coupler *c, bw_coupler_report *r);
+/* load (n,3) += the force of films on the particles. Local. */
+void bw_coupler__solid_films_add(const bw_coupler *c, double load[]);
+/* Pressure at the edges as relaxed, (n) of the particles; NaN: not known. Borrowed. */
+double *bw_coupler__solid_films_edge(const bw_coupler *c);

@@ -72,17 +72,21 @@ bw_status bw_coupler__solid_films_create(bw_coupler *c)
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
   const bw_coupler_films *config = &c->config.films;
   bw_film_net_config net = bw_film_net_config_default();
+  const bw_solid_config *solid = bw_solid_settings(c->solid);
   BW_TRY(bw_coupler__films_check(config, c->h));
+  BW_REQUIRE(solid->finer.n == 0 && solid->finer.refine.level == 0, BW_EINPUT,
+             "films: a solid with levels has particles of several spacings; films are found for "
+             "one: leave levels or films out");
   bw_status st = BW_ALLOCATE(&c->films, 1);
   if (st == BW_OK) {
     c->films->rank = bw_comm_rank(bw_solid_comm(c->solid));
     net.planar = g->n[2] == 1;
-    net.depth = bw_solid_settings(c->solid)->thickness;
+    net.depth = solid->thickness;
     net.mu = c->config.rho * c->config.nu;
     net.limit = isnan(config->limit) ? 3.0 * c->h : config->limit;
     net.full = 5.0 / 6.0 * net.limit;
     net.roughness = config->roughness, net.least = config->least;
-    net.spacing = bw_solid_settings(c->solid)->ds;
+    net.spacing = solid->ds;
     find_walls(c, &net);
     find_spread(c, c->films->spread);
     st = bw_film_net_create(&net, &c->films->net);

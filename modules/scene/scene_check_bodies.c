@@ -142,6 +142,10 @@ static bw_status check_levels(const bw_scene_config *c, const bw_scene_body *b,
                               const bw_scene__shapes *s)
 {
   if (b->n_levels == 0 && !b->has_refine) return BW_OK;
+  BW_REQUIRE(isnan(c->fluid.film_roughness), BW_EINPUT,
+             "bodies.%s.%s: films (fluid.film_roughness) are found for particles of one spacing; "
+             "leave either out",
+             b->name, b->n_levels > 0 ? "levels" : "refine");
   BW_REQUIRE(bw_scene__deforms(b) && !bw_scene__has_particles(c) && b->turn == 0, BW_EINPUT,
              "bodies.%s.%s: they are of bodies that deform, outside of a fluid of particles, "
              "without turn; leave them out",

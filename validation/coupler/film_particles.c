@@ -123,7 +123,7 @@ static bw_status make_solid(const bw_comm *comm, const set_up *u, scene *s)
   const double x = 0.5 * u->cells[0], y = u->middle;
   c.geometry = BW_PD_PLANE_STRAIN;
   c.ds = c.thickness = 1.0;
-  c.rho = 4.0, c.E = 2e6;
+  c.rho = 4.0, c.E = u->alone ? 2e6 : 1e3;
   c.damping.mean = u->alone ? 4e2 : 0.0;
   c.origin[0] = x, c.origin[1] = y, c.origin[2] = 0.5;
   BW_TRY(fill(comm, u, &c, s));
@@ -333,14 +333,15 @@ static bw_status slit(bw_validation *v, bw_coupler_load_kind load)
 
 static bw_status run(bw_validation *v)
 {
-  static const double gaps[] = {0.1, 1.0, 2.95, 0.2, 0.5, 1.5, 1.9, 2.2, 2.5, 2.7, 2.8};
+  static const double gaps[] = {0.1, 2.7, 1.0, 2.95, 0.2, 0.5, 1.5, 1.9, 2.2, 2.5, 2.8};
   const bool full = bw_validation_full(v);
   for (int load = 0; load < 2; load++) {
     const bw_coupler_load_kind kind = load == 0 ? BW_LOAD_REACTION : BW_LOAD_PROBES;
-    for (int q = 0; q < (full ? 11 : 3); q++)
+    if (!full && kind == BW_LOAD_PROBES) continue;
+    for (int q = 0; q < (full ? 11 : 2); q++)
       BW_TRY(force_at(v, kind, gaps[q]));
-    BW_TRY(no_step(v, true, kind));
-    if (full) BW_TRY(no_step(v, false, kind));
+    for (int crack = 0; full && crack < 2; crack++)
+      BW_TRY(no_step(v, crack == 1, kind));
     BW_TRY(slit(v, kind));
   }
   return sink(v);

@@ -48,6 +48,7 @@ static inline void bodies_stream(const double x[3], double t, void *context, dou
 
 static inline void bodies_make_fluid(const bodies_set_up *b, bodies_scene *s)
 {
+  s->comm = b->comm != NULL ? b->comm : bw_check_world();
   bw_grid_config grid = bw_grid_config_default();
   bw_ns_channel_config flow = bw_ns_channel_config_default();
   grid.n[0] = b->length, grid.n[1] = HEIGHT, grid.n[2] = 1;
@@ -143,7 +144,7 @@ static inline bw_coupler_config bodies_coupling(const bodies_set_up *b)
 
 static inline bodies_scene bodies_build(const bodies_set_up *b)
 {
-  bodies_scene s = {.comm = b->comm != NULL ? b->comm : bw_check_world()};
+  bodies_scene s = {0};
   const bw_coupler_config c = bodies_coupling(b);
   bodies_make_fluid(b, &s);
   bodies_make_solid(b, &s);

@@ -139,7 +139,7 @@ START_TEST(bad_input_is_refused)
                {"limit", 0.5 * H, 1e-3, -1.0},
                {"least", NAN, 1e-3, 1.0}};
   const bodies_set_up set_up = pile();
-  bodies_scene s = {.comm = bw_check_world()};
+  bodies_scene s = {0};
   bodies_make_fluid(&set_up, &s);
   bodies_make_solid(&set_up, &s);
   for (size_t q = 0; q < sizeof cases / sizeof *cases; q++) {

@@ -84,6 +84,8 @@ typedef struct {
   bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet */
   const bw_pd_map *map;       /* in place of boxes, borrowed by create        default NULL */
   bw_pd_jump jump;            /* bonds between levels                  default balanced */
+  bool later;                 /* another body's motion goes to this one: the law prepares nothing
+                                 that its settle makes                       default false */
 } bw_pd_finer;
 
 /* What the particles of one group are made of. */

@@ -125,6 +125,14 @@ static bw_status build(bw_pd_body *pd, const bw_pd_sites *given, const void *opt
   /* From here on families, copies and numbering stand; what is left is the law's. */
   BW_TRY(pd->law->prepare(pd, options));
   pd->law->constants(pd);
+  return pd->config.finer.later && pd->law->settle != NULL ? BW_OK : pd->law->bound(pd);
+}
+
+bw_status bw_pd_body_settle(bw_pd_body *pd, const bool fresh[])
+{
+  if (pd->law->settle == NULL) return BW_OK;
+  BW_TRY(pd->law->settle(pd, fresh));
+  pd->law->constants(pd);
   return pd->law->bound(pd);
 }
 

@@ -43,8 +43,13 @@ struct bw_pd_law {
    * the body stands; Poisson's ratio in pd->config where it was left out. The status is the same on
    * all ranks. `options` is borrowed during the call. Collective. */
   bw_status (*prepare)(bw_pd_body *pd, const void *options);
-  /* The law's columns of the kernel rows from pd->config.material: after prepare, and after every
-   * change of it. */
+  /* Of a body whose levels changed, once the saved fields of cells that kept their level are those
+   * of the body before and all others are 0: what prepare left out as config.finer.later says.
+   * fresh (n): own particles of cells that changed; NULL: all saved fields are those of a
+   * checkpoint, and what follows from them is made anew. NULL: prepare did all. Collective. */
+  bw_status (*settle)(bw_pd_body *pd, const bool fresh[]);
+  /* The law's columns of the kernel rows from pd->config.material: after prepare and settle, and
+   * after every change of it. */
   void (*constants)(bw_pd_body *pd);
 
   int n_sweep; /* 1 .. BW_PD_SWEEPS; after each the body sends the fields that named it */
@@ -99,6 +104,8 @@ struct bw_pd_field {
  * BW_EMEM; BW_EINPUT beyond BW_PD_FIELDS. Local. */
 bw_status bw_pd_body_add_field(bw_pd_body *pd, int after, bool saved,
                                bw_real **value) BW_MUST_CHECK;
+/* settle of the law, where it has one, and what follows from it. Collective. */
+bw_status bw_pd_body_settle(bw_pd_body *pd, const bool fresh[]) BW_MUST_CHECK;
 /* All passes over all blocks, with what is sent between them. Collective when there are several. */
 void bw_pd_body_internal_force(bw_pd_body *pd, bool check, bool damping);
 /* What the last checked pass noted is broken; pd->bonds.hit keeps the blocks that changed. Returns

@@ -11,17 +11,6 @@ uint8_t bw_pd_body_level_of_place(const bw_pd_body *pd, const int32_t site[3])
   return (uint8_t)(pd->finest - __builtin_ctz((unsigned)site[0]));
 }
 
-bool bw_pd_body_leads(const bw_pd_body *pd, int l, int direction, const int32_t site[3])
-{
-  const bw_pd_stencil *s = &pd->level[l].stencil;
-  if (s->other[direction] >= l) return true;
-  /* A sum of two odd multiples is even; centres of coarser cells are the odd ones of twice that. */
-  const int32_t *o = s->offset + 3 * direction;
-  for (int k = 0; k < pd->dimension; k++)
-    if (((site[k] + o[k]) >> (pd->finest - l + 1) & 1) == 0) return false;
-  return true;
-}
-
 /* Site on the lattice of its own level; along the fastest axis of a finer one even sites come
  * before odd ones, `apart` steps away. */
 static void sort_key(const bw_pd_body *pd, int l, const int32_t place[3], int32_t apart,

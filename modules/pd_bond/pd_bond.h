@@ -12,6 +12,11 @@ enum { BW_PD_BOND_EXACT = BW_PD_SURFACE_TENSOR + 1 };
 /* Unit of the stored factors of bonds (surface correction `tensor`): 2^-14, 0 .. 4. */
 #define BW_PD_ALPHA_UNIT (1.0 / 16384)
 
+enum {
+  BW_PD_BOND_CONDITIONS = 22, /* of the correction `tensor`; in the plane 7 */
+  BW_PD_BOND_CUBICS = 10      /* monomials of degree 3 of a direction; in the plane 4 */
+};
+
 /* Sums over a full family. */
 typedef struct {
   double volume;   /* of Gamma dV [L^3] */
@@ -29,6 +34,10 @@ typedef struct {
   bool breakable;                        /* some s0 is finite */
   double *bulk;                          /* (directions) alpha of a full family: 1 but by tensor */
   bw_real *w;                            /* storage: surface factor of a particle */
+  /* Where levels change, with the correction `tensor`: what its factors and those near jumps
+   * follow from, fields of the body that go on with cells that keep their level. */
+  int n_lambda, n_mu;
+  bw_real *lambda[BW_PD_BOND_CONDITIONS], *mu[BW_PD_BOND_CUBICS];
 } bw_pd_bond_state;
 
 static inline const bw_pd_bond_state *bw_pd_bond__state(const bw_pd_body *pd)
@@ -64,11 +73,25 @@ bw_status bw_pd_bond__surface_factors(bw_pd_body *pd) BW_MUST_CHECK;
 double bw_pd_bond__alpha(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot,
                          int lane);
 
-/* pd_bond_tensor.c: bonds.factor, state.bulk. Collective. */
-bw_status bw_pd_bond__tensor(bw_pd_body *pd) BW_MUST_CHECK;
+/* What has changed since a body whose multipliers this one has. */
+typedef struct {
+  const bool *fresh; /* (n) own particles of cells whose level changed: they have none */
+  bw_real *near;     /* storage: > 0 of those and around them, where multipliers may change */
+} bw_pd_bond_change;
 
-/* pd_bond_levels.c: bonds.exact, blocks' exact. Collective. */
-bw_status bw_pd_bond__levels(bw_pd_body *pd) BW_MUST_CHECK;
+/* pd_bond_tensor.c: bonds.factor, state.bulk; change NULL: from nothing. With levels that change it
+ * needs room for the multipliers (once), and `adopt` makes the factors of those there are.
+ * Collective. */
+bw_status bw_pd_bond__tensor_room(bw_pd_body *pd) BW_MUST_CHECK;
+bw_status bw_pd_bond__tensor(bw_pd_body *pd, const bw_pd_bond_change *change) BW_MUST_CHECK;
+bw_status bw_pd_bond__tensor_adopt(bw_pd_body *pd) BW_MUST_CHECK;
+/* near (storage) <- 1 of own particles with a neighbour that is > 0 in before. Local. */
+void bw_pd_bond__mark_neighbours(const bw_pd_body *pd, const bw_real *before, bw_real *near);
+
+/* pd_bond_levels.c: bonds.exact, blocks' exact; the same. Collective. */
+bw_status bw_pd_bond__levels_room(bw_pd_body *pd) BW_MUST_CHECK;
+bw_status bw_pd_bond__levels(bw_pd_body *pd, const bw_pd_bond_change *change) BW_MUST_CHECK;
+bw_status bw_pd_bond__levels_adopt(bw_pd_body *pd) BW_MUST_CHECK;
 
 /* Members of the law. */
 void bw_pd_bond__force(bw_pd_body *pd, size_t first, size_t last, bool check, bool damping);

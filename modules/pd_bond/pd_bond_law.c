@@ -3,8 +3,10 @@
 #include "pd_bond.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
+enum { AROUND = 3 }; /* families that a change of levels is felt through */
 
 static bw_status check(const bw_pd_body_config *c, const void *options)
 {
@@ -100,6 +102,19 @@ static void constants(bw_pd_body *pd)
     }
 }
 
+static bool has_jumps(const bw_pd_body *pd)
+{
+  return pd->finest > 0 && pd->config.finer.jump == BW_PD_JUMP_BALANCED;
+}
+
+/* Those of the surface, then those of bonds near jumps, which change them. Collective. */
+static bw_status make_factors(bw_pd_body *pd, const bw_pd_bond_change *change)
+{
+  if (bw_pd_bond__state(pd)->options.surface_correction == BW_PD_SURFACE_TENSOR)
+    BW_TRY(bw_pd_bond__tensor(pd, change));
+  return has_jumps(pd) ? bw_pd_bond__levels(pd, change) : BW_OK;
+}
+
 static bw_status prepare(bw_pd_body *pd, const void *options)
 {
   const int directions = pd->level->stencil.same;
@@ -122,10 +137,48 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   bw_pd_bond__material(pd);
   bw_pd_bond__calibrate(pd);
   BW_TRY(bw_pd_bond__surface_factors(pd));
-  if (state->options.surface_correction == BW_PD_SURFACE_TENSOR) BW_TRY(bw_pd_bond__tensor(pd));
-  /* Last: the factors of bonds near jumps change those that a surface gave them. */
-  return pd->finest > 0 && pd->config.finer.jump == BW_PD_JUMP_BALANCED ? bw_pd_bond__levels(pd)
-                                                                        : BW_OK;
+  /* Multipliers that go on when levels change are fields of the body. */
+  if (pd->mapped && state->options.surface_correction == BW_PD_SURFACE_TENSOR) {
+    st = bw_pd_bond__tensor_room(pd);
+    BW_THEN(st, bw_pd_bond__levels_room(pd));
+    BW_TRY(bw_comm_agree(pd->comm, st));
+  }
+  return pd->config.finer.later ? BW_OK : make_factors(pd, NULL);
+}
+
+/* Multipliers may change up to AROUND families from a change of levels. Collective. */
+static bw_status find_near(const bw_pd_body *pd, bw_pd_bond_change *change)
+{
+  const size_t places = pd->points.n_storage;
+  bw_real *before = NULL;
+  bw_status st = bw_pd_body_storage_array(places, &change->near);
+  BW_THEN(st, bw_pd_body_storage_array(places, &before));
+  st = bw_comm_agree(pd->comm, st);
+  for (size_t i = 0; i < pd->n && st == BW_OK; i++)
+    change->near[pd->points.place[i]] = change->fresh[i];
+  for (int layer = 0; layer < AROUND && st == BW_OK; layer++) {
+    bw_pd_body_fill_places(pd, change->near);
+    memcpy(before, change->near, places * sizeof *before);
+    bw_pd_bond__mark_neighbours(pd, before, change->near);
+  }
+  if (st == BW_OK) bw_pd_body_fill_places(pd, change->near);
+  bw_pd_body_release_storage_array(&before);
+  return st;
+}
+
+static bw_status settle(bw_pd_body *pd, const bool fresh[])
+{
+  bw_pd_bond_change change = {.fresh = fresh};
+  /* Without multipliers that went on factors follow from the levels alone. */
+  if (bw_pd_bond__state(pd)->n_lambda == 0) return fresh != NULL ? make_factors(pd, NULL) : BW_OK;
+  if (fresh == NULL) {
+    BW_TRY(bw_pd_bond__tensor_adopt(pd));
+    return has_jumps(pd) ? bw_pd_bond__levels_adopt(pd) : BW_OK;
+  }
+  bw_status st = find_near(pd, &change);
+  if (st == BW_OK) st = make_factors(pd, &change);
+  bw_pd_body_release_storage_array(&change.near);
+  return st;
 }
 
 static void destroy(bw_pd_body *pd)
@@ -156,6 +209,7 @@ const bw_pd_law bw_pd_bond_law = {.name = "bond",
                                   .keys = keys,
                                   .check = check,
                                   .prepare = prepare,
+                                  .settle = settle,
                                   .constants = constants,
                                   .n_sweep = 1,
                                   .sweep = {bw_pd_bond__force},

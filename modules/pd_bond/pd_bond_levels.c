@@ -19,6 +19,8 @@
 
 enum { MOST = 2000 }; /* steps; some 100 to 300 are usual */
 enum { ROUNDS = 8 };  /* in each the bonds that would become too soft are fixed; 1 to 3 are usual */
+enum { PAUSE = 6 };   /* steps in which, with faces, the square of the residual ... */
+static const double FALLS = 0.9; /* ... has to fall to this part, or there are no more of them */
 static const double LOW = 0.1, HIGH = 4; /* of alpha: the softest, the stiffest that a bond gets */
 
 /* Vectors of the solution: (rows, cubics) each. */
@@ -89,6 +91,14 @@ INLINE vec change(const bw_pd_bond_zone *z, const bw_pd_block *block, const bw_p
   return mine * (bw_real)(k_hl * (other->dv / unit)) - theirs * (bw_real)(k_hl * (own->dv / unit));
 }
 
+static bool has_row(const bw_pd_bond_zone *z, const bw_pd_block *block)
+{
+  const int32_t end = block->own + __builtin_popcount(block->mask);
+  for (int32_t i = block->own; i < end; i++)
+    if (z->row[i] >= 0) return true;
+  return false;
+}
+
 /* out = white A x for x the present factors (`all`), or their change by mu. Local. */
 static void gather(const bw_pd_bond_zone *z, bool all, double out[])
 {
@@ -97,7 +107,7 @@ static void gather(const bw_pd_bond_zone *z, bool all, double out[])
   const bw_real unit = (bw_real)(pd->bonds.factor != NULL ? BW_PD_ALPHA_UNIT : 1);
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
-    if (block->exact < 0) continue;
+    if (block->exact < 0 || !has_row(z, block)) continue;
     vec sum[BW_PD_BOND_CUBICS];
     for (int k = 0; k < n; k++)
       sum[k] = vec_all(0);
@@ -133,10 +143,19 @@ static void apply(const bw_pd_bond_zone *z, const double x[], double out[])
   gather(z, false, out);
 }
 
+/* The square of what the present factors leave of the conditions. Collective. */
+static double ghost(const bw_pd_bond_zone *z, const vectors *x)
+{
+  gather(z, true, x->r);
+  return dot(z, x->r, x->r);
+}
+
 /* S lambda = -white A alpha_0 by conjugate residuals. The factors of faces come from a fixed number
  * of sweeps and are rounded: beside them no state is wholly at rest, and whoever demanded it would
- * get large factors for nothing. There a thousandth of the ghost force may stay. Collective. */
-static void solve(const bw_pd_bond_zone *z, vectors *x)
+ * get large factors for nothing. There a thousandth of the ghost force may stay, and where jumps
+ * meet faces what is left when it hardly falls any more; scale: the square of what the surface's
+ * factors leave. Collective. */
+static void solve(const bw_pd_bond_zone *z, double scale, vectors *x)
 {
   const size_t n = z->rows * (size_t)z->cubics;
   const bool faces = z->pd->bonds.factor != NULL;
@@ -150,9 +169,12 @@ static void solve(const bw_pd_bond_zone *z, vectors *x)
   }
   apply(z, x->r, x->v);
   memcpy(x->sp, x->v, n * sizeof *x->sp);
-  const double first = dot(z, x->r, x->r);
-  double rv = dot(z, x->r, x->v), rr = first;
-  for (int q = 0; q < most && rr > least * least * first && rv > least * least * first; q++) {
+  double rv = dot(z, x->r, x->v), rr = dot(z, x->r, x->r), before = INFINITY;
+  for (int q = 0; q < most && rr > least * least * scale && rv > least * least * scale; q++) {
+    if (faces && q % PAUSE == 0) {
+      if (rr > FALLS * before) break;
+      before = rr;
+    }
     const double a = rv / dot(z, x->sp, x->sp);
     for (size_t k = 0; k < n; k++) {
       x->lambda[k] += a * x->p[k];
@@ -210,20 +232,98 @@ static bw_status arrays(const bw_pd_bond_zone *z, vectors *x)
   return BW_OK;
 }
 
-bw_status bw_pd_bond__levels(bw_pd_body *pd)
+/* mu of the zone <- what the body keeps; `fixed`: of those alone that have no row. Collective. */
+static void recall(const bw_pd_bond_zone *z, bool fixed)
+{
+  const bw_pd_body *pd = z->pd;
+  for (int k = 0; k < z->cubics; k++) {
+    for (size_t i = 0; i < pd->n; i++) {
+      const int32_t place = pd->points.place[i];
+      const bool there = z->near[place] > 0 && !(fixed && z->row[i] >= 0);
+      z->mu[k][place] = there ? bw_pd_bond__state(pd)->mu[k][place] : 0;
+    }
+    bw_pd_body_fill_places(pd, z->mu[k]);
+  }
+}
+
+/* The body keeps mu of the rows, and no more that of who is not near a jump. Local. */
+static void keep(const bw_pd_bond_zone *z)
+{
+  bw_pd_body *pd = z->pd;
+  for (int k = 0; k < bw_pd_bond__state(pd)->n_mu; k++)
+    for (size_t i = 0; i < pd->n; i++) {
+      const int32_t place = pd->points.place[i];
+      bw_real *mu = &bw_pd_bond__state(pd)->mu[k][place];
+      *mu = !(z->near[place] > 0) ? 0 : z->row[i] >= 0 ? z->mu[k][place] : *mu;
+    }
+}
+
+/* Where faces have their factors: one solution, beside what is kept of the body before. */
+static bw_status solve_once(bw_pd_bond_zone *z, const bw_pd_bond_change *change, vectors *x)
+{
+  BW_TRY(bw_comm_agree(z->pd->comm, bw_pd_bond__conditions(z)));
+  const double scale = ghost(z, x);
+  if (change != NULL) {
+    recall(z, true);
+    store(z, true);
+  }
+  /* Rows alone are written from here on: those that are kept add nothing to a change. */
+  for (int k = 0; k < z->cubics; k++)
+    memset(z->mu[k], 0, z->pd->points.n_storage * sizeof *z->mu[k]);
+  solve(z, scale, x);
+  spread(z, x->lambda);
+  keep(z);
+  /* From all multipliers at once, as after a restart. */
+  if (change != NULL) {
+    bw_pd_bond__zone_begin(z);
+    recall(z, false);
+  }
+  store(z, true);
+  return BW_OK;
+}
+
+/* Elsewhere: bonds beside edges would have to push; they are left soft, the others do without. */
+static bw_status solve_in_rounds(bw_pd_bond_zone *z, vectors *x)
+{
+  for (int round = 0; round < ROUNDS; round++) {
+    BW_TRY(bw_comm_agree(z->pd->comm, bw_pd_bond__conditions(z)));
+    solve(z, ghost(z, x), x);
+    spread(z, x->lambda);
+    if (store(z, round == ROUNDS - 1) == 0) break;
+  }
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__levels_room(bw_pd_body *pd)
+{
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  const int n = bw_pd_bond__cubics(pd->dimension);
+  for (int k = 0; k < n; k++)
+    BW_TRY(bw_pd_body_add_field(pd, -1, true, &state->mu[k]));
+  state->n_mu = n;
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__levels_adopt(bw_pd_body *pd)
+{
+  bw_pd_bond_zone z = {0};
+  const bw_status st = bw_pd_bond__zone(pd, NULL, &z);
+  if (st == BW_OK) {
+    recall(&z, false);
+    store(&z, true);
+  }
+  bw_pd_bond__zone_release(&z);
+  return st;
+}
+
+bw_status bw_pd_bond__levels(bw_pd_body *pd, const bw_pd_bond_change *change)
 {
   bw_pd_bond_zone z = {0};
   vectors x = {0};
-  bw_status st = bw_pd_bond__zone(pd, &z);
+  bw_status st = bw_pd_bond__zone(pd, change, &z);
   if (st == BW_OK) st = bw_comm_agree(pd->comm, arrays(&z, &x));
-  for (int round = 0; round < ROUNDS && st == BW_OK; round++) {
-    st = bw_comm_agree(pd->comm, bw_pd_bond__conditions(&z));
-    if (st != BW_OK) break;
-    solve(&z, &x);
-    spread(&z, x.lambda);
-    /* Beside edges some bonds would have to push: they are left soft, the others do without. */
-    if (store(&z, round == ROUNDS - 1 || pd->bonds.factor != NULL) == 0) break;
-  }
+  if (st == BW_OK)
+    st = pd->bonds.factor != NULL ? solve_once(&z, change, &x) : solve_in_rounds(&z, &x);
   double **all[] = {&x.lambda, &x.r, &x.p, &x.v, &x.sp};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);

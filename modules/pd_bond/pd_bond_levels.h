@@ -3,8 +3,6 @@
 #include "pd_bond.h"
 #include "pd_sweep.h"
 
-enum { BW_PD_BOND_CUBICS = 10 }; /* monomials of degree 3 of a direction; in the plane 4 */
-
 /* The particles near a jump and their conditions. A row is one of these particles of this rank. */
 typedef struct {
   bw_pd_body *pd;
@@ -23,8 +21,13 @@ typedef struct {
 } bw_pd_bond_zone;
 
 /* pd_bond_zone.c: fills all of it but for white and mu's values, and blocks' exact, bonds.exact
- * with the factors that the surface gave. Collective. */
-bw_status bw_pd_bond__zone(bw_pd_body *pd, bw_pd_bond_zone *z) BW_MUST_CHECK;
+ * with the factors that the surface gave. Rows are those near a change, where one is given (NULL:
+ * all). Collective. */
+bw_status bw_pd_bond__zone(bw_pd_body *pd, const bw_pd_bond_change *change,
+                           bw_pd_bond_zone *z) BW_MUST_CHECK;
+/* bonds.exact are the factors that the surface gave, again. Local. */
+void bw_pd_bond__zone_begin(bw_pd_bond_zone *z);
+int bw_pd_bond__cubics(int dimension); /* how many monomials */
 /* white, for the bonds that are free now. BW_EMEM. Local. */
 bw_status bw_pd_bond__conditions(bw_pd_bond_zone *z) BW_MUST_CHECK;
 void bw_pd_bond__zone_release(bw_pd_bond_zone *z);

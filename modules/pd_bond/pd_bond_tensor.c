@@ -23,7 +23,7 @@
 
 #include <string.h>
 
-enum { EVEN = 15, MOST = 22, SWEEPS = 60 };
+enum { EVEN = 15, MOST = BW_PD_BOND_CONDITIONS, SWEEPS = 60 };
 enum { LAYERS = 3 }; /* families that a face is felt through, where levels change */
 static const double LOW = 0.25, HIGH = 65535 * BW_PD_ALPHA_UNIT;
 
@@ -35,6 +35,7 @@ typedef struct {
   bool *held;          /* (n) particles that keep those */
   bw_real *at[MOST];   /* storage: lambda with momentum */
   bw_real *last[MOST]; /* own: lambda of the sweep before */
+  bw_real *next[MOST]; /* own: of this one */
 } solver;
 
 /* Mean of x^a y^b z^c over the directions: (a-1)!! (b-1)!! (c-1)!!/(d (d + 2)), degree 4. */
@@ -132,6 +133,8 @@ static bw_status basis(bw_pd_body *pd, solver *v)
   double *bulk = bw_pd_bond__own(pd)->bulk;
   const size_t n = (size_t)s->same;
   double *rows = NULL, total = 0;
+  for (size_t q = 0; q < n; q++)
+    bulk[q] = 1;
   int power[EVEN][3], all = MOST;
   const int even = monomials(pd->dimension, power);
   BW_TRY(BW_ALLOCATE(&rows, MOST * n));
@@ -220,19 +223,19 @@ static bool is_held(const bool held[], const bw_pd_block *block)
 }
 
 /* All blocks; K is known when this is compiled. */
-static void ascend_all(const bw_pd_body *pd, const solver *v, bw_real *const next[])
+static void ascend_all(const bw_pd_body *pd, const solver *v)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     if (pd->mapped && is_held(v->held, &pd->bonds.block[b])) continue;
     if (v->n == MOST)
-      ascend(pd, v, &pd->bonds.block[b], next, MOST);
+      ascend(pd, v, &pd->bonds.block[b], v->next, MOST);
     else
-      ascend(pd, v, &pd->bonds.block[b], next, v->n);
+      ascend(pd, v, &pd->bonds.block[b], v->next, v->n);
   }
 }
 
 /* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
-static void solve(bw_pd_body *pd, solver *v, bw_real *const next[])
+static void solve(bw_pd_body *pd, solver *v)
 {
   /* A fixed number of sweeps, no norm over ranks: the same bits on any number of them. */
   double t = 1;
@@ -241,12 +244,13 @@ static void solve(bw_pd_body *pd, solver *v, bw_real *const next[])
     const bw_real momentum = (bw_real)((t - 1) / after);
     t = after;
     /* Everybody reads the old multipliers of its neighbours, whoever owns them. */
-    ascend_all(pd, v, next);
+    ascend_all(pd, v);
     for (int k = 0; k < v->n; k++) {
       for (size_t i = 0; i < pd->n; i++) {
         if (v->held[i]) continue;
-        v->at[k][pd->points.place[i]] = next[k][i] + momentum * (next[k][i] - v->last[k][i]);
-        v->last[k][i] = next[k][i];
+        const bw_real next = v->next[k][i];
+        v->at[k][pd->points.place[i]] = next + momentum * (next - v->last[k][i]);
+        v->last[k][i] = next;
       }
       /* Copies have to be current before the next sweep reads them. */
       bw_pd_body_fill_places(pd, v->at[k]);
@@ -303,8 +307,7 @@ static void mark_cut(const bw_pd_body *pd, const solver *v, bw_real *near)
   }
 }
 
-/* near of those with a neighbour that was near before. */
-static void mark_neighbours(const bw_pd_body *pd, const bw_real *before, bw_real *near)
+void bw_pd_bond__mark_neighbours(const bw_pd_body *pd, const bw_real *before, bw_real *near)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
@@ -328,7 +331,7 @@ static bw_status hold_inside(bw_pd_body *pd, solver *v)
   for (int layer = 0; layer < LAYERS && st == BW_OK; layer++) {
     bw_pd_body_fill_places(pd, near);
     memcpy(before, near, places * sizeof *before);
-    mark_neighbours(pd, before, near);
+    bw_pd_bond__mark_neighbours(pd, before, near);
   }
   for (size_t i = 0; i < pd->n && st == BW_OK; i++)
     v->held[i] = v->held[i] || !(near[pd->points.place[i]] > 0);
@@ -337,46 +340,106 @@ static bw_status hold_inside(bw_pd_body *pd, solver *v)
   return st;
 }
 
-static bw_status solver_arrays(const bw_pd_body *pd, solver *v, bw_real *next[])
+/* Room for the multipliers, or that which the body keeps; and for the factors. */
+static bw_status solver_arrays(bw_pd_body *pd, solver *v)
 {
+  const bw_pd_bond_state *state = bw_pd_bond__state(pd);
   BW_TRY(BW_ALLOCATE(&v->held, pd->n));
-  hold(pd, v);
   for (int k = 0; k < v->n; k++) {
-    BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &v->at[k]));
+    if (state->n_lambda > 0)
+      v->at[k] = state->lambda[k];
+    else
+      BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &v->at[k]));
     BW_TRY(BW_ALLOCATE(&v->last[k], pd->n));
-    BW_TRY(BW_ALLOCATE(&next[k], pd->n));
-    /* Everybody starts from the full family: in the bulk that is the solution. */
-    for (size_t p = 0; p < pd->points.n_storage; p++)
-      v->at[k][p] = (bw_real)v->full[k];
-    for (size_t i = 0; i < pd->n; i++)
-      v->last[k][i] = (bw_real)v->full[k];
+    BW_TRY(BW_ALLOCATE(&v->next[k], pd->n));
   }
+  return pd->bonds.factor != NULL ? BW_OK
+                                  : BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES);
+}
+
+/* Where everybody starts: from the full family, which in the bulk is the solution; who had
+ * multipliers, from those, and away from a change they are kept. Collective. */
+static void begin(const bw_pd_body *pd, solver *v, const bw_pd_bond_change *change)
+{
+  for (size_t i = 0; i < pd->n; i++) {
+    const int32_t p = pd->points.place[i];
+    const bool had = change != NULL && !change->fresh[i] && !v->held[i];
+    for (int k = 0; k < v->n; k++)
+      v->at[k][p] = v->last[k][i] = had ? v->at[k][p] : (bw_real)v->full[k];
+    v->held[i] = v->held[i] || (had && !(change->near[p] > 0));
+  }
+  for (int k = 0; k < v->n; k++)
+    bw_pd_body_fill_places(pd, v->at[k]);
+}
+
+static void release(const bw_pd_body *pd, solver *v)
+{
+  const bool kept = bw_pd_bond__state(pd)->n_lambda > 0;
+  for (int k = 0; k < MOST; k++) {
+    if (!kept) bw_pd_body_release_storage_array(&v->at[k]);
+    bw_release(&v->last[k]);
+    bw_release(&v->next[k]);
+  }
+  bw_release(&v->phi);
+  bw_release(&v->held);
+}
+
+/* The factors of the multipliers, and the constants that hold those of a full family. Collective.
+ */
+static bw_status finish(bw_pd_body *pd, const solver *v)
+{
+  store(pd, v);
+  BW_TRY(bw_comm_agree(pd->comm,
+                       bw_pd_bond__full_family(pd))); /* a crack's energy holds the factors */
+  bw_pd_bond__calibrate(pd);
   return BW_OK;
 }
 
-bw_status bw_pd_bond__tensor(bw_pd_body *pd)
+bw_status bw_pd_bond__tensor_room(bw_pd_body *pd)
+{
+  bw_pd_bond_state *state = bw_pd_bond__own(pd);
+  solver v = {0};
+  bw_status st = basis(pd, &v);
+  for (int k = 0; k < v.n; k++)
+    BW_THEN(st, bw_pd_body_add_field(pd, -1, true, &state->lambda[k]));
+  bw_release(&v.phi);
+  BW_TRY(st);
+  state->n_lambda = v.n;
+  /* Bonds may be cut before they have their factors. */
+  BW_TRY(BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES));
+  for (size_t q = 0; q < pd->bonds.n_slot * BW_PD_LANES; q++)
+    pd->bonds.factor[q] = (uint16_t)(1 / BW_PD_ALPHA_UNIT);
+  return BW_OK;
+}
+
+bw_status bw_pd_bond__tensor(bw_pd_body *pd, const bw_pd_bond_change *change)
 {
   solver v = {0};
-  bw_real *next[MOST] = {NULL};
   bw_status st = basis(pd, &v);
-  BW_THEN(st, solver_arrays(pd, &v, next));
-  BW_THEN(st, BW_ALLOCATE(&pd->bonds.factor, pd->bonds.n_slot * BW_PD_LANES));
+  BW_THEN(st, solver_arrays(pd, &v));
   st = bw_comm_agree(pd->comm, st);
-  if (st == BW_OK && pd->mapped) st = hold_inside(pd, &v);
   if (st == BW_OK) {
-    /* Multipliers are needed until the factors are stored; then they go. */
-    solve(pd, &v, next);
-    store(pd, &v);
-    st = bw_comm_agree(pd->comm,
-                       bw_pd_bond__full_family(pd)); /* a crack's energy holds the factors */
-    if (st == BW_OK) bw_pd_bond__calibrate(pd);
+    hold(pd, &v);
+    if (pd->mapped) st = hold_inside(pd, &v);
   }
-  for (int k = 0; k < MOST; k++) {
-    bw_pd_body_release_storage_array(&v.at[k]);
-    bw_release(&v.last[k]);
-    bw_release(&next[k]);
+  if (st == BW_OK) {
+    begin(pd, &v, change);
+    solve(pd, &v);
+    st = finish(pd, &v);
   }
-  bw_release(&v.phi);
-  bw_release(&v.held);
+  release(pd, &v);
+  return st;
+}
+
+bw_status bw_pd_bond__tensor_adopt(bw_pd_body *pd)
+{
+  solver v = {0};
+  bw_status st = basis(pd, &v);
+  BW_THEN(st, solver_arrays(pd, &v));
+  st = bw_comm_agree(pd->comm, st);
+  for (int k = 0; k < v.n && st == BW_OK; k++)
+    bw_pd_body_fill_places(pd, v.at[k]);
+  if (st == BW_OK) st = finish(pd, &v);
+  release(pd, &v);
   return st;
 }

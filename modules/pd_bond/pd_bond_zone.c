@@ -12,8 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { LAYERS = 2 }; /* horizons that the zone is wider than the bonds that cross the jump */
-
 /* Exponents of the monomials of degree 3, x^3 first; returns how many. */
 static int monomials(int dimension, int power[BW_PD_BOND_CUBICS][3])
 {
@@ -25,6 +23,12 @@ static int monomials(int dimension, int power[BW_PD_BOND_CUBICS][3])
       n++;
     }
   return n;
+}
+
+int bw_pd_bond__cubics(int dimension)
+{
+  int power[BW_PD_BOND_CUBICS][3];
+  return monomials(dimension, power);
 }
 
 /* Tables of directions: monomials and pull. */
@@ -54,7 +58,7 @@ static bw_status tables(bw_pd_bond_zone *z)
   return BW_OK;
 }
 
-/* near of the own particles with a bond across a jump; or, later, to one that is near. */
+/* near of the own particles with a bond across a jump; or to one that is marked in before. */
 static void mark(const bw_pd_bond_zone *z, const bw_real *before, bw_real *near)
 {
   const bw_pd_body *pd = z->pd;
@@ -71,25 +75,19 @@ static void mark(const bw_pd_bond_zone *z, const bw_real *before, bw_real *near)
   }
 }
 
+/* Who has a bond across a jump has all that is needed among its bonds to others of these; a wider
+ * zone makes the factors no better (validation/pd_bond/levels_patch.c, levels_reflection.c). */
 static bw_status find(bw_pd_bond_zone *z)
 {
   const bw_pd_body *pd = z->pd;
-  const size_t places = pd->points.n_storage;
-  bw_real *before = NULL;
-  bw_status st = bw_pd_body_storage_array(places, &z->near);
-  BW_THEN(st, bw_pd_body_storage_array(places, &before));
-  /* Layer by layer; copies follow their owners, so that all ranks find the same. */
-  st = bw_comm_agree(pd->comm, st);
-  for (int layer = 0; layer <= LAYERS && st == BW_OK; layer++) {
-    if (layer > 0) memcpy(before, z->near, places * sizeof *before);
-    mark(z, layer == 0 ? NULL : before, z->near);
-    bw_pd_body_fill_places(pd, z->near);
-  }
-  bw_pd_body_release_storage_array(&before);
-  return st;
+  BW_TRY(bw_comm_agree(pd->comm, bw_pd_body_storage_array(pd->points.n_storage, &z->near)));
+  mark(z, NULL, z->near);
+  /* Copies follow their owners, so that all ranks find the same. */
+  bw_pd_body_fill_places(pd, z->near);
+  return BW_OK;
 }
 
-static bw_status list_rows(bw_pd_bond_zone *z)
+static bw_status list_rows(bw_pd_bond_zone *z, const bw_pd_bond_change *change)
 {
   const bw_pd_body *pd = z->pd;
   BW_TRY(bw_pd_body_storage_array(pd->points.n_storage, &z->cut));
@@ -97,7 +95,8 @@ static bw_status list_rows(bw_pd_bond_zone *z)
   BW_TRY(BW_ALLOCATE(&z->particle, pd->n));
   for (size_t i = 0; i < pd->n; i++) {
     z->row[i] = -1;
-    if (!(z->near[pd->points.place[i]] > 0)) continue;
+    const int32_t place = pd->points.place[i];
+    if (!(z->near[place] > 0) || (change != NULL && !(change->near[place] > 0))) continue;
     z->particle[z->rows] = (int32_t)i;
     z->row[i] = (int32_t)z->rows++;
   }
@@ -119,8 +118,11 @@ static bool touches(const bw_pd_bond_zone *z, const bw_pd_block *block)
 static bw_status room(bw_pd_bond_zone *z)
 {
   bw_pd_bonds *bonds = &z->pd->bonds;
+  bw_release(&bonds->exact);
+  bonds->n_exact = 0;
   for (size_t b = 0; b < bonds->n_block; b++) {
     bw_pd_block *block = &bonds->block[b];
+    block->exact = -1;
     if (!touches(z, block)) continue;
     BW_REQUIRE(bonds->n_exact + (block[1].slot - block->slot) < INT32_MAX / BW_PD_LANES, BW_EINPUT,
                "solid: too many bonds near jumps between levels on one rank; use more ranks");
@@ -132,7 +134,7 @@ static bw_status room(bw_pd_bond_zone *z)
 }
 
 /* The factors that there are, and which of them may change: those between two near particles. */
-static void begin(bw_pd_bond_zone *z)
+void bw_pd_bond__zone_begin(bw_pd_bond_zone *z)
 {
   bw_pd_body *pd = z->pd;
   bw_pd_bonds *bonds = &pd->bonds;
@@ -351,16 +353,16 @@ bw_status bw_pd_bond__conditions(bw_pd_bond_zone *z)
   return BW_OK;
 }
 
-bw_status bw_pd_bond__zone(bw_pd_body *pd, bw_pd_bond_zone *z)
+bw_status bw_pd_bond__zone(bw_pd_body *pd, const bw_pd_bond_change *change, bw_pd_bond_zone *z)
 {
   z->pd = pd;
   bw_status st = bw_comm_agree(pd->comm, tables(z));
   if (st == BW_OK) st = find(z);
-  BW_THEN(st, list_rows(z));
+  BW_THEN(st, list_rows(z, change));
   BW_THEN(st, room(z));
   st = bw_comm_agree(pd->comm, st);
   if (st != BW_OK) return st;
-  begin(z);
+  bw_pd_bond__zone_begin(z);
   z->all = (int64_t)z->rows;
   bw_comm_sum_int(pd->comm, 1, &z->all);
   return find_cut(z);

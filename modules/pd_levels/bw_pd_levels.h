@@ -72,9 +72,10 @@ void bw_pd_levels_recast(int dimension, double ds, const double axes[3][3], int 
 
 /* pd_levels_move.c */
 
-/* The motion, forces and broken bonds of a body of one map go to a body of the same sites, of which
- * the ranks gave the same parts, and of another map. The new body's displacements are 0 before.
- * BW_EMEM, the same on all ranks. Collective. */
+/* The motion, forces, broken bonds and the law's saved fields of a body of one map go to a body of
+ * the same sites, of which the ranks gave the same parts, and of another map; fields are 0 in cells
+ * whose level changes. The new body's displacements are 0 before. BW_EMEM, the same on all ranks.
+ * Collective. */
 bw_status bw_pd_levels_move(bw_pd_body *from, const bw_pd_map *old, const bw_pd_sites *given,
                             const bw_pd_map *now, bw_pd_body *to) BW_MUST_CHECK;
 

@@ -17,6 +17,7 @@ typedef struct {
   int64_t n;                 /* of this rank */
   bw_pd_levels_rider *rider; /* (n) */
   uint8_t *bits;             /* (n, bytes) broken bonds, one bit per direction */
+  double *field;             /* (n, fields) saved fields of the law */
 } home;
 
 /* What moving needs to know. */
@@ -24,7 +25,8 @@ typedef struct {
   const bw_comm *comm;
   const bw_pd_sites *given;
   int dimension;
-  size_t bytes; /* of a row of bits */
+  size_t bytes;  /* of a row of bits */
+  size_t fields; /* of the law that are saved */
 } journey;
 
 static void release_home(home *h)
@@ -32,6 +34,7 @@ static void release_home(home *h)
   bw_release(&h->first);
   bw_release(&h->rider);
   bw_release(&h->bits);
+  bw_release(&h->field);
 }
 
 static int level_at(const bw_pd_map *map, const bw_pd_sites *given, int64_t q)
@@ -54,6 +57,7 @@ static bw_status make_home(const journey *j, const bw_pd_map *map, home *h)
   bw_release(&all);
   BW_THEN(st, BW_ALLOCATE(&h->rider, (size_t)h->n));
   BW_THEN(st, BW_ALLOCATE(&h->bits, (size_t)h->n * j->bytes));
+  BW_THEN(st, BW_ALLOCATE(&h->field, (size_t)h->n * j->fields));
   return bw_comm_agree(j->comm, st);
 }
 
@@ -155,6 +159,26 @@ static void fill_bits(const bw_pd_body *pd, size_t bytes, uint8_t bits[])
     }
 }
 
+/* Saved fields of the own particles (n, fields), out of the body or into it. */
+static void copy_fields(bw_pd_body *pd, bool in, double rows[])
+{
+  size_t width = 0, column = 0;
+  for (int q = 0; q < pd->fields.n; q++)
+    width += pd->fields.row[q].saved;
+  for (int q = 0; q < pd->fields.n; q++) {
+    bw_real *value = pd->fields.row[q].value;
+    if (!pd->fields.row[q].saved) continue;
+    for (size_t i = 0; i < pd->n; i++) {
+      double *at = &rows[width * i + column];
+      if (in)
+        value[pd->points.place[i]] = (bw_real)*at;
+      else
+        *at = (double)value[pd->points.place[i]];
+    }
+    column++;
+  }
+}
+
 /* A row on its way home: where it belongs there, and what it is. */
 typedef struct {
   int64_t id;
@@ -162,24 +186,27 @@ typedef struct {
 } passenger;
 
 /* What arrived to its place by id. */
-static void settle(const journey *j, home *h, size_t n, const passenger row[], const uint8_t bits[])
+static void settle(const journey *j, home *h, size_t n, const passenger row[], const uint8_t bits[],
+                   const double field[])
 {
   const int64_t first = h->first[bw_comm_rank(j->comm)];
   for (size_t q = 0; q < n; q++) {
     const size_t at = (size_t)(row[q].id - first);
     h->rider[at] = row[q].rider;
     memcpy(h->bits + at * j->bytes, bits + q * j->bytes, j->bytes);
+    memcpy(h->field + at * j->fields, field + q * j->fields, j->fields * sizeof *field);
   }
 }
 
 /* Everybody home. Collective. */
-static bw_status go_home(const journey *j, const bw_pd_body *pd, const bw_pd_map *old,
+static bw_status go_home(const journey *j, bw_pd_body *pd, const bw_pd_map *old,
                          const bw_pd_map *now, home *h)
 {
   bw_exchange *plan = NULL;
   bw_pd_levels_rider *rider = NULL;
   passenger *out = NULL, *in = NULL;
   uint8_t *bits = NULL, *bits_in = NULL;
+  double *field = NULL, *field_in = NULL;
   BW_TRY(plan_home(j, pd, h, &plan));
   const size_t arrive = bw_exchange_received(plan);
   bw_status st = BW_ALLOCATE(&rider, pd->n);
@@ -187,6 +214,8 @@ static bw_status go_home(const journey *j, const bw_pd_body *pd, const bw_pd_map
   BW_THEN(st, BW_ALLOCATE(&bits, pd->n * j->bytes));
   BW_THEN(st, BW_ALLOCATE(&in, arrive));
   BW_THEN(st, BW_ALLOCATE(&bits_in, arrive * j->bytes));
+  BW_THEN(st, BW_ALLOCATE(&field, pd->n * j->fields));
+  BW_THEN(st, BW_ALLOCATE(&field_in, arrive * j->fields));
   BW_THEN(st, fill_riders(pd, old, now, rider));
   st = bw_comm_agree(j->comm, st);
   if (st == BW_OK) {
@@ -195,10 +224,12 @@ static bw_status go_home(const journey *j, const bw_pd_body *pd, const bw_pd_map
       out[i] = (passenger){.id = pd->points.id[i], .rider = rider[i]};
     bw_exchange_forward(plan, sizeof *out, out, in);
     bw_exchange_forward(plan, j->bytes, bits, bits_in);
-    settle(j, h, arrive, in, bits_in);
+    copy_fields(pd, false, field);
+    if (j->fields > 0) bw_exchange_forward(plan, j->fields * sizeof *field, field, field_in);
+    settle(j, h, arrive, in, bits_in, field_in);
   }
   bw_exchange_destroy(&plan);
-  void *all[] = {&rider, &out, &in, &bits, &bits_in};
+  void *all[] = {&rider, &out, &in, &bits, &bits_in, &field, &field_in};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   return st;
@@ -216,7 +247,11 @@ static void recast(const journey *j, const bw_pd_body *pd, const bw_pd_map *old,
     const size_t had = (size_t)1 << (j->dimension * from), has = (size_t)1 << (j->dimension * to);
     bw_pd_levels_recast(j->dimension, c->ds, c->axes, from, to, before->rider + a,
                         after->rider + b);
-    if (from == to) memcpy(after->bits + b * j->bytes, before->bits + a * j->bytes, had * j->bytes);
+    if (from == to) {
+      memcpy(after->bits + b * j->bytes, before->bits + a * j->bytes, had * j->bytes);
+      memcpy(after->field + b * j->fields, before->field + a * j->fields,
+             had * j->fields * sizeof *after->field);
+    }
     a += had;
     b += has;
   }
@@ -259,6 +294,7 @@ static bw_status go_out(const journey *j, const home *h, bw_pd_body *pd)
   bw_pd_levels_rider *rider = NULL, *reply = NULL;
   int64_t *asked = NULL;
   uint8_t *bits = NULL, *bits_out = NULL;
+  double *field = NULL, *field_out = NULL;
   BW_TRY(plan_home(j, pd, h, &plan));
   const size_t ask = bw_exchange_received(plan);
   bw_status st = BW_ALLOCATE(&rider, pd->n);
@@ -266,6 +302,8 @@ static bw_status go_out(const journey *j, const home *h, bw_pd_body *pd)
   BW_THEN(st, BW_ALLOCATE(&asked, ask));
   BW_THEN(st, BW_ALLOCATE(&reply, ask));
   BW_THEN(st, BW_ALLOCATE(&bits_out, ask * j->bytes));
+  BW_THEN(st, BW_ALLOCATE(&field, pd->n * j->fields));
+  BW_THEN(st, BW_ALLOCATE(&field_out, ask * j->fields));
   st = bw_comm_agree(j->comm, st);
   if (st == BW_OK) {
     bw_exchange_forward(plan, sizeof *asked, pd->points.id, asked);
@@ -273,14 +311,17 @@ static bw_status go_out(const journey *j, const home *h, bw_pd_body *pd)
       const size_t at = (size_t)(asked[q] - h->first[bw_comm_rank(j->comm)]);
       reply[q] = h->rider[at];
       memcpy(bits_out + q * j->bytes, h->bits + at * j->bytes, j->bytes);
+      memcpy(field_out + q * j->fields, h->field + at * j->fields, j->fields * sizeof *field);
     }
     bw_exchange_backward(plan, sizeof *reply, reply, rider);
     bw_exchange_backward(plan, j->bytes, bits_out, bits);
+    if (j->fields > 0) bw_exchange_backward(plan, j->fields * sizeof *field, field_out, field);
     put_riders(pd, rider);
+    copy_fields(pd, true, field);
     cut(pd, j->bytes, bits);
   }
   bw_exchange_destroy(&plan);
-  void *all[] = {&rider, &reply, &asked, &bits, &bits_out};
+  void *all[] = {&rider, &reply, &asked, &bits, &bits_out, &field, &field_out};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   return st;
@@ -289,10 +330,12 @@ static bw_status go_out(const journey *j, const home *h, bw_pd_body *pd)
 bw_status bw_pd_levels_move(bw_pd_body *from, const bw_pd_map *old, const bw_pd_sites *given,
                             const bw_pd_map *now, bw_pd_body *to)
 {
-  const journey j = {.comm = from->comm,
-                     .given = given,
-                     .dimension = from->dimension,
-                     .bytes = ((size_t)from->directions + 7) / 8};
+  journey j = {.comm = from->comm,
+               .given = given,
+               .dimension = from->dimension,
+               .bytes = ((size_t)from->directions + 7) / 8};
+  for (int q = 0; q < from->fields.n; q++)
+    j.fields += from->fields.row[q].saved;
   home before = {0}, after = {0};
   /* Gradients read the neighbours' velocities, too. */
   bw_pd_body_refresh(from, true);

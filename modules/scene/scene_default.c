@@ -37,7 +37,7 @@ static void default_body(bw_scene_body *b)
   b->held[0].box = (bw_scene_box){{NAN, NAN, NAN}, {NAN, NAN, NAN}};
   b->cracks[0] = (bw_scene_crack){{NAN, NAN, NAN}, {NAN, NAN, NAN}, {0, 0, 0}};
   b->levels[0] = (bw_scene_level){INT_MIN, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
-  b->refine = (bw_scene_refine){INT_MIN, BW_PD_LEVELS_STRETCH, 0.5, 0.2, 2.0, 1.0};
+  b->refine = (bw_scene_refine){INT_MIN, BW_PD_LEVELS_STRETCH, 0.6, 0.2, 1.25, 2.0};
   default_shape(&b->shape[0]);
 }
 

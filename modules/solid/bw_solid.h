@@ -59,10 +59,10 @@ typedef struct {
   int level; /* of the finest particles, 1: half of ds, 2: a quarter ...; 0: levels stay as they
                     are                                                           default 0 */
   bw_pd_levels_trigger trigger; /* what `at` and `coarsen_at` are shares of       default stretch */
-  double at;                    /* cells beyond this have to be fine              default 0.5 */
+  double at;                    /* cells beyond this have to be fine              default 0.6 */
   double coarsen_at; /* fine cells below this, for some looks, may be coarse      default 0.2 */
-  double buffer;     /* fine cells at least this far around, above 1              default 2 */
-  double ahead;      /* and this much farther when they are made                  default 1 */
+  double buffer;     /* fine cells at least this far around, above 1              default 1.25 */
+  double ahead;      /* and this much farther when they are made                  default 2 */
 } bw_solid_refine;
 
 /* Where particles are finer. */

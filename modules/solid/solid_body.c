@@ -68,6 +68,7 @@ bw_status bw_solid__body(const bw_solid *s, const bw_comm *comm, const bw_pd_sit
       c->law_options != NULL ? c->law_options : bw_solid__law_options(c, law, &store);
   /* The boxes are in the map. */
   body.finer.map = map;
+  body.finer.later = s->body != NULL;
   if (map != NULL) body.finer.n = 0;
   BW_TRY(bw_pd_body_create(comm, &body, law, options, given, out));
   bw_pd_body_set_damping(*out, c->damping.pair, c->damping.mean, c->damping.absolute);

@@ -20,7 +20,7 @@ bw_solid_config bw_solid_config_default(void)
                        .integrator = BW_SOLID_VERLET,
                        .choice = bw_solid_law_choice_default(),
                        .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  c.finer.refine = (bw_solid_refine){.at = 0.5, .coarsen_at = 0.2, .buffer = 2, .ahead = 1};
+  c.finer.refine = (bw_solid_refine){.at = 0.6, .coarsen_at = 0.2, .buffer = 1.25, .ahead = 2};
   for (int g = 0; g < BW_PD_GROUPS; g++)
     for (int h = 0; h < BW_PD_GROUPS; h++)
       c.more.joint_G0[g][h] = NAN;

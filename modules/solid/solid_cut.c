@@ -103,13 +103,34 @@ static bool crosses_image(const bw_pd_body *pd, const cut *c, const double p[3],
   return false;
 }
 
+/* Lanes of a block whose bonds may reach the plane of the cut, or one of its images. */
+static uint8_t in_reach(const bw_pd_body *pd, const bw_pd_block *block, const cut *c)
+{
+  const bw_pd_body_config *g = &pd->config;
+  const bw_pd_stencil *s = &bw_pd_body_level_of(pd, block)->stencil;
+  const double reach = s->unit * s->reach * sqrt(3.0) + 2 * g->disorder * g->ds;
+  uint8_t out = 0;
+  if (g->period[0] > 0 || g->period[1] > 0 || g->period[2] > 0) return block->mask;
+  for (int lane = 0; lane < BW_PD_LANES; lane++) {
+    double x[3];
+    if (!(block->mask >> lane & 1)) continue;
+    bw_pd_body_reference(pd, (size_t)bw_pd_body_owner(block, lane), x);
+    for (int k = 0; k < 3; k++)
+      x[k] -= c->a[k];
+    if (fabs(dot(c->normal, x)) < reach) out |= (uint8_t)(1u << lane);
+  }
+  return out;
+}
+
 static void cut_block(bw_solid *s, bw_pd_block *block, const cut *c)
 {
   bw_pd_body *pd = s->body;
+  const uint8_t near = in_reach(pd, block, c);
+  if (near == 0) return;
   for (uint32_t q = block->slot; q < block[1].slot; q++) {
     bw_pd_slot *slot = &pd->bonds.slot[q];
     for (int lane = 0; lane < BW_PD_LANES; lane++) {
-      if (!(slot->mask >> lane & 1)) continue;
+      if (!((slot->mask & near) >> lane & 1)) continue;
       double x[3], y[3];
       /* Where the particles began: a pre-crack is cut into the unloaded shape. */
       ends(pd, block, slot, lane, x, y);

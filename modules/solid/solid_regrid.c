@@ -15,6 +15,21 @@ static void hand_over(const bw_pd_body *from, bw_pd_body *to)
   to->revision = from->revision;
 }
 
+/* What of a new body's law follows from the old one. Collective. */
+static bw_status settle(const bw_solid *s, const bw_pd_map *now)
+{
+  const bw_pd_body *pd = s->body;
+  bool *fresh = NULL;
+  BW_TRY(bw_comm_agree(pd->comm, BW_ALLOCATE(&fresh, pd->n)));
+  for (size_t i = 0; i < pd->n; i++) {
+    const size_t cell = bw_pd_levels_cell_of(pd, now, i);
+    fresh[i] = now->level[cell] != s->levels->map.level[cell];
+  }
+  const bw_status st = bw_pd_body_settle(s->body, fresh);
+  bw_release(&fresh);
+  return st;
+}
+
 /* The old body's arrays go, those of the new one come, with its cuts and its motion. */
 static bw_status dress(bw_solid *s, bw_pd_body *old, const bw_pd_map *now)
 {
@@ -25,6 +40,7 @@ static bw_status dress(bw_solid *s, bw_pd_body *old, const bw_pd_map *now)
   BW_TRY(bw_solid__cut_again(s));
   hand_over(old, s->body);
   BW_TRY(bw_pd_levels_move(old, &s->levels->map, &s->levels->given, now, s->body));
+  BW_TRY(settle(s, now));
   bw_solid__renew_kinds(s);
   bw_pd_body_touch(s->body);
   s->restored = false;

@@ -203,6 +203,7 @@ bw_status bw_solid_set_restart(bw_solid *s, const double rows[], const double su
       pd->load.extra[k][i] = 0;              /* inside a */
     }
   set_fields(s, rows);
+  if (s->levels != NULL) BW_TRY(bw_pd_body_settle(pd, NULL));
   bw_pd_body_adopt_prescribed(pd);
   bw_solid__retire_rows(s, width, rows);
   set_sums(s, sums);

@@ -27,7 +27,7 @@ typedef struct {
 enum { FINE, SKIN, COARSE, PLATES };
 static const plate plates[PLATES] = {{"fine", 16, 0}, {"skin", 8, 2}, {"coarse", 8, 0}};
 
-/* `more` times as many particles and columns. */
+/* `more` times as many particles across. */
 static bending_config set_up(const plate *p, int more, int cells, bw_coupler_load_kind load)
 {
   bending_config c = bending_config_default();
@@ -68,7 +68,7 @@ static bw_status run_to_rest(const bw_comm *comm, const bending_config *c, bendi
 static void row(bw_validation *v, const char *quantity, const char *how, const plate *p,
                 double measured, double reference)
 {
-  char text[96];
+  char text[128];
   snprintf(text, sizeof text, "%s, %s, over the fine plate's%s", quantity, p->name, how);
   bw_validation_row(v, &(bw_claim){text, quantity, measured / reference, 1.0,
                                    p == &plates[SKIN] ? TOL : INFINITY, BW_ORDER,

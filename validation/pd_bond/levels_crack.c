@@ -37,7 +37,8 @@ typedef struct {
   double end;           /* of the story [s] */
   double lost;          /* work not found again, over the work */
   double regrid;        /* energy that changes of levels took, over fracture */
-  double seconds;       /* processor time of the steps, and of changes of levels */
+  double seconds;       /* processor time of the steps, and of looks and changes of levels ... */
+  double adapting;      /* ... of the latter alone */
   double particles;     /* in the mean over time */
   double changes;       /* of levels */
 } story;
@@ -138,10 +139,14 @@ static bw_status gather(bw_solid *pd, crowd *c)
 static bw_status advance(bw_solid *pd, double dt, crowd *c, story *o)
 {
   bool changed = false;
+  const clock_t began = clock();
   bw_status st = bw_solid_adapt(pd, &changed);
   if (changed) BW_THEN(st, gather(pd, c));
+  const clock_t adapted = clock();
   o->changes += changed;
   BW_THEN(st, bw_solid_step(pd, dt));
+  o->adapting += (double)(adapted - began) / CLOCKS_PER_SEC;
+  o->seconds += (double)(clock() - began) / CLOCKS_PER_SEC;
   return st;
 }
 
@@ -152,7 +157,6 @@ static bw_status follow(bw_solid *pd, double dt, double end, crowd *c, story *o)
   o->first = o->edge = NAN;
   o->end = end;
   bw_status st = gather(pd, c);
-  const clock_t began = clock();
   for (int64_t q = 1; q <= steps && st == BW_OK; q++) {
     double tip[2];
     st = advance(pd, dt, c, o);
@@ -165,7 +169,6 @@ static bw_status follow(bw_solid *pd, double dt, double end, crowd *c, story *o)
     o->side[q / every - 1] = tip[1];
     if (isnan(o->edge) && tip[0] > LENGTH - 2.5 * COARSE) o->edge = t;
   }
-  o->seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
   BW_THEN(st, bw_solid_account(pd, &book));
   o->fracture = book.fracture;
   o->regrid = book.regrid / book.fracture;
@@ -242,6 +245,11 @@ static void compare(bw_validation *v, int levels, const char *name, const story 
   if (!followed) return;
   claim(v, "what changes of levels take", "regrid_over_fracture", some->regrid, 0, INFINITY, extra);
   claim(v, "how often levels change", "changes", some->changes, 0, INFINITY, extra);
+  claim(v, "part of the time that takes", "adapting", some->adapting / some->seconds, 0, INFINITY,
+        extra);
+  const double cells = LENGTH * HEIGHT / (COARSE * COARSE);
+  claim(v, "part of the plate that is fine", "fine",
+        (some->particles - cells) / (all->particles - cells), 0, INFINITY, extra);
 }
 
 static bw_status run(bw_validation *v)

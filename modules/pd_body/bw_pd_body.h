@@ -84,6 +84,10 @@ typedef struct {
   bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet */
   const bw_pd_map *map;       /* in place of boxes, borrowed by create        default NULL */
   bw_pd_jump jump;            /* bonds between levels                  default balanced */
+  bool same_horizon;          /* finer particles keep the horizon of level 0: they have more
+                                 neighbours (m-refinement; else delta-refinement, in which horizon
+                                 and spacing shrink together). For comparison: costs 2^dimension
+                                 more per level                        default false */
   bool later;                 /* another body's motion goes to this one: the law prepares nothing
                                  that its settle makes                       default false */
 } bw_pd_finer;

@@ -169,12 +169,13 @@ bw_status bw_pd_body_levels(bw_pd_body *pd)
   pd->finest = bw_pd_body_finest(c);
   BW_TRY(BW_ALLOCATE(&pd->level, (size_t)pd->finest + 1));
   for (int l = 0; l <= pd->finest; l++) {
-    const double ds = ldexp(c->ds, -l);
+    const double ds = ldexp(c->ds, -l), half = c->family_reach == BW_PD_REACH_HORIZON ? 0 : 0.5;
+    const int shrinks = c->finer.same_horizon ? 0 : l;
     pd->level[l] = (bw_pd_level){.ds = ds,
-                                 .stiff = ldexp(1, (pd->dimension + 1) * l),
-                                 .stretch = sqrt(ldexp(1, l)),
-                                 .horizon = c->horizon_ratio * ds,
-                                 .reach = ds * bw_pd_body_family_reach(c),
+                                 .stiff = ldexp(1, (pd->dimension + 1) * shrinks),
+                                 .stretch = sqrt(ldexp(1, shrinks)),
+                                 .horizon = ldexp(c->horizon_ratio * c->ds, -shrinks),
+                                 .reach = ds * (ldexp(c->horizon_ratio, l - shrinks) + half),
                                  .dv = ds * ds * (planar ? c->thickness : ds),
                                  .area = ds * (planar ? c->thickness : ds)};
   }

@@ -49,7 +49,8 @@ typedef struct {
 /* A row of the table of levels. */
 typedef struct {
   double ds;             /* spacing [L] */
-  double stiff;          /* micromodulus over that of level 0: (horizon_0/horizon)^(D+1) [-] */
+  double stiff;          /* micromodulus over that of level 0 [-]: (horizon_0/horizon)^(D+1), or of
+                            families of one horizon what gives them the same modulus */
   double stretch;        /* critical stretch over that of level 0: (horizon_0/horizon)^1/2 [-] */
   double horizon;        /* m ds [L] */
   double reach;          /* of the family [L]: |xi| < reach */
@@ -58,6 +59,12 @@ typedef struct {
   bw_pd_stencil stencil; /* directions of a family */
   bw_real *row; /* (n_group, n_group, stencil.n, BW_PD_ROW) kernel rows: owner's group, other's */
 } bw_pd_level;
+
+/* The coarser of two rows of one table: constants of bonds between levels are told by it. */
+static inline const bw_pd_level *bw_pd_level_coarser(const bw_pd_level *a, const bw_pd_level *b)
+{
+  return a < b ? a : b;
+}
 
 /* Whether the owner of a bond in a direction of its level's stencil is the end that is first in
  * lattice order: the last axis in which the two differ tells. */

@@ -14,7 +14,7 @@ static double share(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_
   if (slot->direction < own->stencil.same) return gamma;
   /* Between levels by its stiffness, beside that of a bond of the own level. */
   const bw_pd_level *other = pd->level + own->stencil.other[slot->direction];
-  return gamma * fmin(own->stiff, other->stiff) / own->stiff * other->dv / own->dv;
+  return gamma * bw_pd_level_coarser(own, other)->stiff / own->stiff * other->dv / own->dv;
 }
 
 void bw_pd_body_get_damage(const bw_pd_body *pd, double damage[])

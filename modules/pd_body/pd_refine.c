@@ -62,8 +62,10 @@ static void make_plan(const bw_pd_body_config *c, plan *p)
       range *r = &p->split[b][box->level - 1];
       r->lower[k] = whole(floor((box->lower[k] - from) / ds + TOUCH));
       r->upper[k] = whole(ceil((box->upper[k] - from) / ds - TOUCH));
-      const int64_t belt = (int64_t)ceil(2 * c->horizon_ratio);
       for (int l = box->level - 2; l >= 0; l--, r--) {
+        /* A horizon of level l, in cells of the next finer one. */
+        const int halved = c->finer.same_horizon ? l + 1 : 1;
+        const int64_t belt = (int64_t)ceil(ldexp(c->horizon_ratio, halved));
         p->split[b][l].lower[k] = half_down(r->lower[k] - belt);
         p->split[b][l].upper[k] = -half_down(-(r->upper[k] + belt));
       }

@@ -50,7 +50,7 @@ static bw_status gamma_of(const pair *x, int l, int p, const int o[3], double *g
   double *memo = &x->known[(l == x->l ? 0 : x->side * x->side * x->side) + c[0] +
                            x->side * (c[1] + x->side * c[2])];
   if (*memo == 0) {
-    BW_TRY(bw_pd_body_fraction(pd, ldexp(pd->config.horizon_ratio, p - l), at, memo));
+    BW_TRY(bw_pd_body_fraction(pd, pd->level[l].horizon / pd->level[p].ds, at, memo));
     *memo += 1;
   }
   *gamma = *memo - 1;
@@ -131,9 +131,33 @@ static bw_status list_level(bw_pd_body *pd, int l, int *n, int *same)
   return BW_OK;
 }
 
+/* Families of one horizon and other cells have the same modulus by their own first moment. */
+static bw_status equal_moduli(bw_pd_body *pd)
+{
+  double first = 0;
+  for (int l = 0; l <= pd->finest; l++) {
+    const double m = pd->level[l].horizon / pd->level[l].ds;
+    const int reach = (int)ceil(m + 0.5), flat = pd->dimension == 2;
+    double sum = 0;
+    for (int z = flat ? 0 : -reach; z <= (flat ? 0 : reach); z++)
+      for (int y = -reach; y <= reach; y++)
+        for (int x = -reach; x <= reach; x++) {
+          const double at[3] = {x, y, z}, r = sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
+          double gamma = 0;
+          if (r > 0 && r * pd->level[l].ds < pd->level[l].reach * (1 - 1e-12))
+            BW_TRY(bw_pd_body_fraction(pd, m, at, &gamma));
+          sum += gamma * r * pd->level[l].ds * pd->level[l].dv;
+        }
+    if (l == 0) first = sum;
+    pd->level[l].stiff = first / sum;
+  }
+  return BW_OK;
+}
+
 bw_status bw_pd_body_stencil_levels(bw_pd_body *pd)
 {
   const double unit = ldexp(pd->config.ds, -pd->finest - 1);
+  if (pd->config.finer.same_horizon) BW_TRY(equal_moduli(pd));
   for (int l = 0; l <= pd->finest; l++)
     pd->level[l].stencil.unit = unit;
   for (int l = 0; l <= pd->finest; l++) {

@@ -55,7 +55,7 @@ static inline double bw_pd_bond__micromodulus(const bw_pd_body *pd, int32_t h, i
 {
   const double c0 =
       bw_pd_bond__state(pd)->c0[bw_pd_body_group_at(pd, h)][bw_pd_body_group_at(pd, l)];
-  return c0 * fmin(bw_pd_body_level_at(pd, h)->stiff, bw_pd_body_level_at(pd, l)->stiff);
+  return c0 * bw_pd_level_coarser(bw_pd_body_level_at(pd, h), bw_pd_body_level_at(pd, l))->stiff;
 }
 
 /* pd_bond_law.c: c0 and s0 of the integrals. Local. */

@@ -30,6 +30,11 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
              "solid: surface_correction = %s with levels: a factor per particle knows one level; "
              "use tensor or none",
              o->surface_correction == BW_PD_SURFACE_VOLUME ? "volume" : "energy");
+  BW_REQUIRE(!c->finer.same_horizon || (o->surface_correction == BW_PD_SURFACE_NONE &&
+                                        c->finer.jump != BW_PD_JUMP_BALANCED),
+             BW_EINPUT,
+             "solid: finer.same_horizon with surface_correction or finer.jump = balanced: their "
+             "factors are of families alike on all levels; take none, and dual or one_sided");
   BW_REQUIRE((unsigned)o->calibration <= BW_PD_CALIBRATION_LATTICE, BW_EINPUT,
              "solid: calibration = %d is unknown", (int)o->calibration);
   return BW_OK;
@@ -70,7 +75,8 @@ static void row_constants(const bw_pd_body *pd, const bw_pd_level *level, int g,
     /* In a cloud length and Gamma are the bond's own: here they are 1. */
     const double r0 = cloud ? 1 : s->r0[q], gamma = cloud ? 1 : s->fraction[q];
     /* Between levels constants are told by the coarser end. */
-    const bw_pd_level *other = pd->level + s->other[q], *coarser = other < level ? other : level;
+    const bw_pd_level *other = pd->level + s->other[q],
+                      *coarser = bw_pd_level_coarser(level, other);
     const double c0 = state->c0[g][h] * coarser->stiff;
     /* Where levels change nothing breaks but in the finest: that is what a stretch is beside. */
     const double s0 = state->s0[g][h] * (pd->mapped ? pd->level[pd->finest].stretch

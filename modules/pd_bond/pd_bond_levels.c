@@ -86,7 +86,8 @@ INLINE vec change(const bw_pd_bond_zone *z, const bw_pd_block *block, const bw_p
     mine = vec_fma(vec_all(f[k]), vec_load(z->mu[k] + block->first), mine);
     theirs = vec_fma(vec_all(f[k]), vec_load(z->mu[k] + slot->base), theirs);
   }
-  const double k_hl = own->stencil.fraction[slot->direction] * fmin(own->stiff, other->stiff);
+  const double k_hl =
+      own->stencil.fraction[slot->direction] * bw_pd_level_coarser(own, other)->stiff;
   const double unit = z->pd->level->dv;
   return mine * (bw_real)(k_hl * (other->dv / unit)) - theirs * (bw_real)(k_hl * (own->dv / unit));
 }

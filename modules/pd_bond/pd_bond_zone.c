@@ -45,8 +45,8 @@ static bw_status tables(bw_pd_bond_zone *z)
     for (int q = 0; q < s->n; q++) {
       const bw_pd_level *other = &pd->level[s->other[q]];
       /* Numbers of order 1: over the micromodulus and the volume of level 0. */
-      z->pull[l][q] =
-          (bw_real)(s->fraction[q] * fmin(level->stiff, other->stiff) * other->dv / pd->level->dv);
+      z->pull[l][q] = (bw_real)(s->fraction[q] * bw_pd_level_coarser(level, other)->stiff *
+                                other->dv / pd->level->dv);
       for (int k = 0; k < z->cubics; k++) {
         double x = 1;
         for (int d = 0; d < 3; d++)
@@ -224,7 +224,8 @@ static bw_status find_cut(bw_pd_bond_zone *z)
 {
   const bw_pd_body *pd = z->pd;
   bw_real *cut = z->cut;
-  cover c = {.reach = (int)ceil(pd->config.horizon_ratio + 0.5)};
+  const bw_pd_level *finest = pd->level + pd->finest;
+  cover c = {.reach = (int)ceil(finest->horizon / finest->ds + 0.5)};
   c.side = 2 * c.reach + 1;
   const bw_status st =
       bw_comm_agree(pd->comm, BW_ALLOCATE(&c.covered, (size_t)(c.side * c.side * c.side)));

@@ -157,7 +157,8 @@ bw_status bw_pd_interface__stencil_create(const bw_solid *pd, int level,
   s->finest = bw_solid_finest(pd);
   s->ds = ldexp(c->ds, -level);
   s->unit = s->finest > 0 ? ldexp(c->ds, -s->finest - 1) : c->ds;
-  s->family = s->ds * (c->horizon_ratio + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
+  const double m = ldexp(c->horizon_ratio, c->finer.same_horizon ? level : 0);
+  s->family = s->ds * (m + (c->family_reach == BW_PD_REACH_HORIZON ? 0.0 : 0.5));
   memcpy(s->axes, c->axes, sizeof s->axes);
   s->slots = bw_solid_directions(pd, level);
   s->reach = farthest(pd, s);

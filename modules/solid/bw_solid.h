@@ -71,6 +71,7 @@ typedef struct {
   bw_pd_box box[BW_PD_BOXES]; /* where they are, several may meet; their level is the least that
                                  there is in them */
   bw_pd_jump jump;        /* bonds between levels                             default balanced */
+  bool same_horizon;      /* as bw_pd_finer has it; not where levels change      default false */
   bw_solid_refine refine; /* elsewhere as needed                              default never */
 } bw_solid_finer;
 

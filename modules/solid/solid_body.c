@@ -19,6 +19,7 @@ static bw_pd_body_config body_config(const bw_solid_config *c)
                          .material = {{.rho = c->rho, .E = c->E, .nu = c->nu, .G0 = c->G0}}};
   b.finer.n = c->finer.n;
   b.finer.jump = c->finer.jump;
+  b.finer.same_horizon = c->finer.same_horizon;
   memcpy(b.finer.box, c->finer.box, sizeof b.finer.box);
   /* Two ways to say it: the number beside E, or that of the choice. */
   if (isnan(c->nu)) b.material[0].nu = c->choice.poisson_ratio;

@@ -34,6 +34,10 @@ static bw_status check_refine(const bw_solid_finer *f)
   BW_REQUIRE(r->level >= 1 && r->level <= BW_PD_FINEST, BW_EINPUT,
              "solid: refine.level = %d must be from 1 (half the spacing) to %d", r->level,
              (int)BW_PD_FINEST);
+  BW_REQUIRE(!f->same_horizon, BW_EINPUT,
+             "solid: finer.same_horizon with refine.level = %d: levels that change shrink the "
+             "horizon, too; leave it out",
+             r->level);
   BW_REQUIRE((unsigned)r->trigger <= BW_PD_LEVELS_DAMAGE, BW_EINPUT,
              "solid: refine.trigger = %d is unknown", (int)r->trigger);
   BW_REQUIRE(r->at > 0 && r->at < 1, BW_EINPUT,

@@ -251,17 +251,8 @@ bw_status bw_pd_body_order(const bw_pd_body *pd, size_t n, const int32_t site[],
 /* Level of the particle at a place of a body of several levels. Local. */
 uint8_t bw_pd_body_level_of_place(const bw_pd_body *pd, const int32_t site[3]);
 /* Whether a direction of the stencil of level l leads from a place to a cell of its other level.
- * Both site and offset are odd multiples of half a spacing, 2i + 1 and 2j + 1; centres of coarser
- * cells are odd multiples of twice that, i + j + 1. */
-static inline bool bw_pd_body_leads(const bw_pd_body *pd, int l, int direction,
-                                    const int32_t site[3])
-{
-  const bw_pd_stencil *s = &pd->level[l].stencil;
-  const int32_t *o = s->offset + 3 * direction;
-  const int32_t differ =
-      (site[0] ^ o[0]) | (site[1] ^ o[1]) | (pd->dimension == 3 ? site[2] ^ o[2] : 0);
-  return s->other[direction] >= l || (differ >> (pd->finest - l + 1) & 1) == 0;
-}
+ * Local. */
+bool bw_pd_body_leads(const bw_pd_body *pd, int l, int direction, const int32_t site[3]);
 /* Row of the stencil of an offset in lattice steps; -1: none. Local. */
 int bw_pd_body_direction(const bw_pd_stencil *stencil, const int32_t offset[3]);
 /* The columns of the kernel rows that are geometry. Local. */

@@ -11,6 +11,17 @@ uint8_t bw_pd_body_level_of_place(const bw_pd_body *pd, const int32_t site[3])
   return (uint8_t)(pd->finest - __builtin_ctz((unsigned)site[0]));
 }
 
+/* Both site and offset are odd multiples of half a spacing, 2i + 1 and 2j + 1; centres of coarser
+ * cells are odd multiples of twice that, i + j + 1. */
+bool bw_pd_body_leads(const bw_pd_body *pd, int l, int direction, const int32_t site[3])
+{
+  const bw_pd_stencil *s = &pd->level[l].stencil;
+  const int32_t *o = s->offset + 3 * direction;
+  int32_t differ = (site[0] ^ o[0]) | (site[1] ^ o[1]);
+  if (pd->dimension == 3) differ |= site[2] ^ o[2];
+  return s->other[direction] >= l || (differ >> (pd->finest - l + 1) & 1) == 0;
+}
+
 /* Site on the lattice of its own level; along the fastest axis of a finer one even sites come
  * before odd ones, `apart` steps away. */
 static void sort_key(const bw_pd_body *pd, int l, const int32_t place[3], int32_t apart,

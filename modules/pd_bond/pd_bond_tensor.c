@@ -17,157 +17,15 @@
  * orthonormal phi bound the step by 1. What corners, single sheets and rods cannot meet stays a
  * residual there, between the bounds. The number of sweeps is fixed and nothing is summed over
  * particles: the factors are the same to the last bit on any number of ranks. */
+#include "pd_bond_tensor.h"
 #include "bw_memory.h"
-#include "pd_bond.h"
 #include "pd_sweep.h"
 
 #include <string.h>
 
-enum { EVEN = 15, MOST = BW_PD_BOND_CONDITIONS, SWEEPS = 60 };
+enum { MOST = BW_PD_BOND_CONDITIONS, SWEEPS = 60 };
 enum { LAYERS = 3 }; /* families that a face is felt through, where levels change */
 static const double LOW = 0.25, HIGH = 65535 * BW_PD_ALPHA_UNIT;
-
-typedef struct {
-  int n;               /* conditions K */
-  bw_real *phi;        /* (directions, K) */
-  double target[MOST]; /* T */
-  double full[MOST];   /* lambda of a full family */
-  bool *held;          /* (n) particles that keep those */
-  bw_real *at[MOST];   /* storage: lambda with momentum */
-  bw_real *last[MOST]; /* own: lambda of the sweep before */
-  bw_real *next[MOST]; /* own: of this one */
-} solver;
-
-/* Mean of x^a y^b z^c over the directions: (a-1)!! (b-1)!! (c-1)!!/(d (d + 2)), degree 4. */
-static double isotropic(const int power[3], int dimension)
-{
-  static const double odd_factorial[] = {1, 0, 1, 0, 3};
-  double mean = 1.0 / (dimension * (dimension + 2));
-  for (int k = 0; k < 3; k++)
-    mean *= odd_factorial[power[k]];
-  return mean;
-}
-
-/* Exponents of the monomials of degree 4; returns how many. */
-static int monomials(int dimension, int power[EVEN][3])
-{
-  int n = 0;
-  for (int a = 0; a <= 4; a++)
-    for (int b = 0; a + b <= 4; b++) {
-      const int c = 4 - a - b;
-      if (dimension == 2 && c > 0) continue;
-      power[n][0] = a, power[n][1] = b, power[n][2] = c;
-      n++;
-    }
-  return n;
-}
-
-/* Harmonics of degree 3 of the unit vector e; returns how many. */
-static int harmonics(int dimension, const double e[3], double out[MOST - EVEN])
-{
-  const double x = e[0], y = e[1], z = e[2];
-  /* Real and imaginary part of (x + iy)^3, up to sign. */
-  if (dimension == 2) {
-    out[0] = x * (x * x - 3 * y * y);
-    out[1] = y * (y * y - 3 * x * x);
-    return 2;
-  }
-  out[0] = x * y * z;
-  for (int k = 0; k < 3; k++) {
-    const double p = e[k], q = e[(k + 1) % 3], r = e[(k + 2) % 3];
-    out[1 + k] = p * (q * q - r * r);
-    out[4 + k] = p * (5 * p * p - 3);
-  }
-  return MOST - EVEN;
-}
-
-/* The conditions of direction q, not yet orthonormal; returns K. Distances in ds. */
-static int conditions(const bw_pd_body *pd, int q, double f[MOST])
-{
-  const bw_pd_stencil *s = &pd->level[0].stencil;
-  /* Lengths in ds: numbers of order 1, whatever the unit. */
-  const double r = s->r0[q] / pd->level[0].ds;
-  int power[EVEN][3];
-  double e[3];
-  for (int k = 0; k < 3; k++)
-    e[k] = s->offset[3 * q + k] * (s->unit / pd->level[0].ds) / r;
-  /* Even conditions carry the energy's |xi|; odd ones are of the direction alone. */
-  const int n = monomials(pd->dimension, power);
-  for (int k = 0; k < n; k++)
-    f[k] = r * pow(e[0], power[k][0]) * pow(e[1], power[k][1]) * pow(e[2], power[k][2]);
-  return n + harmonics(pd->dimension, e, f + n);
-}
-
-/* One vector of the basis: f (directions) and its target less their parts along the `n` ones
- * there are, normalised. False: nothing is left, the condition follows from the others. */
-static bool orthonormal(const bw_pd_stencil *s, const double basis[], int n, const double target[],
-                        double f[], double *t)
-{
-  /* Gram-Schmidt in the inner product that is weighted with Gamma. */
-  double before = 0, norm = 0;
-  for (int q = 0; q < s->same; q++)
-    before += s->fraction[q] * f[q] * f[q];
-  for (int k = 0; k < n; k++) {
-    const double *b = basis + (size_t)k * (size_t)s->same;
-    double along = 0;
-    for (int q = 0; q < s->same; q++)
-      along += s->fraction[q] * b[q] * f[q];
-    for (int q = 0; q < s->same; q++)
-      f[q] -= along * b[q];
-    *t -= along * target[k];
-  }
-  for (int q = 0; q < s->same; q++)
-    norm += s->fraction[q] * f[q] * f[q];
-  /* In the plane or with few neighbours some conditions follow from others. */
-  if (!(norm > 1e-9 * before)) return false;
-  for (int q = 0; q < s->same; q++)
-    f[q] /= sqrt(norm);
-  *t /= sqrt(norm);
-  return true;
-}
-
-/* phi, T and the multipliers of a full family, whose factors 1 + full.phi go to state.bulk. */
-static bw_status basis(bw_pd_body *pd, solver *v)
-{
-  const bw_pd_stencil *s = &pd->level[0].stencil;
-  double *bulk = bw_pd_bond__own(pd)->bulk;
-  const size_t n = (size_t)s->same;
-  double *rows = NULL, total = 0;
-  for (size_t q = 0; q < n; q++)
-    bulk[q] = 1;
-  int power[EVEN][3], all = MOST;
-  const int even = monomials(pd->dimension, power);
-  BW_TRY(BW_ALLOCATE(&rows, MOST * n));
-  /* The conditions as functions of the direction, and the first moment that sets their scale. */
-  for (int q = 0; q < s->same; q++) {
-    double f[MOST];
-    all = conditions(pd, q, f);
-    for (int k = 0; k < all; k++)
-      rows[(size_t)k * n + (size_t)q] = f[k];
-    total += s->fraction[q] * s->r0[q] / pd->level[0].ds;
-  }
-  /* Targets: of degree 4 the isotropic mean, of degree 3 nothing. Orthonormal ones stay. */
-  for (int k = 0; k < all; k++) {
-    double *f = rows + (size_t)v->n * n,
-           t = k < even ? total * isotropic(power[k], pd->dimension) : 0;
-    memmove(f, rows + (size_t)k * n, n * sizeof *f);
-    if (!orthonormal(s, rows, v->n, v->target, f, &t)) continue;
-    /* What a full family lacks is its multiplier: with orthonormal phi one step solves it. */
-    v->target[v->n] = v->full[v->n] = t;
-    for (int q = 0; q < s->same; q++)
-      v->full[v->n] -= s->fraction[q] * f[q];
-    v->n++;
-  }
-  /* Sweeps read all conditions of a direction at once: transposed. */
-  const bw_status st = BW_ALLOCATE(&v->phi, n * (size_t)v->n);
-  for (int k = 0; k < v->n && st == BW_OK; k++)
-    for (size_t q = 0; q < n; q++) {
-      v->phi[q * (size_t)v->n + (size_t)k] = (bw_real)rows[(size_t)k * n + q];
-      bulk[q] += v->full[k] * rows[(size_t)k * n + q];
-    }
-  bw_release(&rows);
-  return st;
-}
 
 static vec clipped(vec x)
 {
@@ -177,7 +35,7 @@ static vec clipped(vec x)
 }
 
 /* The factors of a slot. Both ends do the same operations on the same numbers. */
-INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
+INLINE vec factors(const bw_pd_body *pd, const bw_pd_bond_solver *v, const bw_pd_block *block,
                    const bw_pd_slot *slot, int n)
 {
   /* The opposite direction is the mirror place in the stencil: phi(-xi) of the other end. */
@@ -192,7 +50,7 @@ INLINE vec factors(const bw_pd_body *pd, const solver *v, const bw_pd_block *blo
 }
 
 /* Ascent of one block's multipliers, to `next` (own): copies and neighbours still read the old. */
-INLINE void ascend(const bw_pd_body *pd, const solver *v, const bw_pd_block *block,
+INLINE void ascend(const bw_pd_body *pd, const bw_pd_bond_solver *v, const bw_pd_block *block,
                    bw_real *const next[], int n)
 {
   /* T - sum alpha phi Gamma, lane by lane: what is still lacking. */
@@ -223,7 +81,7 @@ static bool is_held(const bool held[], const bw_pd_block *block)
 }
 
 /* All blocks; K is known when this is compiled. */
-static void ascend_all(const bw_pd_body *pd, const solver *v)
+static void ascend_all(const bw_pd_body *pd, const bw_pd_bond_solver *v)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     if (pd->mapped && is_held(v->held, &pd->bonds.block[b])) continue;
@@ -235,7 +93,7 @@ static void ascend_all(const bw_pd_body *pd, const solver *v)
 }
 
 /* Nesterov's sequence: t' = (1 + sqrt(1 + 4 t^2))/2, momentum (t - 1)/t'. Collective. */
-static void solve(bw_pd_body *pd, solver *v)
+static void solve(bw_pd_body *pd, bw_pd_bond_solver *v)
 {
   /* A fixed number of sweeps, no norm over ranks: the same bits on any number of them. */
   double t = 1;
@@ -259,7 +117,7 @@ static void solve(bw_pd_body *pd, solver *v)
 }
 
 /* The factors of all slots, in units of BW_PD_ALPHA_UNIT. */
-static void store(bw_pd_body *pd, const solver *v)
+static void store(bw_pd_body *pd, const bw_pd_bond_solver *v)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++)
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
@@ -275,7 +133,7 @@ static void store(bw_pd_body *pd, const solver *v)
 
 /* Held layers stand for the material behind them, and who has bonds to another level has its
  * family completed there: they keep the full family's multipliers. */
-static void hold(const bw_pd_body *pd, solver *v)
+static void hold(const bw_pd_body *pd, bw_pd_bond_solver *v)
 {
   for (size_t i = 0; i < pd->n; i++)
     v->held[i] = (pd->points.kind[i] & BW_PD_PRESCRIBED) != 0;
@@ -291,7 +149,7 @@ static void hold(const bw_pd_body *pd, solver *v)
 }
 
 /* near (storage) of the particles whose family of the own level misses cells. */
-static void mark_cut(const bw_pd_body *pd, const solver *v, bw_real *near)
+static void mark_cut(const bw_pd_body *pd, const bw_pd_bond_solver *v, bw_real *near)
 {
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     const bw_pd_block *block = &pd->bonds.block[b];
@@ -320,7 +178,7 @@ void bw_pd_bond__mark_neighbours(const bw_pd_body *pd, const bw_real *before, bw
 
 /* Where levels change a body is built often, and deep inside a full family's multipliers are the
  * solution: who is LAYERS families from every face keeps them, too. Collective. */
-static bw_status hold_inside(bw_pd_body *pd, solver *v)
+static bw_status hold_inside(bw_pd_body *pd, bw_pd_bond_solver *v)
 {
   const size_t places = pd->points.n_storage;
   bw_real *near = NULL, *before = NULL;
@@ -341,7 +199,7 @@ static bw_status hold_inside(bw_pd_body *pd, solver *v)
 }
 
 /* Room for the multipliers, or that which the body keeps; and for the factors. */
-static bw_status solver_arrays(bw_pd_body *pd, solver *v)
+static bw_status solver_arrays(bw_pd_body *pd, bw_pd_bond_solver *v)
 {
   const bw_pd_bond_state *state = bw_pd_bond__state(pd);
   BW_TRY(BW_ALLOCATE(&v->held, pd->n));
@@ -359,7 +217,7 @@ static bw_status solver_arrays(bw_pd_body *pd, solver *v)
 
 /* Where everybody starts: from the full family, which in the bulk is the solution; who had
  * multipliers, from those, and away from a change they are kept. Collective. */
-static void begin(const bw_pd_body *pd, solver *v, const bw_pd_bond_change *change)
+static void begin(const bw_pd_body *pd, bw_pd_bond_solver *v, const bw_pd_bond_change *change)
 {
   for (size_t i = 0; i < pd->n; i++) {
     const int32_t p = pd->points.place[i];
@@ -372,7 +230,7 @@ static void begin(const bw_pd_body *pd, solver *v, const bw_pd_bond_change *chan
     bw_pd_body_fill_places(pd, v->at[k]);
 }
 
-static void release(const bw_pd_body *pd, solver *v)
+static void release(const bw_pd_body *pd, bw_pd_bond_solver *v)
 {
   const bool kept = bw_pd_bond__state(pd)->n_lambda > 0;
   for (int k = 0; k < MOST; k++) {
@@ -386,7 +244,7 @@ static void release(const bw_pd_body *pd, solver *v)
 
 /* The factors of the multipliers, and the constants that hold those of a full family. Collective.
  */
-static bw_status finish(bw_pd_body *pd, const solver *v)
+static bw_status finish(bw_pd_body *pd, const bw_pd_bond_solver *v)
 {
   store(pd, v);
   BW_TRY(bw_comm_agree(pd->comm,
@@ -398,8 +256,8 @@ static bw_status finish(bw_pd_body *pd, const solver *v)
 bw_status bw_pd_bond__tensor_room(bw_pd_body *pd)
 {
   bw_pd_bond_state *state = bw_pd_bond__own(pd);
-  solver v = {0};
-  bw_status st = basis(pd, &v);
+  bw_pd_bond_solver v = {0};
+  bw_status st = bw_pd_bond__basis(pd, &v);
   for (int k = 0; k < v.n; k++)
     BW_THEN(st, bw_pd_body_add_field(pd, -1, true, &state->lambda[k]));
   bw_release(&v.phi);
@@ -414,8 +272,8 @@ bw_status bw_pd_bond__tensor_room(bw_pd_body *pd)
 
 bw_status bw_pd_bond__tensor(bw_pd_body *pd, const bw_pd_bond_change *change)
 {
-  solver v = {0};
-  bw_status st = basis(pd, &v);
+  bw_pd_bond_solver v = {0};
+  bw_status st = bw_pd_bond__basis(pd, &v);
   BW_THEN(st, solver_arrays(pd, &v));
   st = bw_comm_agree(pd->comm, st);
   if (st == BW_OK) {
@@ -433,8 +291,8 @@ bw_status bw_pd_bond__tensor(bw_pd_body *pd, const bw_pd_bond_change *change)
 
 bw_status bw_pd_bond__tensor_adopt(bw_pd_body *pd)
 {
-  solver v = {0};
-  bw_status st = basis(pd, &v);
+  bw_pd_bond_solver v = {0};
+  bw_status st = bw_pd_bond__basis(pd, &v);
   BW_THEN(st, solver_arrays(pd, &v));
   st = bw_comm_agree(pd->comm, st);
   for (int k = 0; k < v.n && st == BW_OK; k++)

@@ -3,8 +3,8 @@
  * Claim      A body of several levels under a uniform strain is at rest, whatever the shape of the
  *            finer region, in the plane and in space; with the dual form alone it is not, by what
  *            an independent sum over the same cells says, nor with one-sided families. Finer cells
- *            with the horizon of the coarse ones (m-refinement) leave less: what the two cells' sizes
- *            make of one ball.
+ *            with the horizon of the coarse ones (m-refinement) leave less: what the two cells'
+ *            sizes make of one ball.
  * Reference  zero; other forms: the ghost force times horizon over E strain by sums over quadtree
  *            and octree cells written in another language (numpy, lists of pairs by a search tree):
  *            dual 0.74 at a flat jump, 0.83 at a square patch, 0.79 at one refined cell, 1.66 in a

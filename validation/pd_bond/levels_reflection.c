@@ -3,9 +3,9 @@
  * Claim      Plane waves pass a jump of the spacing with what the two lattices' own dispersion
  *            makes unavoidable, times less than 1.5 (P) and 1.8 (S) at 20 coarse horizons, falling
  *            with the square of the wave number; also in a nest of three levels. The dual form
- *            reflects more, in proportion to the wave number, one-sided families at any length; finer
- *            cells with the horizon of the coarse ones (m-refinement) reflect long waves as much as
- *            long ones of any other length, as the two lattices' moduli differ.
+ *            reflects more, in proportion to the wave number, one-sided families at any length; and
+ *            so do finer cells with the horizon of the coarse ones (m-refinement), as the two
+ *            lattices' moduli differ.
  * Reference  (a) the mismatch of dispersion (k2 - k1)/(k1 + k2) at one frequency, from sums over
  *            the two lattices written here; (b) the semi-discrete equations solved in the frequency
  *            domain by a sparse direct solver in another language (numpy, scipy), two digits.

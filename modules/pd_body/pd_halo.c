@@ -136,10 +136,12 @@ static bw_status near_own(const bw_pd_body *pd, size_t n, const passenger own[],
       lower[k] = i == 0 || x < lower[k] ? x : lower[k];
       upper[k] = i == 0 || x > upper[k] ? x : upper[k];
     }
-  /* The coarsest level reaches farthest. */
+  int reach = 0;
+  for (int l = 0; l <= pd->finest; l++)
+    reach = pd->level[l].stencil.reach > reach ? pd->level[l].stencil.reach : reach;
   for (int k = 0; k < 3; k++) {
-    lower[k] -= pd->level->stencil.reach;
-    upper[k] += pd->level->stencil.reach;
+    lower[k] -= reach;
+    upper[k] += reach;
   }
   BW_TRY(bw_particles_map_create(2 * n, lower, upper, near));
   for (size_t i = 0; i < n; i++) {

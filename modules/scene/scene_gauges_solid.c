@@ -3,25 +3,36 @@
 
 #include "bw_memory.h"
 #include "bw_pd_crack.h"
+#include "bw_solid_levels.h"
 #include "pd_law.h"
 #include <math.h>
 #include <string.h>
 
-/* What is cracked before anything happens, where a crack is followed. Collective. */
+/* What is cracked before anything happens, where a crack is followed; of a solid whose levels have
+ * changed by what its pre-cracks cut in the particles that there are now. Collective. */
+bw_status bw_scene__note_cut(bw_scene *s, int solid)
+{
+  bw_scene__solid *q = &s->solid[solid];
+  double *cracked = NULL;
+  if (!bw_scene__asked(s, "crack_tip")) return BW_OK;
+  bw_release(&q->cut);
+  bw_status st = BW_ALLOCATE(&cracked, q->n);
+  BW_THEN(st, BW_ALLOCATE(&q->cut, q->n));
+  st = bw_comm_agree(s->comm, st);
+  if (st == BW_OK && bw_solid_settings(q->solid)->finer.refine.level > 0)
+    bw_solid_get_precut(q->solid, cracked);
+  else if (st == BW_OK)
+    bw_solid_get_damage(q->solid, cracked);
+  for (size_t i = 0; st == BW_OK && i < q->n; i++)
+    q->cut[i] = cracked[i] > BW_PD_CRACK_LEVEL;
+  bw_release(&cracked);
+  return st;
+}
+
 bw_status bw_scene__note_cuts(bw_scene *s)
 {
-  for (int k = 0; k < s->n_solids && bw_scene__asked(s, "crack_tip"); k++) {
-    bw_scene__solid *q = &s->solid[k];
-    double *damage = NULL;
-    bw_status st = BW_ALLOCATE(&damage, q->n);
-    BW_THEN(st, BW_ALLOCATE(&q->cut, q->n));
-    st = bw_comm_agree(s->comm, st);
-    if (st == BW_OK) bw_solid_get_damage(q->solid, damage);
-    for (size_t i = 0; st == BW_OK && i < q->n; i++)
-      q->cut[i] = damage[i] > BW_PD_CRACK_LEVEL;
-    bw_release(&damage);
-    BW_TRY(st);
-  }
+  for (int k = 0; k < s->n_solids; k++)
+    BW_TRY(bw_scene__note_cut(s, k));
   return BW_OK;
 }
 

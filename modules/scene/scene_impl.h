@@ -289,6 +289,7 @@ bw_status bw_scene__gauges_create(bw_scene *s) BW_MUST_CHECK;
 bw_status bw_scene__gauges_aim(bw_scene *s) BW_MUST_CHECK; /* which particles each looks at, anew */
 void bw_scene__gauges_destroy(bw_scene *s);
 bw_status bw_scene__note_cuts(bw_scene *s) BW_MUST_CHECK;
+bw_status bw_scene__note_cut(bw_scene *s, int solid) BW_MUST_CHECK; /* of one, anew */
 bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quantity *what,
                                   double value[BW_SCENE__COMPONENTS]) BW_MUST_CHECK;
 bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quantity *what,

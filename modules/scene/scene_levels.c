@@ -40,10 +40,6 @@ static bw_status refine_of(const bw_scene *s, const bw_scene__solid *q, bw_solid
                "bodies.%s.refine: contact does not follow levels that change; give self_contact: "
                "false, or contact: {between: none}",
                b->name);
-    BW_REQUIRE(!bw_scene__asked(s, "crack_tip"), BW_EINPUT,
-               "bodies.%s.refine: gauges of crack_tip do not follow levels that change; leave them "
-               "out",
-               b->name);
     for (int l = 0; l < s->config.n_loads; l++)
       BW_REQUIRE(!bw_scene__in_cracks(&s->config.loads[l]), BW_EINPUT,
                  "bodies.%s.refine: loads.%d acts in cracks, which does not follow levels that "
@@ -83,6 +79,7 @@ bw_status bw_scene__solid_arrays(bw_scene *s, bw_scene__solid *q)
 bw_status bw_scene__solid_renew(bw_scene *s, int solid)
 {
   BW_TRY(bw_scene__solid_arrays(s, &s->solid[solid]));
+  BW_TRY(bw_scene__note_cut(s, solid));
   BW_TRY(bw_scene__loads_aim(s));
   return bw_scene__gauges_aim(s);
 }

@@ -23,6 +23,10 @@ bw_status bw_solid_regrid(bw_solid *solid, int n, const bw_pd_box box[]) BW_MUST
  * refused (BW_EINPUT). Levels that stay as they are: nothing. Errors as above. Collective. */
 bw_status bw_solid_adapt(bw_solid *solid, bool *changed) BW_MUST_CHECK;
 
+/* part (n) <- which part of each family's bonds, by number, the pre-cracks cut: 0 but where levels
+ * change. Local. */
+void bw_solid_get_precut(const bw_solid *solid, double part[]);
+
 /* What a checkpoint needs of levels that change: state (bw_solid_levels_numbers) <- cells, looks,
  * book; 0 numbers where they do not. The same on all ranks. Local. */
 size_t bw_solid_levels_numbers(const bw_solid *solid);

@@ -135,6 +135,23 @@ static void count_broken(const bw_pd_body *pd, const bw_pd_block *block, int cou
   }
 }
 
+void bw_solid_get_precut(const bw_solid *s, double part[])
+{
+  const bw_pd_body *pd = s->body;
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    const bw_pd_block *block = &pd->bonds.block[b];
+    int family[BW_PD_LANES] = {0};
+    for (uint32_t q = block->slot; q < block[1].slot; q++)
+      for (int lane = 0; lane < BW_PD_LANES; lane++)
+        family[lane] += pd->bonds.slot[q].family >> lane & 1;
+    for (int lane = 0; lane < BW_PD_LANES; lane++) {
+      if (!(block->mask >> lane & 1)) continue;
+      const size_t i = (size_t)bw_pd_body_owner(block, lane);
+      part[i] = s->levels == NULL ? 0 : (double)s->levels->precut[i] / fmax(1, family[lane]);
+    }
+  }
+}
+
 /* Adds BW_SOLID__SCAR to own particles with bonds that broke; returns whether all of these are of
  * the finest level. */
 static bool find_scars(const bw_solid *s, uint8_t flag[])

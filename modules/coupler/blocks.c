@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROW = 10 }; /* area, position, velocity, normal (or NaN) of a member */
+/* Area, position, velocity, normal of a member; 1 where its marker is to know it, else 0; its body. */
+enum { ROW = 12, NORMAL = 7, SIDED = 10, BODY = 11 };
 
 /* Bits of a block's number: 19 per direction, 3 for the face; the top bit marks particles with a
  * marker of their own, which are known by their id. */
@@ -16,12 +17,13 @@ static const int64_t OWN_MARKER = (int64_t)1 << 62;
 void bw_coupler__blocks_release(bw_coupler__blocks *b)
 {
   bw_exchange_destroy(&b->plan);
-  double **const all[] = {&b->send, &b->receive, &b->X,    &b->V,    &b->N,
-                          &b->M,    &b->dV,      &b->area, &b->force};
+  double **const all[] = {&b->send, &b->receive, &b->X,    &b->V,     &b->N,
+                          &b->M,    &b->dV,      &b->area, &b->force, &b->out};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&b->order);
   bw_release(&b->marker);
+  bw_release(&b->body);
   bw_release(&b->particle);
   bw_release(&b->broken);
   bw_release(&b->face);
@@ -150,11 +152,13 @@ static bw_status number_markers(bw_coupler__blocks *b, const int64_t received[])
 
 static bw_status allocate_markers(bw_coupler__blocks *b)
 {
-  double **const all[] = {&b->X, &b->V, &b->N, &b->M, &b->force, &b->dV, &b->area};
-  for (int q = 0; q < 7; q++) {
+  double **const all[] = {&b->X, &b->V, &b->N, &b->out, &b->M, &b->force, &b->dV, &b->area};
+  for (int q = 0; q < 8; q++) {
     bw_release(all[q]);
-    BW_TRY(BW_ALLOCATE(all[q], (q < 5 ? 3 : 1) * b->n));
+    BW_TRY(BW_ALLOCATE(all[q], (q < 6 ? 3 : 1) * b->n));
   }
+  bw_release(&b->body);
+  BW_TRY(BW_ALLOCATE(&b->body, b->n));
   return BW_OK;
 }
 
@@ -201,6 +205,15 @@ static bw_status make_plan(bw_coupler *c)
   return st;
 }
 
+/* N to the length 1; false if it was no longer than `least`. */
+static bool make_unit(double least, double N[3])
+{
+  const double length = sqrt(N[0] * N[0] + N[1] * N[1] + N[2] * N[2]);
+  for (int d = 0; d < 3; d++)
+    N[d] /= fmax(length, least);
+  return length > least;
+}
+
 /* Means over the members, weighted with their areas, in a fixed order. */
 static void gather_markers(bw_coupler *c)
 {
@@ -208,6 +221,7 @@ static void gather_markers(bw_coupler *c)
   memset(b->X, 0, 3 * b->n * sizeof *b->X);
   memset(b->V, 0, 3 * b->n * sizeof *b->V);
   memset(b->N, 0, 3 * b->n * sizeof *b->N);
+  memset(b->out, 0, 3 * b->n * sizeof *b->out);
   memset(b->area, 0, b->n * sizeof *b->area);
   /* In the fixed order of blocks and ids, so that sums are the same on any number of ranks. */
   for (size_t q = 0; q < b->n_members; q++) {
@@ -217,8 +231,10 @@ static void gather_markers(bw_coupler *c)
     for (int d = 0; d < 3; d++) {
       b->X[3 * m + d] += row[0] * row[1 + d];
       b->V[3 * m + d] += row[0] * row[4 + d];
-      if (!isnan(row[7])) b->N[3 * m + d] += row[0] * row[7 + d];
+      b->out[3 * m + d] += row[0] * row[NORMAL + d];
+      b->N[3 * m + d] += row[0] * row[SIDED] * row[NORMAL + d];
     }
+    b->body[m] = (int)row[BODY];
   }
   for (size_t m = 0; m < b->n; m++) {
     /* Area of the block times the grid spacing is the marker's volume. */
@@ -226,11 +242,8 @@ static void gather_markers(bw_coupler *c)
     for (int d = 0; d < 3; d++)
       b->X[3 * m + d] /= b->area[m], b->V[3 * m + d] /= b->area[m];
     /* Members look about the same way, being of one face. Most of them know it, or none does. */
-    double *N = b->N + 3 * m;
-    const double length = sqrt(N[0] * N[0] + N[1] * N[1] + N[2] * N[2]);
-    const bool has = length > 0.5 * b->area[m];
-    for (int d = 0; d < 3; d++)
-      N[d] = has ? N[d] / length : NAN;
+    if (!make_unit(0.5 * b->area[m], b->N + 3 * m)) b->N[3 * m] = NAN;
+    if (!make_unit(0.5 * b->area[m], b->out + 3 * m)) b->body[m] = -1;
   }
 }
 
@@ -243,7 +256,9 @@ bw_status bw_coupler__blocks_follow(bw_coupler *c)
     b->send[ROW * q] = c->area[q];
     memcpy(b->send + ROW * q + 1, c->marker_X + 3 * q, 3 * sizeof *b->send);
     memcpy(b->send + ROW * q + 4, c->marker_V + 3 * q, 3 * sizeof *b->send);
-    memcpy(b->send + ROW * q + 7, c->side + 3 * q, 3 * sizeof *b->send);
+    memcpy(b->send + ROW * q + NORMAL, c->normal + 3 * q, 3 * sizeof *b->send);
+    b->send[ROW * q + SIDED] = !isnan(c->side[3 * q]);
+    b->send[ROW * q + BODY] = c->body[c->particle[q]];
   }
   bw_exchange_forward(b->plan, ROW * sizeof *b->send, b->send, b->receive);
   gather_markers(c);

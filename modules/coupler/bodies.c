@@ -4,6 +4,7 @@
 #include "coupler_internal.h"
 #include "solid_films.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Sides that turn a body back. Through an inflow only fluid comes: its profile is given, a body in
@@ -36,6 +37,48 @@ bw_status bw_coupler__bodies_create(bw_coupler *c)
   st = bw_comm_agree(bw_solid_comm(c->solid), st);
   if (st != BW_OK || !bw_solid_settings(c->solid)->contact) return st;
   return bw_solid_set_walls(c->solid, n, wall);
+}
+
+static int by_label(const void *a, const void *b)
+{
+  const int64_t p = *(const int64_t *)a, q = *(const int64_t *)b;
+  return (p > q) - (p < q);
+}
+
+/* The bodies' labels, rising, the same on all ranks; owned by the caller. A body has one particle
+ * whose id is its label. Collective. */
+static bw_status list_labels(bw_coupler *c, const int64_t label[], int64_t **all, size_t *n)
+{
+  const bw_comm *comm = bw_solid_comm(c->solid);
+  int64_t *mine = NULL;
+  size_t own = 0, bytes = 0;
+  void *raw = NULL;
+  bw_status st = bw_comm_agree(comm, BW_ALLOCATE(&mine, c->n));
+  for (size_t i = 0; st == BW_OK && i < c->n; i++)
+    if (label[i] == bw_solid_id(c->solid)[i]) mine[own++] = label[i];
+  BW_THEN(st, bw_comm_allgather(comm, own * sizeof *mine, mine, &bytes, &raw));
+  bw_release(&mine);
+  *all = raw;
+  *n = bytes / sizeof **all;
+  if (st == BW_OK && *n > 0) qsort(*all, *n, sizeof **all, by_label);
+  return st;
+}
+
+bw_status bw_coupler__bodies_number(bw_coupler *c)
+{
+  int64_t *label = NULL, *all = NULL;
+  size_t n = 0;
+  bw_status st = bw_comm_agree(bw_solid_comm(c->solid), BW_ALLOCATE(&label, c->n));
+  BW_THEN(st, bw_pd_interface_bodies(c->interface, label));
+  BW_THEN(st, list_labels(c, label, &all, &n));
+  c->n_bodies = (int)n;
+  for (size_t i = 0; st == BW_OK && i < c->n; i++) {
+    const int64_t *found = bsearch(&label[i], all, n, sizeof *all, by_label);
+    c->body[i] = (int)(found - all);
+  }
+  bw_release(&label);
+  bw_release(&all);
+  return st;
 }
 
 void bw_coupler__bodies_release(bw_coupler *c)

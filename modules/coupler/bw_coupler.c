@@ -152,6 +152,8 @@ static bw_status particle_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
   BW_TRY(BW_ALLOCATE(&c->broken, n));
+  BW_TRY(BW_ALLOCATE(&c->body, n));
+  BW_TRY(BW_ALLOCATE(&c->closed, n));
   BW_TRY(BW_ALLOCATE(&c->id, n));
   if (n > 0) memcpy(c->id, bw_solid_id(c->solid), n * sizeof *c->id);
   c->events = -1; /* not asked yet */
@@ -171,6 +173,8 @@ static void release_particle_arrays(bw_coupler *c)
   bw_release(&c->particle_inside);
   bw_release(&c->row);
   bw_release(&c->broken);
+  bw_release(&c->body);
+  bw_release(&c->closed);
   bw_release(&c->id);
   bw_coupler__state_release(&c->kept);
   bw_coupler__iteration_release(c);
@@ -244,6 +248,7 @@ bw_status bw_coupler__renew(bw_coupler *c)
     bw_release(&k.of[q]);
   if (st != BW_OK) return st;
   BW_TRY(bw_coupler__bodies_create(c));
+  BW_TRY(bw_coupler__bodies_number(c));
   if (c->block > 1) BW_TRY(bw_coupler__blocks_create(c));
   c->n_surface = c->n_inside = 0;
   c->inside_known = c->motion_known = false;
@@ -281,6 +286,7 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   const double k = c->config.marker_spacing * c->h / ds;
   c->block = (int)fmin(1e9, fmax(1.0, floor(k + 1e-9)));
   BW_THEN(st, bw_coupler__bodies_create(c));
+  BW_THEN(st, bw_coupler__bodies_number(c));
   if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_create(c);
   /* Markers and probes stand where the solid is. */
   BW_THEN(st, bw_coupler__follow_surface(c));

@@ -226,7 +226,8 @@ static bw_status place(bw_coupler_rigid *c, const double *memory)
   }
   BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->seen, memory));
   c->placed = true;
-  return bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu);
+  BW_TRY(bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu));
+  return bw_ibm_mdf_close(c->ibm, bw_rigid_count(c->rigid), bw_rigid_point_body(c->rigid), c->N);
 }
 
 bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)

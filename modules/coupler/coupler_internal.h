@@ -44,14 +44,16 @@ typedef struct {
   bw_exchange *plan;       /* members to the ranks of their markers */
   size_t n_members, n;     /* received members, markers */
   int32_t *order, *marker; /* (n_members) rising by block and id; which marker is whose */
-  double *send, *receive;  /* (n_surface,10), (n_members,10): area, X, V, normal */
-  double *X, *V, *N, *M, *dV, *area, *force; /* (n,3), area and dV (n) */
-  size_t n_surface;                          /* surface the plan is for */
-  int64_t events;                            /* broken bonds then, bw_solid_events */
-  int32_t *particle;                         /* (particles) and its members */
-  uint16_t *broken;                          /* (particles) broken bonds of each */
-  int8_t *face;   /* (particles) 2 axis + side of the reference normal, or -1 */
-  int64_t *block; /* (particles) reference site over k, packed */
+  double *send, *receive;  /* (n_surface,12), (n_members,12) */
+  double *X, *V, *M, *dV, *area, *force; /* (n,3), area and dV (n) */
+  double *out, *N;   /* (n,3) normal of all members; of those whose marker knows it, or NaN */
+  int *body;         /* (n) or -1 */
+  size_t n_surface;  /* surface the plan is for */
+  int64_t events;    /* broken bonds then, bw_solid_events */
+  int32_t *particle; /* (particles) and its members */
+  uint16_t *broken;  /* (particles) broken bonds of each */
+  int8_t *face;      /* (particles) 2 axis + side of the reference normal, or -1 */
+  int64_t *block;    /* (particles) reference site over k, packed */
 } bw_coupler__blocks;
 
 /* Iterated coupling (iterate.c): state at the beginning of the step, positions then (n,3);
@@ -88,6 +90,7 @@ struct bw_coupler {
   int64_t events;          /* ... when the solid had counted so many */
   double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
                               what the markers were told (iterated) */
+  int *body, n_bodies;     /* (n) which body each particle belongs to */
   size_t n_surface;        /* surface particles inside the box: rows used of the arrays below */
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
@@ -95,6 +98,7 @@ struct bw_coupler {
   double *root, *normal, *area;     /* probe points (n,3), normals (n,3), areas (n) */
   double *height;                   /* (n) of the surface above its particles' centres [L] */
   double *side;                     /* (n,3) normals that markers know; NaN: they are retracted */
+  int *closed;                      /* (n) body of the surface points */
   bool on_surface;                  /* markers know their normals and stand on the surface */
   double *accel, *traction, *force; /* (n,3) each: of the surface points */
   double *load;                     /* (n,3) of c->force, on the particles [M L/T^2] */
@@ -175,6 +179,8 @@ void bw_coupler__count_work(bw_coupler *c, double dt);
 /* Free bodies (bodies.c): walls and arrays; the solid's force from c->F and gravity (local); retire
  * what left; mass inside, out, left. */
 bw_status bw_coupler__bodies_create(bw_coupler *c) BW_MUST_CHECK;
+/* Numbers the bodies: c->body. Collective. */
+bw_status bw_coupler__bodies_number(bw_coupler *c) BW_MUST_CHECK;
 void bw_coupler__bodies_release(bw_coupler *c);
 void bw_coupler__push_solid(bw_coupler *c);
 double bw_coupler__wetted(bw_coupler *c); /* volume of this rank's particles in the box [L^3] */

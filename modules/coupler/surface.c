@@ -89,6 +89,7 @@ static void place(bw_coupler *c)
     if (!bw_coupler__within_box(g, X)) continue;
     c->particle[n] = s.particle[q];
     c->height[n] = s.H[q];
+    c->closed[n] = c->body[s.particle[q]];
     /* A normal is of use where it is one, and where there is memory: what pushes across a ridge
      * would pass for shear. Where nearly nothing bends a retraction does the same. */
     const bool bent = s.bend[q] * c->h > BENT;
@@ -231,8 +232,10 @@ bw_status bw_coupler__place_markers(bw_coupler *c)
   } else
     BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n_surface, c->marker_X, c->marker_V, c->marker_dV,
                                   c->marker_M));
-  return c->on_surface ? bw_ibm_mdf_set_normals(c->ibm, c->block > 1 ? b->N : c->side, c->config.nu)
-                       : BW_OK;
+  if (c->on_surface)
+    BW_TRY(bw_ibm_mdf_set_normals(c->ibm, c->block > 1 ? b->N : c->side, c->config.nu));
+  return c->block > 1 ? bw_ibm_mdf_close(c->ibm, c->n_bodies, b->body, b->out)
+                      : bw_ibm_mdf_close(c->ibm, c->n_bodies, c->closed, c->normal);
 }
 
 void bw_coupler__remember(bw_coupler *c)

@@ -66,7 +66,8 @@ void bw_ibm_mdf_destroy(bw_ibm_mdf **ib)
                           &b->order,     &b->swap,        &b->key,    &b->key_swap, &b->V,
                           &b->dV,        &b->QdV,         &b->M,      &b->reply,    &b->cast_to,
                           &b->cast_from, &b->cast_item,   &b->cast_F, &b->image,    &b->weights,
-                          &b->nodes,     &b->U,           &b->N,      &b->along};
+                          &b->nodes,     &b->U,           &b->N,      &b->along,    &b->wet,
+                          &b->wet_sent,  &b->enclosed};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(ib);
@@ -294,6 +295,8 @@ void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib)
   for (size_t m = 0; ib->call > 0 && ib->beta > 0.0 && m < ib->held; m++)
     for (size_t c = 0; c < 3; c++)
       ib->M[3 * m + c] = renewed(ib, m, c);
+  /* What has been taken up may press on a surface from all sides; what is as old has been drained. */
+  if (ib->call > 0) bw_ibm_mdf__drain(ib);
   ib->call = 0;
   if (ib->held > 0) memset(ib->QdV, 0, 3 * ib->held * sizeof *ib->QdV);
 }

@@ -96,6 +96,20 @@ bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], con
  * normals that are not of length 1, on all ranks. Collective. */
 bw_status bw_ibm_mdf_set_normals(bw_ibm_mdf *ib, const double N[], double nu) BW_MUST_CHECK;
 
+/* Markers of closed surfaces. surface (n): which of `surfaces` >= 0 each of the markers just set lies
+ * on, or -1; N (n,3) its normal, of length 1, out of the body.
+ * A force along the normals that is the same per area everywhere on a closed surface changes the
+ * pressure inside and moves nothing. But what markers read has a net flow through the surface:
+ * kernels average a velocity that bends around it. Memory would answer with such a force and, as it
+ * does not help, with ever more of it; the jump of the pressure across the sheet, smeared by the
+ * kernel, then reaches whoever reads the pressure beside the surface. So it is taken out of the
+ * memory of each surface in every step: M <- M - N dV sum M.N/sum dV, over markers with a memory.
+ * A body that ends in walls is closed by them.
+ * Valid until the next set_markers; without memory nothing is done. BW_EINPUT for surfaces that are
+ * not there and normals that are not of length 1, on all ranks; BW_EMEM. Collective. */
+bw_status bw_ibm_mdf_close(bw_ibm_mdf *ib, int surfaces, const int surface[],
+                           const double N[]) BW_MUST_CHECK;
+
 /* Sets the ghosts of the velocity beyond the physical sides of the box from what is inside. */
 typedef void (*bw_ibm_mdf_ghosts_fn)(void *context);
 /* Who forces walled boxes gives the function that does so for his fluid (bw_ns_channel_ghosts):
@@ -111,7 +125,7 @@ void bw_ibm_mdf_set_ghosts(bw_ibm_mdf *ib, bw_ibm_mdf_ghosts_fn function, void *
 void bw_ibm_mdf_force(bw_ibm_mdf *ib, bw_real *const u[3], double dt);
 
 /* Start a new step: the memory takes up the force of the last one, which is zero from now on.
- * After set_markers, whose M has it already, the memory stays as it is. Local. */
+ * After set_markers, whose M has it already, the memory stays as it is. Collective. */
 void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib);
 
 /* M (n,3) [L^4/T^2], in the order of set_markers: the memory with which the next step begins (the

@@ -14,6 +14,7 @@ static bw_status reserve_sent(bw_ibm_mdf *ib, size_t n)
   IBM_RENEW(&ib->destination, n);
   IBM_RENEW(&ib->item, n);
   IBM_RENEW(&ib->answer, 3 * n);
+  IBM_RENEW(&ib->wet_sent, n);
   ib->room = n;
   return BW_OK;
 }
@@ -35,6 +36,7 @@ static bw_status reserve_held(bw_ibm_mdf *ib, size_t held)
   IBM_RENEW(&ib->M, 3 * some);
   IBM_RENEW(&ib->N, 3 * some);
   IBM_RENEW(&ib->along, some);
+  IBM_RENEW(&ib->wet, some);
   IBM_RENEW(&ib->reply, 3 * some);
   ib->held_room = some;
   return BW_OK;
@@ -176,6 +178,7 @@ static bw_status settle(bw_ibm_mdf *ib)
   /* The force of the last step belongs to other markers: M has it, if anybody has. */
   ib->call = 0;
   ib->sided = false;
+  ib->surfaces = 0;
   bw_ibm_mdf_begin_step(ib);
   return BW_OK;
 }

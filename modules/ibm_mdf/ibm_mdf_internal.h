@@ -61,6 +61,12 @@ typedef struct {
   double start[IBM_BLOCKS], size[IBM_BLOCKS], low, high;
 } bw_ibm_mdf__blocks;
 
+/* Which closed surface a marker lies on (-1: none), and its normal. */
+typedef struct {
+  double N[3];
+  int64_t surface;
+} bw_ibm_mdf__wet;
+
 struct bw_ibm_mdf {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
@@ -95,7 +101,10 @@ struct bw_ibm_mdf {
   double *N;      /* (held,3) normals, zero where there is none */
   double *along;  /* (held) displacement h^2/nu [T]: slip per force in the surface */
   bool sided;     /* are there normals? */
-  double *reply;  /* (held,3) in the order received */
+  bw_ibm_mdf__wet *wet, *wet_sent; /* (held), (n_sent): where closed surfaces are told */
+  double *enclosed;                /* (surfaces,2) scratch */
+  int surfaces, surfaces_room;     /* closed ones; 0: nobody told */
+  double *reply;                   /* (held,3) in the order received */
 
   /* images: of markers held here for other blocks (or this one, over a periodic side) ... */
   size_t cast, cast_room;
@@ -154,6 +163,9 @@ static inline double bw_ibm_mdf__lack(const bw_ibm_mdf *ib, size_t m, double lac
   }
   return lack_n;
 }
+
+/* Takes the pressure inside closed surfaces out of M (bw_ibm_mdf_close). Collective. */
+void bw_ibm_mdf__drain(bw_ibm_mdf *ib);
 
 /* Which blocks a marker's support can reach, for every place in this one. Local. */
 void bw_ibm_mdf__find_blocks(bw_ibm_mdf *ib);

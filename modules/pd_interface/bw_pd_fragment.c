@@ -18,6 +18,7 @@ typedef struct {
 
 typedef struct {
   bw_solid *pd;
+  bool broken; /* do bonds join that do not hold? */
   size_t n, n_all, n_cross;
   double period[3];
   int32_t *parent; /* (n) */
@@ -49,7 +50,7 @@ static bw_status join_own(joiner *j)
     for (size_t h = 0; h < j->n; h++) {
       const int family = bw_solid_links(j->pd, h, link);
       for (int q = 0; q < family; q++) {
-        if (!link[q].intact) continue;
+        if (!link[q].intact && !j->broken) continue;
         if ((size_t)link[q].neighbour >= j->n) {
           if (pass == 1)
             j->cross[found] = (cross_bond){.own = (int32_t)h, .copy = link[q].neighbour};
@@ -164,11 +165,11 @@ static bw_status measure(joiner *j, bw_pd_fragments *out)
   return BW_OK;
 }
 
-bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], bw_pd_fragments *out)
+/* Labels and measures, each where it is asked for. */
+static bw_status find(bw_pd_interface *pi, bool broken, int64_t label[], bw_pd_fragments *out)
 {
-  if (out != NULL) *out = (bw_pd_fragments){0};
   const bw_pd_extended all = bw_solid_get_extended(pi->pd);
-  joiner j = {.pd = pi->pd, .n = bw_solid_count(pi->pd), .n_all = all.n};
+  joiner j = {.pd = pi->pd, .broken = broken, .n = bw_solid_count(pi->pd), .n_all = all.n};
   memcpy(j.period, bw_solid_settings(pi->pd)->period, sizeof j.period);
   bw_status st = bw_comm_agree(bw_solid_comm(pi->pd), prepare(&j));
   if (st == BW_OK) {
@@ -182,4 +183,15 @@ bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], bw_pd_
   }
   forget(&j);
   return st;
+}
+
+bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[], bw_pd_fragments *out)
+{
+  if (out != NULL) *out = (bw_pd_fragments){0};
+  return find(pi, false, label, out);
+}
+
+bw_status bw_pd_interface_bodies(bw_pd_interface *pi, int64_t label[])
+{
+  return find(pi, true, label, NULL);
 }

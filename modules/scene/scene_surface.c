@@ -149,6 +149,7 @@ static bw_status hand_over(bw_scene *s, const double *memory)
     dV[i] = p->area[i] * h;
   BW_THEN(st, bw_ibm_mdf_set_markers(s->markers, p->n, p->X, p->V, dV, memory));
   bw_release(&dV);
+  BW_THEN(st, bw_ibm_mdf_close(s->markers, s->config.n_bodies, p->body, p->N));
   return st;
 }
 

@@ -103,7 +103,7 @@ static inline bw_solid_config flap_material(const flap *f)
   s.geometry = BW_PD_PLANE_STRAIN;
   s.ds = f->ds;
   s.thickness = f->depth;
-  s.horizon_ratio = 2.0;
+  s.horizon_ratio = 3.0;
   s.rho = c->density;
   s.E = c->young * (1.0 - 0.25 * 0.25) / (1.0 - 0.4 * 0.4);
   s.surface_correction = BW_PD_SURFACE_TENSOR;
@@ -157,8 +157,6 @@ static inline bw_status flap_make(const bw_comm *comm, flap *f)
   c.marker_spacing = 1.0;
   c.coupling_residual = 1e-3;
   c.coupling_iterations = f->of.iterations;
-  /* With memory, and all else the same, the flap of FSI3 swings by 1.9 mm in place of 31. */
-  if (f->of.iterations > 1) c.iterations = 2, c.memory = 0.0;
   c.load = f->of.load;
   BW_TRY(bw_coupler_create(&c, f->fluid, f->solid, &f->coupler));
   bw_coupler_hold_solid(f->coupler, false);

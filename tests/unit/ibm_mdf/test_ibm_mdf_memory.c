@@ -280,6 +280,69 @@ START_TEST(ghosts_are_fresh_after_spreading)
 }
 END_TEST
 
+/* N.M and dV of the markers of each of two surfaces, over all ranks; those of none are row 2. */
+static void press(const fixture *f, const int surface[], const double N[], const double M[],
+                  double sum[6])
+{
+  memset(sum, 0, 6 * sizeof *sum);
+  for (size_t m = 0; m < f->n; m++) {
+    double *s = sum + (surface[m] < 0 ? 4 : 2 * surface[m]);
+    for (size_t d = 0; d < 3; d++)
+      s[0] += M[3 * m + d] * N[3 * m + d];
+    s[1] += f->dV[m];
+  }
+  bw_comm_sum(bw_check_world(), 6, sum);
+}
+
+/* Two surfaces and markers of none: each surface loses its own mean along the normals and nothing
+ * else, when it is told and in every step; -1 and markers without memory lose nothing. */
+START_TEST(closed_surfaces_lose_their_pressure)
+{
+  const fixture_case c = {{12, 10, 8}, true, BW_KERNEL_ROMA3, 1};
+  fixture f;
+  double M[3 * FIX_MARKERS], N[3 * FIX_MARKERS], before[6], after[6];
+  int surface[FIX_MARKERS];
+  fixture_make(&f, bw_check_world(), &c, FIX_MARKERS, 0.0);
+  fixture_remember(&f, &c, BETA);
+  for (size_t m = 0; m < f.n; m++) {
+    const double *F = f.F + 3 * m, length = sqrt(F[0] * F[0] + F[1] * F[1] + F[2] * F[2]);
+    surface[m] = (int)(m % 3) - 1;
+    for (size_t d = 0; d < 3; d++)
+      N[3 * m + d] = F[d] / length, M[3 * m + d] = (double)(d + 1) * F[d];
+  }
+  double given[3 * FIX_MARKERS];
+  memcpy(given, M, sizeof given);
+  press(&f, surface, N, given, before);
+  bw_check_ok(bw_ibm_mdf_set_markers(f.ib, f.n, f.X, f.V, f.dV, given));
+  bw_check_ok(bw_ibm_mdf_close(f.ib, 2, surface, N));
+  bw_ibm_mdf_memory(f.ib, M);
+  for (size_t m = 0; m < f.n; m++)
+    for (size_t d = 0; d < 3; d++) {
+      const double *s = before + 2 * (surface[m] < 0 ? 0 : surface[m]);
+      const double lost = surface[m] < 0 ? 0.0 : N[3 * m + d] * f.dV[m] * s[0] / s[1];
+      bw_check_near(M[3 * m + d], given[3 * m + d] - lost, 1e3 * BW_REAL_EPSILON);
+    }
+  fill_scattered(&f, 1.0);
+  for (int r = 0; r < 3; r++)
+    bw_ibm_mdf_force(f.ib, f.u, DT);
+  bw_ibm_mdf_memory(f.ib, M); /* with the force of this step */
+  press(&f, surface, N, M, before);
+  bw_ibm_mdf_begin_step(f.ib);
+  bw_ibm_mdf_memory(f.ib, M);
+  press(&f, surface, N, M, after);
+  for (int s = 0; s < 2; s++) {
+    ck_assert_double_gt(fabs(before[2 * s]), 1e-3);
+    bw_check_near(after[2 * s], 0.0, 1e4 * BW_REAL_EPSILON);
+  }
+  bw_check_near(after[4], before[4], 1e4 * BW_REAL_EPSILON);
+  /* A surface that is not there, on one rank. */
+  surface[0] = bw_comm_rank(bw_check_world()) == 0 ? 2 : 0;
+  bw_check_status(bw_ibm_mdf_close(f.ib, 2, surface, N), BW_EINPUT);
+  ck_assert_ptr_nonnull(strstr(bw_last_message(), "surface"));
+  fixture_free(&f);
+}
+END_TEST
+
 START_TEST(bad_input_is_refused_on_all_ranks)
 {
   const bw_comm *comm = bw_check_world();
@@ -309,5 +372,6 @@ static const bw_check_test tests[] = {BW_TEST(one_marker_has_a_closed_form),
                                       BW_TEST(a_marker_may_have_none),
                                       BW_TEST(crowded_markers_take_no_more_than_their_slip),
                                       BW_TEST(ghosts_are_fresh_after_spreading),
+                                      BW_TEST(closed_surfaces_lose_their_pressure),
                                       BW_TEST(bad_input_is_refused_on_all_ranks)};
 BW_CHECK_MAIN("ibm_mdf.memory", tests)

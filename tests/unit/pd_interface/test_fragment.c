@@ -111,6 +111,13 @@ START_TEST(broken_bonds_part_a_body)
   const double from[3] = {-1, 6, 0}, to[3] = {21, 6, 0};
   bw_check_ok(bw_solid_precrack(b.pd, from, to, NULL));
   check(&b, 2, piece, 1.0);
+  /* One body all the same: its bonds are there, if broken. */
+  int64_t *label = NULL;
+  bw_check_ok(BW_ALLOCATE(&label, bw_solid_count(b.pd)));
+  bw_check_ok(bw_pd_interface_bodies(b.pi, label));
+  for (size_t h = 0; h < bw_solid_count(b.pd); h++)
+    ck_assert_int_eq(label[h], 0);
+  bw_release(&label);
   body_destroy(&b);
 }
 END_TEST

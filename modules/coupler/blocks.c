@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Area, position, velocity, normal of a member; 1 where its marker is to know it, else 0; its body. */
+/* Area, position, velocity, normal of a member; 1 where its marker is to know it; its body. */
 enum { ROW = 12, NORMAL = 7, SIDED = 10, BODY = 11 };
 
 /* Bits of a block's number: 19 per direction, 3 for the face; the top bit marks particles with a

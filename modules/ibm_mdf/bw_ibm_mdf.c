@@ -295,7 +295,7 @@ void bw_ibm_mdf_begin_step(bw_ibm_mdf *ib)
   for (size_t m = 0; ib->call > 0 && ib->beta > 0.0 && m < ib->held; m++)
     for (size_t c = 0; c < 3; c++)
       ib->M[3 * m + c] = renewed(ib, m, c);
-  /* What has been taken up may press on a surface from all sides; what is as old has been drained. */
+  /* What was taken up may press on a surface from all sides; what is as it was has been drained. */
   if (ib->call > 0) bw_ibm_mdf__drain(ib);
   ib->call = 0;
   if (ib->held > 0) memset(ib->QdV, 0, 3 * ib->held * sizeof *ib->QdV);

@@ -96,8 +96,8 @@ bw_status bw_ibm_mdf_set_markers(bw_ibm_mdf *ib, size_t n, const double X[], con
  * normals that are not of length 1, on all ranks. Collective. */
 bw_status bw_ibm_mdf_set_normals(bw_ibm_mdf *ib, const double N[], double nu) BW_MUST_CHECK;
 
-/* Markers of closed surfaces. surface (n): which of `surfaces` >= 0 each of the markers just set lies
- * on, or -1; N (n,3) its normal, of length 1, out of the body.
+/* Markers of closed surfaces. surface (n): which of `surfaces` >= 0 each of the markers just set
+ * lies on, or -1; N (n,3) its normal, of length 1, out of the body.
  * A force along the normals that is the same per area everywhere on a closed surface changes the
  * pressure inside and moves nothing. But what markers read has a net flow through the surface:
  * kernels average a velocity that bends around it. Memory would answer with such a force and, as it

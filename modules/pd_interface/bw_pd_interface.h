@@ -135,8 +135,8 @@ typedef struct {
 bw_status bw_pd_interface_fragments(bw_pd_interface *pi, int64_t label[],
                                     bw_pd_fragments *out) BW_MUST_CHECK;
 
-/* Bodies: particles connected by bonds, whether or not these hold. label (count of pd): the smallest
- * id in the body of each own particle. BW_EMEM on all ranks. Collective. */
+/* Bodies: particles connected by bonds, whether or not these hold. label (count of pd): the
+ * smallest id in the body of each own particle. BW_EMEM on all ranks. Collective. */
 bw_status bw_pd_interface_bodies(bw_pd_interface *pi, int64_t label[]) BW_MUST_CHECK;
 
 /* Free what *f owns and clear it; a cleared one is fine. Local. */

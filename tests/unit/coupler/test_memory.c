@@ -22,8 +22,8 @@ static void couple(scene *s, double spacing, int iterations)
   bw_coupler_hold_solid(s->coupler, false);
 }
 
-/* What the markers, told to the forcing, will lose: the pressure inside the cube (bw_ibm_mdf_close).
- * normal (n,3), dV (n), M (n,3) of markers; lost (n,3). */
+/* What the markers, told to the forcing, will lose: the pressure inside the cube
+ * (bw_ibm_mdf_close). normal (n,3), dV (n), M (n,3) of markers; lost (n,3). */
 static void find_lost(size_t n, const double normal[], const double dV[], const double M[],
                       double lost[])
 {

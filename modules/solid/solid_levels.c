@@ -107,7 +107,9 @@ static double patience_of(const bw_solid *s)
 
 bool bw_solid__levels_due(const bw_solid *s)
 {
-  return s->levels->since + s->levels->dt > patience_of(s);
+  /* The next step may be longer than all so far: as long as is stable, within reason. */
+  const double patience = patience_of(s), longer = fmin(bw_solid_dt_max(s), 0.5 * patience);
+  return s->levels->since + fmax(s->levels->dt, longer) > patience;
 }
 
 bw_status bw_solid__levels_time(bw_solid *s, double dt)
@@ -118,7 +120,7 @@ bw_status bw_solid__levels_time(bw_solid *s, double dt)
              "solid_step: %g since bw_solid_adapt looked where cells have to be refined, and waves "
              "cross the buffer in %g; call it before every step",
              l->since, patience_of(s));
-  l->dt = dt;
+  l->dt = fmax(l->dt, dt);
   l->since += dt;
   return BW_OK;
 }

@@ -337,6 +337,26 @@ START_TEST(what_changing_levels_do_not_go_with_is_refused)
 }
 END_TEST
 
+/* Looks come in time for a step that is longer than all before it. */
+START_TEST(steps_may_grow)
+{
+  bw_solid_config c = changing(BW_PD_PLANE_STRESS, 1);
+  c.finer.refine.buffer = 2;
+  pd_body body = pd_box(9, 8, 1);
+  for (int small = 1; small < 30; small++) {
+    bw_solid *pd = pd_make(bw_check_world(), &c, &body);
+    const double longest = bw_solid_dt_max(pd);
+    for (int q = 0; q <= small; q++) {
+      bool changed = false;
+      bw_check_ok(bw_solid_adapt(pd, &changed));
+      bw_check_ok(bw_solid_step(pd, (q < small ? 0.1 : 0.95) * longest));
+    }
+    bw_solid_destroy(&pd);
+  }
+  pd_body_release(&body);
+}
+END_TEST
+
 static const bw_check_test tests[] = {BW_TEST(momentum_and_book_are_kept),
                                       BW_TEST(all_of_a_body_is_refined),
                                       BW_TEST(same_levels_motion_and_bonds_on_any_number_of_ranks),
@@ -344,5 +364,6 @@ static const bw_check_test tests[] = {BW_TEST(momentum_and_book_are_kept),
                                       BW_TEST(restart_across_a_change),
                                       BW_TEST(broken_bonds_are_never_lost),
                                       BW_TEST(overdue_looks_and_thin_buffers_are_told),
-                                      BW_TEST(what_changing_levels_do_not_go_with_is_refused)};
+                                      BW_TEST(what_changing_levels_do_not_go_with_is_refused),
+                                      BW_TEST(steps_may_grow)};
 BW_CHECK_MAIN("solid.regrid", tests)

@@ -20,7 +20,8 @@
 /* What a user chooses. */
 typedef struct {
   bool on;          /*                                                   default false */
-  double limit;     /* gap from which the grid carries the film [L]      default three cells */
+  double limit;     /* gap from which the grid carries the film [L]      default three cells, four
+                       where probes load a solid of particles: they shorten below that */
   double roughness; /* least gap of a film [L]            required where on, at most a cell */
   double least;     /* pressure below which a film between particles cavitates, at most 0
                        [M/(L T^2)]                            default -INFINITY: it bears any */

@@ -83,7 +83,9 @@ bw_status bw_coupler__solid_films_create(bw_coupler *c)
     net.planar = g->n[2] == 1;
     net.depth = solid->thickness;
     net.mu = c->config.rho * c->config.nu;
-    net.limit = isnan(config->limit) ? 3.0 * c->h : config->limit;
+    /* Probes are shortened below three cells and a part, at once. */
+    const double cells = c->config.load == BW_LOAD_PROBES ? 4.0 : 3.0;
+    net.limit = isnan(config->limit) ? cells * c->h : config->limit;
     net.full = 5.0 / 6.0 * net.limit;
     net.roughness = config->roughness, net.least = config->least;
     net.spacing = solid->ds;

@@ -80,7 +80,7 @@ const bw_config_field bw_scene__fluid_fields[] = {
     V(bw_scene_fluid, film_roughness, BW_OPTIONAL, BW_ABOVE(0), "L",
       "films where bodies, faces of cracks and walls are too near for the grid: their least gap"),
     V(bw_scene_fluid, film_limit, BW_OPTIONAL, BW_ABOVE(0), "L",
-      "gap from which the grid carries a film; left out: three cells"),
+      "gap from which the grid carries a film; left out: three cells, with probes four"),
     V(bw_scene_fluid, film_least, BW_OPTIONAL, BW_ANY, "M/(L T2)",
       "pressure, 0 or less, below which a film between bodies that deform cavitates; left out: it "
       "bears any"),

@@ -7,8 +7,9 @@
  *            slit of length l: h^3/(12 mu) times the drop of pressure over l.
  * Measured   Plates of 128 cells, eight high, particles of one cell, mu/rho = 1 cell^2 per unit of
  *            time, moved towards each other by a thousandth of a cell while it is measured; load
- *            by the reaction and by probes. A step: plates that come together from 3.4 cells to a
- *            third of one by 0.003 cells a step, and the faces of a crack of 48 cells, cut through
+ *            by the reaction and by probes. A step: plates that come together from 3.4 cells (by
+ *            probes from 4.4, as films begin at four there) to a third of one, by 0.003 cells a
+ *            step, and the faces of a crack of 48 cells, cut through
  *            a block, that open from a third of a cell to 3.4 and close again; the largest change
  *            of F h^3 from one step to the next, over the largest of it. The sinking plate is
  *            free, elastic, 32 cells long, over a wall; its gap after it has come from 0.9 to 0.35
@@ -222,14 +223,16 @@ static bw_status no_step(bw_validation *v, bool crack, bw_coupler_load_kind load
   set_up u = plates;
   scene s;
   double most[2] = {0.0, 0.0};
-  u.speed = 0.02, u.gap = 3.5, u.load = load;
+  /* By probes the film begins at four cells. */
+  const double far = load == BW_LOAD_PROBES ? 4.5 : 3.5;
+  u.speed = 0.02, u.gap = far, u.load = load;
   if (crack) {
     u.cells[0] = 80, u.cells[1] = 40, u.length = 48.0, u.height = 6.0, u.middle = 20.0;
     u.crack = true, u.gap = 0.3, u.speed = -0.02;
   }
   bw_status st = make(comm, &u, &s);
   bw_solid_get_position(s.solid, s.X);
-  BW_THEN(st, travel(comm, &u, &s, crack ? 3.5 : 0.33, most));
+  BW_THEN(st, travel(comm, &u, &s, crack ? far : 0.33, most));
   /* And back. */
   u.speed = 0.02;
   if (crack) BW_THEN(st, travel(comm, &u, &s, 0.33, most));

@@ -37,165 +37,11 @@
  *
  * BUILD modules=ns_channel,checkpoint
  * TEST  ranks=1 timeout=3600 */
-#include "../../cases/channel_turbulence/channel_flow.h"
-#include "bw_validation.h"
+#include "channel_rows.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-
-typedef struct {
-  double scalar, velocity, sublayer, line, stress, peak;
-  const char *grid;
-} tolerances;
-
-static const tolerances goal = {0.015, 0.02, 0.03, 0.01, 0.03, 0.04, "192 x 128 x 160"};
-static const tolerances rough = {
+static const channel_tolerances goal = {0.015, 0.02, 0.03, 0.01, 0.03, 0.04, "192 x 128 x 160"};
+static const channel_tolerances rough = {
     0.10, 0.15, 0.15, 0.05, 0.15, 0.15, "32 x 64 x 32, 2 h x h x 0.8 h"};
-
-/* ---- the reference: y/h, y+, U+, u_rms, v_rms, w_rms, -uv of the half channel ---- */
-enum { Y_H, Y, U, U_RMS, V_RMS, W_RMS, UV, COLUMNS, MOST = 128 };
-typedef struct {
-  int n;
-  double row[MOST][COLUMNS];
-} table;
-
-static bw_status read_reference(table *t)
-{
-  BW_TRY(bw_validation_table("channel/channel_MKM1999_retau180.csv", COLUMNS, MOST, &t->row[0][0],
-                             &t->n));
-  BW_REQUIRE(t->n == 65, BW_EINPUT, "the reference has %d rows, 65 expected", t->n);
-  return BW_OK;
-}
-
-/* Lagrange's cubic through the four rows around y+; the last ones beyond the end. */
-static double at(const table *t, int column, double y_plus)
-{
-  int q = 0;
-  while (q < t->n - 4 && t->row[q + 2][Y] < y_plus)
-    q++;
-  double value = 0.0;
-  for (int a = q; a < q + 4; a++) {
-    double weight = 1.0;
-    for (int b = q; b < q + 4; b++)
-      if (b != a) weight *= (y_plus - t->row[b][Y]) / (t->row[a][Y] - t->row[b][Y]);
-    value += weight * t->row[a][column];
-  }
-  return value;
-}
-
-static double highest(const table *t, int column)
-{
-  double most = 0.0;
-  for (int q = 0; q < t->n; q++)
-    most = fmax(most, t->row[q][column]);
-  return most;
-}
-
-/* ---- rows ---- */
-typedef struct {
-  bw_validation *v;
-  const channel_flow *f;
-  const table *t;
-  const tolerances *tolerance;
-  double u_tau;
-  bw_ns_estimate *work; /* (n1 + 1) */
-} report;
-
-static void row(report *r, const char *quantity, const char *claim, double measured,
-                double reference, double tolerance, double interval)
-{
-  char extra[256];
-  snprintf(extra, sizeof extra,
-           "\"grid\": \"%s\", \"ci95\": %.2g, \"batches\": %d, \"eddy_turnovers\": %.3g",
-           r->tolerance->grid, interval, bw_ns_statistics_batches(r->f->statistics),
-           (double)bw_ns_statistics_samples(r->f->statistics) * r->f->config->interval * 2.0 *
-               r->u_tau);
-  const bw_claim c = {.claim = claim,
-                      .quantity = quantity,
-                      .measured = measured,
-                      .reference = reference,
-                      .tolerance = tolerance,
-                      .kind = BW_PUBLISHED,
-                      .source = "Moser, Kim & Mansour 1999, Phys. Fluids 11, 943, Re_tau 178.12",
-                      .extra = extra};
-  bw_validation_row(r->v, &c);
-}
-
-static void scalar_rows(report *r)
-{
-  const tolerances *o = r->tolerance;
-  const double half = 0.5 * r->f->config->reynolds;
-  const bw_ns_estimate u = channel_u_tau(r->f, r->work);
-  row(r, "Re_tau", "friction Reynolds number", half * u.mean, 179.0, o->scalar, half * u.interval);
-  /* 15.6803: integral of the reference profile, data/channel/channel_scalars_retau180.csv */
-  row(r, "U_b_plus", "bulk velocity in wall units", 1.0 / u.mean, 15.6803, o->scalar,
-      u.interval / (u.mean * u.mean));
-  bw_ns_statistics_profile(r->f->statistics, BW_NS_PROFILE_U, true, r->work);
-  const bw_ns_estimate centre = r->work[(r->f->config->cells[1] + 1) / 2];
-  row(r, "U_c_plus", "centre line velocity in wall units", centre.mean / u.mean,
-      r->t->row[r->t->n - 1][U], o->scalar, centre.interval / u.mean);
-}
-
-static void mean_row(report *r)
-{
-  const double Re = r->f->config->reynolds;
-  double worst[2] = {0.0, 0.0}, interval[2] = {0.0, 0.0};
-  const double *y = bw_grid_look(r->f->grid)->y_centre;
-  bw_ns_statistics_profile(r->f->statistics, BW_NS_PROFILE_U, true, r->work);
-  for (int j = 1; y[j] < 0.5; j++) {
-    const double y_plus = y[j] * r->u_tau * Re, want = at(r->t, U, y_plus);
-    const double error = fabs(r->work[j].mean / r->u_tau / want - 1.0);
-    const int part = y_plus < 5.0;
-    if (error < worst[part]) continue;
-    worst[part] = error;
-    interval[part] = r->work[j].interval / (r->u_tau * want);
-  }
-  row(r, "U_plus_max_error", "mean profile above y+ = 5, relative", worst[0], 0.0,
-      r->tolerance->velocity, interval[0]);
-  row(r, "U_plus_sublayer_max_error", "mean profile below y+ = 5, relative", worst[1], 0.0,
-      r->tolerance->sublayer, interval[1]);
-}
-
-static void stress_rows(report *r)
-{
-  const bw_grid_view *g = bw_grid_look(r->f->grid);
-  const double tau = r->u_tau * r->u_tau, Re = r->f->config->reynolds;
-  double line = 0.0, uv = 0.0, line_interval = 0.0, uv_interval = 0.0;
-  bw_ns_statistics_profile(r->f->statistics, BW_NS_PROFILE_TOTAL, true, r->work);
-  for (int j = 0; j <= g->n[1] / 2; j++) {
-    const double error = fabs(r->work[j].mean / tau - (1.0 - 2.0 * g->y_face[j]));
-    if (error >= line) line_interval = r->work[j].interval / tau, line = error;
-  }
-  row(r, "total_stress_max_error", "total stress is a straight line, over tau_w", line, 0.0,
-      r->tolerance->line, line_interval);
-  bw_ns_statistics_profile(r->f->statistics, BW_NS_PROFILE_UV, true, r->work);
-  for (int j = 0; j <= g->n[1] / 2; j++) {
-    const double error = fabs(-r->work[j].mean / tau - at(r->t, UV, g->y_face[j] * r->u_tau * Re));
-    if (error >= uv) uv_interval = r->work[j].interval / tau, uv = error;
-  }
-  row(r, "uv_max_error", "Reynolds stress, over tau_w", uv, 0.0, r->tolerance->stress, uv_interval);
-}
-
-static void peak_rows(report *r)
-{
-  static const struct {
-    const char *quantity, *claim;
-    bw_ns_profile_kind kind;
-    int column;
-  } peak[] = {{"u_rms_peak", "peak of u rms in wall units", BW_NS_PROFILE_U_RMS, U_RMS},
-              {"v_rms_peak", "peak of v rms in wall units", BW_NS_PROFILE_V_RMS, V_RMS},
-              {"w_rms_peak", "peak of w rms in wall units", BW_NS_PROFILE_W_RMS, W_RMS}};
-  for (int q = 0; q < 3; q++) {
-    bw_ns_estimate most = {0.0, 0.0};
-    bw_ns_statistics_profile(r->f->statistics, peak[q].kind, true, r->work);
-    for (int j = 1; j <= r->f->config->cells[1] / 2; j++)
-      if (r->work[j].mean > most.mean) most = r->work[j];
-    row(r, peak[q].quantity, peak[q].claim, most.mean / r->u_tau, highest(r->t, peak[q].column),
-        r->tolerance->peak, most.interval / r->u_tau);
-  }
-}
 
 /* ---- budgets over `steps` equal steps ---- */
 typedef struct {
@@ -298,20 +144,6 @@ static bw_status budget_rows(bw_validation *v, channel_flow *f, int steps, doubl
   return st;
 }
 
-/* From the checkpoint where there is one, to the end of the statistics; saved now and then. */
-static bw_status advance_all(channel_flow *f, double until, const char *checkpoint)
-{
-  struct stat there;
-  double found = checkpoint != NULL && stat(checkpoint, &there) == 0 ? 1.0 : 0.0;
-  bw_comm_max(bw_grid_comm(f->grid), 1, &found);
-  BW_TRY(found > 0.0 ? channel_load(f, checkpoint) : channel_start(f));
-  while (bw_ns_channel_time(f->fluid) < until * (1.0 - 1e-12)) {
-    BW_TRY(channel_advance(f));
-    if (checkpoint != NULL && f->intervals % 25 == 0) BW_TRY(channel_save(f, checkpoint));
-  }
-  return BW_OK;
-}
-
 static bw_status run(bw_validation *v)
 {
   const double pi = acos(-1.0);
@@ -323,23 +155,23 @@ static bw_status run(bw_validation *v)
                             .interval = 0.2,
                             .courant_share = 0.95,
                             .spin_up = full ? 40.0 : 30.0};
-  table t;
+  channel_table t;
   char path[600];
-  BW_TRY(read_reference(&t));
+  BW_TRY(channel_read_reference(&t));
   snprintf(path, sizeof path, "%s/channel_turbulence", bw_validation_folder(v));
   if (bw_comm_rank(bw_validation_comm(v)) == 0) mkdir(path, 0777);
   strcat(path, "/checkpoint.h5");
   channel_flow f;
-  report r = {.v = v, .f = &f, .t = &t, .tolerance = full ? &goal : &rough};
+  channel_report r = {.v = v, .f = &f, .t = &t, .tolerance = full ? &goal : &rough};
   bw_status st = channel_create(bw_validation_comm(v), &q, &f);
   BW_THEN(st, BW_ALLOCATE(&r.work, (size_t)q.cells[1] + 1));
-  BW_THEN(st, advance_all(&f, q.spin_up + (full ? 80.0 : 60.0), full ? path : NULL));
+  BW_THEN(st, channel_advance_all(&f, q.spin_up + (full ? 80.0 : 60.0), full ? path : NULL));
   if (st == BW_OK) {
     r.u_tau = channel_u_tau(&f, r.work).mean;
-    scalar_rows(&r);
-    mean_row(&r);
-    stress_rows(&r);
-    peak_rows(&r);
+    channel_scalar_rows(&r);
+    channel_mean_rows(&r);
+    channel_stress_rows(&r);
+    channel_peak_rows(&r);
     st = budget_rows(v, &f, full ? 20 : 300, 0.2 * bw_ns_channel_dt_max(f.fluid));
   }
   bw_release(&r.work);

@@ -257,7 +257,8 @@ bw_status bw_coupler__solid_films_find(bw_coupler *c)
   f->n_edges = bw_film_net_edges(f->net, &f->edge_point);
   memset(f->whole, 0, c->n * sizeof *f->whole);
   for (size_t a = 0; a < f->n_nodes; a++)
-    if (bw_coupler__film_own(f, f->node[a].point) && f->node[a].share == 1.0)
+    if (bw_coupler__film_own(f, f->node[a].point) && f->node[a].share == 1.0 &&
+        f->node[a].gap < 2.0 * c->h)
       f->whole[f->list[f->node[a].point].particle] = true;
   for (size_t i = 0; i < c->n; i++)
     f->row[i] = -1;

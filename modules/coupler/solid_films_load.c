@@ -125,9 +125,10 @@ static void find_across(bw_coupler *c)
   for (size_t a = 0; a < f->n_nodes; a++) {
     const double away = fmin(1.0, 0.5 * f->node[a].gap / (c->h * radius));
     const double spread = f->spread[(int)(away * BW_COUPLER__SPREAD)];
+    const double markers = bw_film_net_bears(f->net, a, f->L);
     for (size_t d = 0; d < 3; d++)
       f->T[3 * a + d] = (f->node[a].wall ? 1.0 : 2.0) * spread * f->T[3 * a + d] +
-                        f->p_mid[a] * f->node[a].normal[d];
+                        markers * f->p_mid[a] * f->node[a].normal[d];
   }
 }
 

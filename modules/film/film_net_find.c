@@ -248,7 +248,7 @@ static bw_status reach_edges(bw_film_net *w)
     for (size_t b = 0; b < most; b++) {
       const size_t q = (size_t)beside[b];
       const double facing = film_net__dot(w->N + 3 * q, N);
-      if (w->node_of[q] == -1 && facing > 0.5 && facing < 0.9) BW_TRY(look(w, q, N, true));
+      if (w->node_of[q] == -1 && facing > 0.5) BW_TRY(look(w, q, N, true));
     }
   }
   return BW_OK;

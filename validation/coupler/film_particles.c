@@ -195,7 +195,7 @@ static bw_status force_at(bw_validation *v, bw_coupler_load_kind load, double ga
 }
 
 /* Faces that move from one gap to another, at `speed` of approach: largest change of F h^3 from one
- * step to the next, and the largest of it; the first tenth of a cell, the start, is left out. */
+ * step to the next, and the largest of it; the first fifth of a cell, the start, is left out. */
 static bw_status travel(const bw_comm *comm, set_up *u, scene *s, double to, double most[2])
 {
   const double from = u->gap, way = u->speed > 0.0 ? 1.0 : -1.0;
@@ -207,7 +207,7 @@ static bw_status travel(const bw_comm *comm, set_up *u, scene *s, double to, dou
     BW_TRY(bw_coupler_step(s->coupler, u->dt));
     sum_load(comm, u, s, F);
     const double now = F[0] * pow(u->gap, 3);
-    if (fabs(u->gap - from) > 0.1) {
+    if (fabs(u->gap - from) > 0.2) {
       if (!isnan(before)) most[0] = fmax(most[0], fabs(now - before));
       most[1] = fmax(most[1], fabs(now));
       before = now;

@@ -187,7 +187,8 @@ typedef struct {
                                      late + received but for what the sampling of the motion makes,
                                      of the order of the step (book.c) [M L^2/T^2] */
   double work_film;         /* taken by films since the start, beside what the load brings: the
-                                     solid's ledger has it in external [M L^2/T^2] */
+                                     solid's ledger has it in external; less what the pressure
+                                     around them gave, which drives faces apart [M L^2/T^2] */
   int64_t film_nodes;       /* surface points with a film; 0 without films */
   double film_gap;          /* the least of their gaps [L]; INFINITY: no film */
   double film_pressure;     /* their largest pressure [M/(L T^2)] */

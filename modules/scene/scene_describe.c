@@ -118,9 +118,23 @@ static void warn_of_walls(const bw_scene *s, bw_log *log)
                   s->config.bodies[b].name);
 }
 
+/* Films that bear any suction hold what breaks together. */
+static void warn_of_films(const bw_scene *s, bw_log *log)
+{
+  const bw_scene_fluid *fluid = &s->config.fluid;
+  bool breaks = false;
+  for (int b = 0; b < s->config.n_bodies; b++)
+    breaks = breaks || s->config.bodies[b].motion == BW_SCENE_BREAKABLE;
+  if (breaks && !isnan(fluid->film_roughness) && isnan(fluid->film_least))
+    bw_log_warn(log,
+                "films bear any suction, so that faces of a crack hold each other and more bonds "
+                "break beside them; give fluid.film_least, at which the fluid cavitates");
+}
+
 /* Cells across what is thin, and steps of the solid. */
 void bw_scene__warn(bw_scene *s, bw_log *log)
 {
+  warn_of_films(s, log);
   for (int b = 0; b < s->config.n_bodies; b++) {
     const bw_scene_body *body = &s->config.bodies[b];
     bw_scene__shapes shapes;

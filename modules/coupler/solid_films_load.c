@@ -108,7 +108,8 @@ static double pressure_at(const bw_coupler *c, const double x[3])
 /* f->T of a load by the reaction. Markers' forces on one face alone are no stress: the fluid inside
  * the body presses from behind. The momentum of the half space beyond the middle of the gap gives
  * the force across: p there, and what kernels spread of either face's force across it (a wall has
- * no markers). */
+ * no markers). Also where faces have no markers yet: then those outside bear what the fluid inside
+ * presses with. */
 static void find_across(bw_coupler *c)
 {
   bw_coupler__solid_films *f = c->films;
@@ -125,10 +126,9 @@ static void find_across(bw_coupler *c)
   for (size_t a = 0; a < f->n_nodes; a++) {
     const double away = fmin(1.0, 0.5 * f->node[a].gap / (c->h * radius));
     const double spread = f->spread[(int)(away * BW_COUPLER__SPREAD)];
-    const double markers = bw_film_net_bears(f->net, a, f->L);
     for (size_t d = 0; d < 3; d++)
       f->T[3 * a + d] = (f->node[a].wall ? 1.0 : 2.0) * spread * f->T[3 * a + d] +
-                        markers * f->p_mid[a] * f->node[a].normal[d];
+                        f->p_mid[a] * f->node[a].normal[d];
   }
 }
 

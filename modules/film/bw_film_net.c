@@ -189,21 +189,6 @@ void bw_film_net_between(const bw_film_net *w, const double L[], double T[])
   }
 }
 
-static bool is_loaded(const double L[], int32_t s)
-{
-  const double *l = L + 3 * (ptrdiff_t)s;
-  return l[0] != 0.0 || l[1] != 0.0 || l[2] != 0.0;
-}
-
-double bw_film_net_bears(const bw_film_net *w, size_t a, const double L[])
-{
-  double sum = w->node[a].wall ? 1.0 : 0.0;
-  if (!is_loaded(L, w->node[a].point)) return 0.0;
-  for (size_t q = w->foot_at[a]; q < w->foot_at[a + 1]; q++)
-    sum += is_loaded(L, w->foot[q].point) ? w->foot[q].weight : 0.0;
-  return fmin(1.0, fmax(0.0, sum));
-}
-
 void bw_film_net_replace(const bw_film_net *w, const double T[], double F[])
 {
   for (size_t a = 0; a < w->n_nodes; a++) {

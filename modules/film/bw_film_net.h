@@ -118,9 +118,6 @@ void bw_film_net_force(const bw_film_net *net, double F[]);
 /* T (nodes,3): what L (n,3), another load on the points [M L/T^2], does between the faces: half of
  * the difference of both faces' loads per area, as it acts on the other one [M/(L T^2)]. */
 void bw_film_net_between(const bw_film_net *net, const double L[], double T[]);
-/* Which part of node a has a load on both faces: 1, or less where L (n,3) is nothing on some
- * points. */
-double bw_film_net_bears(const bw_film_net *net, size_t a, const double L[]);
 /* F (n,3) -= the forces of T (nodes,3) between the faces in the share of the film, which stands for
  * them. */
 void bw_film_net_replace(const bw_film_net *net, const double T[], double F[]);

@@ -114,12 +114,21 @@ void bw_film_net_destroy(bw_film_net **net)
   bw_release(net);
 }
 
+/* Places, each in its period. */
+static void copy_inside(bw_film_net *w, const double X[])
+{
+  for (size_t i = 0; i < 3 * w->n; i++) {
+    const double period = w->config.period[i % 3];
+    w->X[i] = period > 0.0 ? X[i] - period * floor(X[i] / period) : X[i];
+  }
+}
+
 bw_status bw_film_net_find(bw_film_net *w, const bw_film_points *points)
 {
   BW_TRY(make_points(w, points->n));
   w->n = points->n;
   if (w->n > 0) {
-    memcpy(w->X, points->X, 3 * w->n * sizeof *w->X);
+    copy_inside(w, points->X);
     memcpy(w->N, points->N, 3 * w->n * sizeof *w->N);
     memcpy(w->H, points->H, w->n * sizeof *w->H);
     memcpy(w->A, points->A, w->n * sizeof *w->A);
@@ -215,10 +224,14 @@ static double flow(const bw_film_net *w, const film_net_link *link)
 
 double bw_film_net_flux(const bw_film_net *w, const double x[3], const double n[3])
 {
-  double sum = 0.0, from[3];
+  double sum = 0.0, from[3], inside[3];
+  for (int d = 0; d < 3; d++) {
+    const double period = w->config.period[d];
+    inside[d] = period > 0.0 ? x[d] - period * floor(x[d] / period) : x[d];
+  }
   for (size_t l = 0; l < w->n_links; l++) {
     const film_net_link *link = w->link + l;
-    bw_film_net__between(w, x, w->X + 3 * (size_t)w->node[link->from].point, from);
+    film_net__between(w, inside, w->X + 3 * (size_t)w->node[link->from].point, from);
     const double before = film_net__dot(from, n), after = before + film_net__dot(link->way, n);
     if (before <= 0.0 && after > 0.0) sum += flow(w, link);
     if (before > 0.0 && after <= 0.0) sum -= flow(w, link);

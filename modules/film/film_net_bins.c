@@ -6,17 +6,7 @@
 
 enum { MOST = 512 }; /* bins each way */
 
-void bw_film_net__between(const bw_film_net *w, const double from[3], const double to[3],
-                          double d[3])
-{
-  for (int k = 0; k < 3; k++) {
-    d[k] = to[k] - from[k];
-    if (w->config.period[k] > 0.0) d[k] -= w->config.period[k] * round(d[k] / w->config.period[k]);
-  }
-}
-
-/* How far apart two points may be that know each other. */
-static double reach_of(const bw_film_net *w)
+double bw_film_net__reach(const bw_film_net *w)
 {
   const double along = FILM_NET_REACH * w->config.spacing;
   return w->config.limit + 2.0 * w->config.spacing + along;
@@ -45,7 +35,7 @@ static void lay_out(bw_film_net *w)
     const bool around = w->config.period[d] > 0.0;
     w->low[d] = around ? 0.0 : w->n > 0 ? low : 0.0;
     const double length = around ? w->config.period[d] : w->n > 0 ? high - low : 0.0;
-    w->bins[d] = (int)fmin(MOST, fmax(1.0, floor(length / reach_of(w))));
+    w->bins[d] = (int)fmin(MOST, fmax(1.0, floor(length / bw_film_net__reach(w))));
     w->wide[d] = length > 0.0 ? length / w->bins[d] : 1.0;
   }
 }
@@ -88,9 +78,10 @@ static void beside(const bw_film_net *w, int d, int i, int range[2])
   }
 }
 
-size_t bw_film_net__around(const bw_film_net *w, const double x[3])
+size_t bw_film_net__around(const bw_film_net *w, const double x[3], double radius)
 {
   int range[3][2];
+  double way[3];
   size_t n = 0;
   for (int d = 0; d < 3; d++)
     beside(w, d, bin_along(w, d, x[d]), range[d]);
@@ -99,8 +90,10 @@ size_t bw_film_net__around(const bw_film_net *w, const double x[3])
       for (int i = range[0][0]; i <= range[0][1]; i++) {
         const int at[3] = {(i + w->bins[0]) % w->bins[0], (j + w->bins[1]) % w->bins[1],
                            (k + w->bins[2]) % w->bins[2]};
-        for (int32_t s = w->head[bin_at(w, at)]; s >= 0; s = w->next[s])
-          w->near[n++] = s;
+        for (int32_t s = w->head[bin_at(w, at)]; s >= 0; s = w->next[s]) {
+          film_net__between(w, x, w->X + 3 * (ptrdiff_t)s, way);
+          if (film_net__dot(way, way) < radius * radius) w->near[n++] = s;
+        }
       }
   return n;
 }

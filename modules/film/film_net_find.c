@@ -33,7 +33,7 @@ static double gap_along(const bw_film_net *w, size_t s, size_t q, const double w
 static void look_ahead(const bw_film_net *w, size_t s, const double N[3], front *o)
 {
   const double ds = w->config.spacing, range = FILM_NET_REACH * ds;
-  const size_t n = bw_film_net__around(w, w->X + 3 * s);
+  const size_t n = bw_film_net__around(w, w->X + 3 * s, bw_film_net__reach(w));
   double nearest = HUGE_VAL;
   int kept = 0;
   o->n = 0;
@@ -41,7 +41,7 @@ static void look_ahead(const bw_film_net *w, size_t s, const double N[3], front 
     const size_t q = (size_t)w->near[a];
     double *way = o->way[o->n];
     if (q == s || film_net__dot(N, w->N + 3 * q) > FACING) continue;
-    bw_film_net__between(w, w->X + 3 * s, w->X + 3 * q, way);
+    film_net__between(w, w->X + 3 * s, w->X + 3 * q, way);
     const double along = film_net__dot(way, N), gap = gap_along(w, s, q, way, N);
     if (gap < -THROUGH * ds || gap > w->config.limit + ds) continue;
     if (film_net__dot(way, way) - along * along > range * range) continue;

@@ -50,11 +50,10 @@ struct bw_film_net {
   bool *fixed, *locked; /* (n) at the least pressure; closed between held points */
 };
 
-/* to - from, by the nearest image. */
-void bw_film_net__between(const bw_film_net *w, const double from[3], const double to[3],
-                          double d[3]);
-/* w->near: the points in the bins around x; how many. */
-size_t bw_film_net__around(const bw_film_net *w, const double x[3]);
+/* How far apart two points may be that know each other. */
+double bw_film_net__reach(const bw_film_net *w);
+/* w->near: the points within `radius` of x, at most that of the bins; how many. */
+size_t bw_film_net__around(const bw_film_net *w, const double x[3], double radius);
 /* Sorts the points into bins. */
 bw_status bw_film_net__sort(bw_film_net *w) BW_MUST_CHECK;
 /* Nodes, feet, links, edges of the points. */
@@ -68,6 +67,20 @@ size_t bw_film_net__neighbours(bw_film_net *w, size_t s);
 bw_status bw_film_net__link(bw_film_net *w) BW_MUST_CHECK;
 /* p of node a less that at its foot; where it is joined. */
 double bw_film_net__jump(const bw_film_net *w, const double p[], size_t a);
+
+/* to - from, by the nearest image: points are inside their period. */
+static inline void film_net__between(const bw_film_net *w, const double from[3], const double to[3],
+                                     double d[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const double period = w->config.period[k];
+    d[k] = to[k] - from[k];
+    if (2.0 * d[k] > period && period > 0.0)
+      d[k] -= period;
+    else if (2.0 * d[k] < -period && period > 0.0)
+      d[k] += period;
+  }
+}
 
 static inline double film_net__dot(const double a[3], const double b[3])
 {

@@ -15,7 +15,7 @@ static const double BETWEEN = 1.2;
 static double distance2(const bw_film_net *w, size_t s, size_t q)
 {
   double d[3];
-  bw_film_net__between(w, w->X + 3 * s, w->X + 3 * q, d);
+  film_net__between(w, w->X + 3 * s, w->X + 3 * q, d);
   return film_net__dot(d, d);
 }
 
@@ -33,7 +33,7 @@ static bool is_parted(const bw_film_net *w, size_t s, size_t q, size_t n)
 size_t bw_film_net__neighbours(bw_film_net *w, size_t s)
 {
   const double range = FILM_NET_REACH * w->config.spacing;
-  const size_t n = bw_film_net__around(w, w->X + 3 * s);
+  const size_t n = bw_film_net__around(w, w->X + 3 * s, range);
   size_t face = 0, kept = 0;
   int32_t next[FILM_NET_FACE];
   for (size_t a = 0; a < n && face < FILM_NET_FACE; a++) {
@@ -95,7 +95,7 @@ static bw_status link_along(bw_film_net *w, size_t a)
     const int32_t other = w->node_of[q];
     if (other >= 0 && (size_t)other < a) continue;
     double way[3];
-    bw_film_net__between(w, w->X + 3 * s, w->X + 3 * q, way);
+    film_net__between(w, w->X + 3 * s, w->X + 3 * q, way);
     const bw_film_node *there = other >= 0 ? w->node + other : node;
     const double c = dimension * tile_of(w, s) * tile_of(w, q) * (1.0 / w->m[s] + 1.0 / w->m[q]);
     film_net_link link = {
@@ -140,7 +140,7 @@ static void find_moment(bw_film_net *w, size_t s)
   double d[3];
   for (size_t b = 0; b < n; b++) {
     const size_t q = (size_t)w->near[b];
-    bw_film_net__between(w, w->X + 3 * s, w->X + 3 * q, d);
+    film_net__between(w, w->X + 3 * s, w->X + 3 * q, d);
     w->m[s] += film_net__dot(d, d) * tile_of(w, q);
   }
 }

@@ -21,8 +21,9 @@
  *            reasons: it is that of the weaker bonds of a tip, of which the first breaks at 0.73 of
  *            the G0 that carries a long crack on (G_start_over_G0 of crack_tip.c), at 0.85 of the
  *            pressure then, and of a short crack at a part of sqrt(ds/a) more; so 5 % hold from 10
- *            to 46 spacings. start_long, first_bond_long say where it goes. The limit of bonds is that of a flat cut, all bonds of
- *            which break at once; one after the other they need more at m = 3, reported.
+ *            to 46 spacings. start_long, first_bond_long say where it goes. The limit of bonds is
+ *            that of a flat cut, all bonds of which break at once; one after the other they need
+ *            more at m = 3, reported.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 timeout=600 */
 #include "../pd_state/crack.h"

@@ -218,11 +218,62 @@ START_TEST(cracks_open_by_each_horizon)
 }
 END_TEST
 
+/* A crack along a jump: neither lip is open before it gapes, as partners beyond the own horizon
+ * tell nothing, and both are when it does by more than the coarse horizon asks for. */
+START_TEST(cracks_along_a_jump_are_closed_at_first)
+{
+  const place p = {"", 1, plate, true, 1, {{1, {-1, 8, -1}, {25, 17, 1}}}};
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  body b = make(&p, &ic);
+  const size_t n = bw_solid_count(b.pd);
+  double *X = NULL, *V = NULL;
+  bw_check_ok(BW_ALLOCATE(&X, 3 * n));
+  bw_check_ok(BW_ALLOCATE(&V, 3 * n));
+  bw_check_ok(bw_solid_precrack(b.pd, (double[3]){-1, 8, 0}, (double[3]){25, 8, 0}, NULL));
+  for (int gapes = 0; gapes < 2; gapes++) {
+    const double gap = 1.5 * gapes;
+    bw_solid_get_reference(b.pd, X);
+    for (size_t h = 0; h < n; h++)
+      if (X[3 * h + 1] > 8) X[3 * h + 1] += gap;
+    bw_solid_set_state(b.pd, X, V);
+    bw_check_ok(bw_pd_interface_update(b.pi));
+    const bw_pd_surface s = bw_pd_interface_surface(b.pi);
+    double lips = 0.0;
+    for (size_t q = 0; q < s.n; q++) {
+      const double *x = &s.X[3 * q], y = x[1] - (x[1] > 8 ? gap : 0);
+      const double ds = bw_solid_spacing(b.pd, (size_t)s.particle[q]);
+      if (x[0] > 1 && x[0] < 23 && fabs(y - 8) < ds) lips += s.A[q];
+    }
+    bw_check_near(body_sum(lips), gapes ? 2 * 22.0 : 0.0, 1e-9);
+  }
+  bw_release(&X);
+  bw_release(&V);
+  body_destroy(&b);
+}
+END_TEST
+
+/* The area of the reference shape: flat faces have theirs, jump or none. Normals 2.5 degrees off,
+ * on a coarse horizon either way of both jumps and on all between, would take 1e-3 of 18. */
+START_TEST(the_shape_keeps_its_area)
+{
+  const bw_pd_interface_config ic = bw_pd_interface_config_default();
+  const place alike = {"", 1, plate, true, 0, {{0}}};
+  body one = make(&alike, &ic), some = make(&places[0], &ic);
+  const double lost =
+      bw_pd_interface_reference_area(one.pi) - bw_pd_interface_reference_area(some.pi);
+  ck_assert_msg(fabs(lost) < 0.02, "%g of %g", lost, bw_pd_interface_reference_area(one.pi));
+  body_destroy(&one);
+  body_destroy(&some);
+}
+END_TEST
+
 static const bw_check_test tests[] = {
     BW_TEST(surface_is_the_particles_with_an_open_side),
     BW_TEST(flat_faces_have_their_normals_and_heights),
     BW_TEST(areas_close_the_body),
     BW_TEST(walls_are_no_surface),
     BW_TEST(cracks_open_by_each_horizon),
+    BW_TEST(cracks_along_a_jump_are_closed_at_first),
+    BW_TEST(the_shape_keeps_its_area),
 };
 BW_CHECK_MAIN("pd_interface.surface_levels", tests)

@@ -21,9 +21,11 @@
  * instead"). The default weight is (1 - q)^2 (1 + 2 q) with q = |xi| over the family's reach; eight
  * neighbours (18 in space: horizon_ratio 1.5, family_reach horizon) are the most accurate where
  * nothing breaks. A particle whose bonds no longer span the space is on central springs.
- * A bond breaks when its stretch is beyond s0 of its G0; or when it is stretched and the mean of
- * what its ends have used of a criterion's limit (bw_pd_material_criterion.h), or of the flow's
- * factor, is above 1.
+ * A bond breaks when its stretch is beyond s0 sqrt(horizon/|xi|), s0 of its G0: at the energy that
+ * a spring in its place would hold, the same for all. With one stretch for all bonds those nearly
+ * along a crack hold on longest, and what the crack costs depends on the stress along it. Or when
+ * it is stretched and the mean of what its ends have used of a criterion's limit
+ * (bw_pd_material_criterion.h), or of the flow's factor, is above 1.
  *
  * Between two groups each end has its own constants, and the smaller G0 or the joint's own counts.
  * A law given no options (NULL) takes the defaults. */
@@ -58,7 +60,7 @@ typedef enum {
 
 /* What breaks a bond of a correspondence law. */
 typedef enum {
-  BW_PD_STATE_BREAKS_BY_STRETCH, /* its stretch, of G0 */
+  BW_PD_STATE_BREAKS_BY_STRETCH, /* its stretch times sqrt(|xi|/horizon), of G0 */
   BW_PD_STATE_BREAKS_BY_STRESS,  /* the largest principal Cauchy stress of its ends */
   BW_PD_STATE_BREAKS_BY_FLOW,    /* the factor of the plastic flow of its ends */
   /* What their stress uses of a criterion (bw_pd_material_criterion.h). */
@@ -86,5 +88,20 @@ bw_pd_state_correspondence_options bw_pd_state_correspondence_options_default(vo
 
 /* The correspondence law. */
 extern const bw_pd_law bw_pd_state_correspondence_law;
+
+/* What a body of both laws is asked for: `options` of bw_pd_body_create, which must be given. */
+typedef struct {
+  bool correspondence_group[BW_PD_GROUPS];           /* of each group; default false: ordinary */
+  bw_pd_state_ordinary_options ordinary;             /* default that law's own */
+  bw_pd_state_correspondence_options correspondence; /* default that law's own */
+} bw_pd_state_mixed_options;
+
+/* The defaults: ordinary everywhere. Local. */
+bw_pd_state_mixed_options bw_pd_state_mixed_options_default(void);
+
+/* Some groups ordinary, the others correspondence; bonds are the ordinary law with their own
+ * Poisson's ratio. It is no row of the table: bw_solid_config.law takes it, and scenes whose parts
+ * have materials of both laws. */
+extern const bw_pd_law bw_pd_state_mixed_law;
 
 BW_END_DECLS

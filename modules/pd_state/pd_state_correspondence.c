@@ -136,7 +136,7 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   return check_families(pd);
 }
 
-/* s0 of a joint on level 0 from its G0. */
+/* s0 of a joint on level 0 from its G0: the stretch that breaks a bond as long as the horizon. */
 static double stretch(const bw_pd_body *pd, int g, int h)
 {
   const bw_pd_body_config *c = &pd->config;
@@ -155,13 +155,14 @@ static void row_constants(bw_pd_body *pd, const bw_pd_level *level, int g, int h
   const bw_pd_stencil *s = &level->stencil;
   const bool cloud = pd->config.disorder > 0;
   const double s0 = bw_pd_correspondence_of(pd)->s0[g][h] * level->stretch;
+  const double excess = s0 * sqrt(level->horizon); /* over sqrt(|xi|) [sqrt(L)] */
   bw_real *row = bw_pd_state__row(pd, level, g, h);
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double r0 = cloud ? 1 : s->r0[q];
     row[BW_PD_STIFFNESS] =
         (bw_real)(cloud ? level->dv
                         : bw_pd_correspondence_weight(pd, level, r0) * s->fraction[q] * level->dv);
-    row[BW_PD_LIMIT2] = (bw_real)(r0 * (1 + s0) * r0 * (1 + s0));
+    row[BW_PD_LIMIT2] = (bw_real)(cloud ? excess : pow(r0 + excess * sqrt(r0), 2));
   }
 }
 
@@ -196,7 +197,7 @@ static void constants(bw_pd_body *pd)
 }
 
 /* A remembered H is that of the bonds that hold: it jumps with them, the stress does not. */
-static void forget(bw_pd_body *pd, const bw_pd_block *block, int lane)
+static void forget_lane(bw_pd_body *pd, const bw_pd_block *block, int lane)
 {
   bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   const bw_pd_state_family f = bw_pd_state__family(pd, block, lane, NULL);
@@ -207,26 +208,34 @@ static void forget(bw_pd_body *pd, const bw_pd_block *block, int lane)
     o->accepted[q][block->first + lane] = (bw_real)H[q];
 }
 
+void bw_pd_state__forget(bw_pd_body *pd, const bw_pd_block *block, uint8_t changed)
+{
+  for (int lane = 0; lane < BW_PD_LANES; lane++)
+    if (changed >> lane & 1 && bw_pd_correspondence_of(pd)->remembers) forget_lane(pd, block, lane);
+}
+
 /* Both ends see the same numbers. */
-static bool beyond(const bw_pd_body *pd, const bw_pd_level *level, const bw_pd_walk *b)
+bool bw_pd_state__correspondence_beyond(const bw_pd_body *pd, const bw_pd_level *level,
+                                        const bw_pd_walk *b)
 {
   const bw_pd_correspondence *o = bw_pd_correspondence_of(pd);
   double y[3];
   const double s = bw_pd_walk_present(b, y) / b->rest.r0 - 1;
   if (o->measure != NULL) return s > 0 && (double)o->measure[b->h] + (double)o->measure[b->l] > 2;
-  return s > level->stretch * o->s0[bw_pd_body_group_at(pd, b->h)][bw_pd_body_group_at(pd, b->l)];
+  const double s0 = o->s0[bw_pd_body_group_at(pd, b->h)][bw_pd_body_group_at(pd, b->l)];
+  return s > level->stretch * s0 * sqrt(level->horizon / b->rest.r0);
 }
 
 static bool breaks(bw_pd_body *pd, bw_pd_block *block)
 {
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   uint8_t changed = 0;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)~block->gone); bw_pd_walk_next(&b);) {
-    if (!beyond(pd, bw_pd_body_level_of(pd, block), &b) || bw_pd_walk_unbreakable(&b)) continue;
+    if (!bw_pd_state__correspondence_beyond(pd, level, &b) || bw_pd_walk_unbreakable(&b)) continue;
     bw_pd_body_cut(pd, block, b.slot, b.lane);
     changed |= (uint8_t)(1u << b.lane);
   }
-  for (int lane = 0; lane < BW_PD_LANES; lane++)
-    if (changed >> lane & 1 && bw_pd_correspondence_of(pd)->remembers) forget(pd, block, lane);
+  bw_pd_state__forget(pd, block, changed);
   return changed != 0;
 }
 
@@ -254,7 +263,8 @@ static const bw_pd_law_key keys[] = {
     {"elastic", "", "energy: linear, saint_venant, neo_hookean or hencky; default neo_hookean"},
     {"stabilisation", "", "beta kappa/mu, 0 or more; default 4/3"},
     {"breaks", "",
-     "bonds break by stretch (of fracture_energy), stress, flow, energy, mises, "
+     "bonds break by stretch (of fracture_energy; longer ones at less), stress, flow, energy, "
+     "mises, "
      "mohr_coulomb or drucker_prager; default stretch"},
     {"limit", "Pa or 1",
      "stress, of Mohr-Coulomb and Drucker-Prager cohesion, or factor of plastic flow, that a pair "

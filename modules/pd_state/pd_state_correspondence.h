@@ -11,7 +11,7 @@ typedef struct {
   double kappa[BW_PD_FINEST + 1]; /* of each level: tr K/d of a full family [L^5] */
   /* c of the central springs of each level, w c s per volume [M/(L^4 T^2)] */
   double spring[BW_PD_FINEST + 1][BW_PD_GROUPS];
-  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* on level 0 [-] */
+  double s0[BW_PD_GROUPS][BW_PD_GROUPS]; /* of a bond as long as the horizon, on level 0 [-] */
   bool breakable, remembers;
   bw_real *inverse[6]; /* storage: K^-1, xx yy zz yz xz xy */
   bw_real *beta;       /* storage: beta; of a particle on springs minus their c */
@@ -58,6 +58,12 @@ static inline double bw_pd_correspondence_beta(const bw_pd_body *pd, int32_t h, 
   return o->remembers ? beta * bw_pd_correspondence_secant(pd, h, (double)o->accepted[15][h])
                       : beta;
 }
+
+/* pd_state_correspondence.c: whether a bond is beyond its limit; what lanes that lost bonds
+ * remember of H becomes that of the bonds that hold. Local. */
+bool bw_pd_state__correspondence_beyond(const bw_pd_body *pd, const bw_pd_level *level,
+                                        const bw_pd_walk *b);
+void bw_pd_state__forget(bw_pd_body *pd, const bw_pd_block *block, uint8_t changed);
 
 /* pd_state_shape.c */
 

@@ -40,6 +40,16 @@ typedef struct {
   vec xi[3], weight, rest2;
 } rest;
 
+INLINE vec root(vec x)
+{
+  return x * vec_rsqrt(x);
+}
+
+INLINE vec square(vec x)
+{
+  return x * x;
+}
+
 INLINE rest rest_of(const passes *s, const bw_pd_slot *slot, const bw_real *row, const owners *h,
                     int dimension, bool cloud)
 {
@@ -201,7 +211,7 @@ INLINE bool block_force(const passes *s, const bw_pd_block *block, int dimension
       continue;
     }
     vec limit = constant_of(&s->all, block, slot, row, BW_PD_LIMIT2, mixed);
-    if (cloud) limit *= b.rest2;
+    if (cloud) limit = square(root(b.rest2) + limit * root(root(b.rest2)));
     beyond |= vec_above(r2, limit) & lanes_of(slot->mask);
   }
   /* B_h xi of all bonds at once. */

@@ -140,23 +140,29 @@ static double energy(const bw_pd_body *pd, const bw_pd_block *block, uint8_t ask
   return sum;
 }
 
-/* Both ends see the same numbers, in sums that do not depend on their order. The force of what
- * breaks goes with the passes that follow. */
-static bool breaks(bw_pd_body *pd, bw_pd_block *block)
+/* Both ends see the same numbers, in sums that do not depend on their order. */
+bool bw_pd_state__ordinary_beyond(const bw_pd_body *pd, const bw_pd_level *level,
+                                  const bw_pd_walk *b)
 {
   const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  double y[3];
+  const double e = bw_pd_walk_present(b, y) - b->rest.r0;
+  const double f = ((double)o->stiff[b->h] + (double)o->stiff[b->l]) * e +
+                   ((double)o->pull[b->h] + (double)o->pull[b->l]) * b->rest.r0;
+  const bw_real *row =
+      bw_pd_state__row(pd, level, bw_pd_body_group_at(pd, b->h), bw_pd_body_group_at(pd, b->l));
+  double limit = (double)row[b->slot->direction * BW_PD_ROW + BW_PD_LIMIT2];
+  if (pd->config.disorder > 0 && o->options.influence == BW_PD_STATE_INVERSE) limit *= b->rest.r0;
+  return e > 0 && f * e > limit;
+}
+
+/* The force of what breaks goes with the passes that follow. */
+static bool breaks(bw_pd_body *pd, bw_pd_block *block)
+{
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   bool any = false;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)~block->gone); bw_pd_walk_next(&b);) {
-    double y[3];
-    const double e = bw_pd_walk_present(&b, y) - b.rest.r0;
-    const double f = ((double)o->stiff[b.h] + (double)o->stiff[b.l]) * e +
-                     ((double)o->pull[b.h] + (double)o->pull[b.l]) * b.rest.r0;
-    const bw_real *row =
-        bw_pd_state__row(pd, bw_pd_body_level_of(pd, block), bw_pd_body_group_at(pd, b.h),
-                         bw_pd_body_group_at(pd, b.l));
-    double limit = (double)row[b.slot->direction * BW_PD_ROW + BW_PD_LIMIT2];
-    if (pd->config.disorder > 0 && o->options.influence == BW_PD_STATE_INVERSE) limit *= b.rest.r0;
-    if (!(e > 0 && f * e > limit) || bw_pd_walk_unbreakable(&b)) continue;
+    if (!bw_pd_state__ordinary_beyond(pd, level, &b) || bw_pd_walk_unbreakable(&b)) continue;
     bw_pd_body_cut(pd, block, b.slot, b.lane);
     any = true;
   }

@@ -26,6 +26,10 @@ static inline double bw_pd_ordinary_influence(const bw_pd_ordinary *o, double r0
   return o->options.influence == BW_PD_STATE_INVERSE ? 1 / r0 : 1;
 }
 
+/* Whether a bond is beyond its limit. Local. */
+bool bw_pd_state__ordinary_beyond(const bw_pd_body *pd, const bw_pd_level *level,
+                                  const bw_pd_walk *b);
+
 /* pd_state_ordinary_sweep.c: the passes, and the product with the tangent. */
 void bw_pd_state__ordinary_dilate(bw_pd_body *pd, size_t first, size_t last, bool check,
                                   bool damping);

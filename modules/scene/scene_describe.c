@@ -31,6 +31,14 @@ static void describe_levels(const bw_scene *s, const bw_solid *p, bw_log *log)
               fine, fine / all);
 }
 
+/* The critical stretch of a law that has one for all bonds, and that breaks; else nothing. */
+static const char *stretch_words(double stretch, char out[48])
+{
+  out[0] = '\0';
+  if (isfinite(stretch)) snprintf(out, 48, ", critical stretch %.3g", stretch);
+  return out;
+}
+
 static void describe_solids(bw_scene *s, bw_log *log)
 {
   for (int q = 0; q < s->n_solids; q++) {
@@ -45,16 +53,17 @@ static void describe_solids(bw_scene *s, bw_log *log)
     if (s->sketched) {
       const double ds = s->config.bodies[s->solid[q].body[0]].spacing;
       const bw_solid_sample *a = &s->solid[q].sample;
-      bw_log_info(log,
-                  "solid      %s: about %.3g particles of %g, horizon %g, critical stretch %.3g",
-                  names, s->solid[q].sites, ds, a->horizon, a->critical_stretch);
+      char stretch[48];
+      bw_log_info(log, "solid      %s: about %.3g particles of %g, horizon %g%s", names,
+                  s->solid[q].sites, ds, a->horizon, stretch_words(a->critical_stretch, stretch));
       bw_log_info(log, "           step at most about %.3g for bonds, %.3g for contact", a->dt_max,
                   a->dt_contact);
       continue;
     }
-    bw_log_info(log, "solid      %s: %lld particles of %g, horizon %g, critical stretch %.3g",
-                names, (long long)bw_solid_total(p), bw_solid_settings(p)->ds, bw_solid_horizon(p),
-                bw_solid_critical_stretch(p));
+    char stretch[48];
+    bw_log_info(log, "solid      %s: %lld particles of %g, horizon %g%s", names,
+                (long long)bw_solid_total(p), bw_solid_settings(p)->ds, bw_solid_horizon(p),
+                stretch_words(bw_solid_critical_stretch(p), stretch));
     if (bw_solid_settings(p)->finer.n > 0 || bw_solid_settings(p)->finer.refine.level > 0)
       describe_levels(s, p, log);
     bw_log_info(log, "           step at most %.3g for bonds, %.3g for contact", bw_solid_dt_max(p),

@@ -208,6 +208,8 @@ static bw_status book_of(bw_scene *s, const bw_scene_gauge_config *g, bw_solid_l
     sum->fracture += one.fracture;
     sum->damping += one.damping;
     sum->external += one.external;
+    sum->plastic += one.plastic;
+    sum->regrid += one.regrid;
     sum->broken += one.broken;
   }
   return BW_OK;
@@ -242,8 +244,8 @@ bw_status bw_scene__measure_solid(bw_scene *s, int gauge, const bw_scene__quanti
   if (strcmp(what->word, "fragments") == 0) return fragments_of(s, g, value);
   /* What is left comes from the books. */
   BW_TRY(book_of(s, g, &book));
-  const double energy[6] = {book.kinetic,  book.elastic, book.contact,
-                            book.fracture, book.damping, book.external};
+  const double energy[8] = {book.kinetic, book.elastic,  book.contact, book.fracture,
+                            book.damping, book.external, book.plastic, book.regrid};
   if (strcmp(what->word, "broken_bonds") == 0)
     value[0] = (double)book.broken;
   else

@@ -173,12 +173,9 @@ int bw_scene__body_of(const bw_scene__solid *q, size_t i);
 double bw_scene__share(const bw_scene__solid *q, size_t i);
 /* scene_law.c: what the law of a solid is asked for; NULL: nothing. BW_EINPUT where its materials
  * ask for what one solid cannot have. Local. */
-typedef struct {
-  bw_pd_state_correspondence_options correspondence;
-  bw_pd_state_ordinary_options ordinary;
-} bw_scene__options;
 bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
-                                bw_scene__options *room, const void **options) BW_MUST_CHECK;
+                                bw_pd_state_mixed_options *room,
+                                const void **options) BW_MUST_CHECK;
 /* scene_sites.c: the sites of all bodies of a solid. */
 typedef struct {
   int64_t n;

@@ -127,7 +127,7 @@ static bw_pd_material_yield yield_of(const bw_scene *s, const bw_scene_material 
 }
 
 /* Options that a lattice has one of: those of its first material that deforms. */
-static void set_options(const bw_scene_material *m, bw_scene__options *room)
+static void set_options(const bw_scene_material *m, bw_pd_state_mixed_options *room)
 {
   bw_pd_state_correspondence_options *o = &room->correspondence;
   if (m->influence != INT_MIN) room->ordinary.influence = (bw_pd_state_influence)m->influence;
@@ -149,27 +149,45 @@ static bool agree(const bw_scene_material *a, const bw_scene_material *b)
          strcmp(a->elastic, b->elastic) == 0 && limits && same && friction;
 }
 
-bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
-                                bw_scene__options *room, const void **options)
+/* What a group adds to the options; `first` of its law's materials gives what a lattice has one of.
+ * */
+static bw_status add_group(const bw_scene *s, const bw_scene_material *m, int g,
+                           const bw_scene_material **first, bw_pd_state_mixed_options *room)
 {
-  const bw_scene_material *first = NULL;
+  if (*first == NULL) set_options(*first = m, room);
+  BW_REQUIRE(agree(*first, m), BW_EINPUT,
+             "materials.%s: another material of the same lattice, %s, differs in elastic, "
+             "influence, weight, breaks, limit or stabilisation; a lattice has one of each",
+             m->name, (*first)->name);
+  if (m->elastic[0] != '\0') (void)find_elastic(m->elastic, &room->correspondence.elastic);
+  if (m->plastic[0] != '\0') room->correspondence.yield[g] = yield_of(s, m);
+  return BW_OK;
+}
+
+bw_status bw_scene__law_options(const bw_scene *s, const bw_scene__solid *q,
+                                bw_pd_state_mixed_options *room, const void **options)
+{
+  const bw_scene_material *first[2] = {NULL, NULL}; /* ordinary, correspondence */
+  bool still[BW_PD_GROUPS] = {false};
   *options = NULL;
-  room->correspondence = bw_pd_state_correspondence_options_default();
-  room->ordinary = bw_pd_state_ordinary_options_default();
+  *room = bw_pd_state_mixed_options_default();
   for (int g = 0; g < q->n_groups; g++) {
     /* What does not deform is as stiff as what it holds, and does not yield. */
-    if (!bw_scene__deforms(&s->config.bodies[q->body_of[g]])) continue;
+    still[g] = !bw_scene__deforms(&s->config.bodies[q->body_of[g]]);
+    if (still[g]) continue;
     const bw_scene_material *m = &s->config.materials[q->material_of[g]];
-    const bool ordinary = strcmp(m->law, "ordinary") == 0;
-    if (!ordinary && strcmp(m->law, "correspondence") != 0) return BW_OK;
-    if (first == NULL) set_options(first = m, room);
-    BW_REQUIRE(agree(first, m), BW_EINPUT,
-               "materials.%s: another material of the same lattice, %s, differs in elastic, "
-               "influence, weight, breaks, limit or stabilisation; a lattice has one of each",
-               m->name, first->name);
-    if (m->elastic[0] != '\0') (void)find_elastic(m->elastic, &room->correspondence.elastic);
-    if (m->plastic[0] != '\0') room->correspondence.yield[g] = yield_of(s, m);
-    *options = ordinary ? (const void *)&room->ordinary : &room->correspondence;
+    const bool correspondence = strcmp(m->law, "correspondence") == 0;
+    if (!correspondence && strcmp(m->law, "ordinary") != 0) return BW_OK;
+    room->correspondence_group[g] = correspondence;
+    BW_TRY(add_group(s, m, g, &first[correspondence], room));
   }
+  for (int g = 0; g < q->n_groups; g++)
+    if (still[g]) room->correspondence_group[g] = first[0] == NULL;
+  if (first[0] != NULL && first[1] != NULL)
+    *options = room;
+  else if (first[0] != NULL)
+    *options = &room->ordinary;
+  else if (first[1] != NULL)
+    *options = &room->correspondence;
   return BW_OK;
 }

@@ -132,10 +132,17 @@ static void set_material(const bw_scene *s, int b, int m, bw_pd_material *out)
                                                                         : INFINITY};
 }
 
+/* Laws that one lattice can have: the same, or the two state-based ones. */
+static bool may_meet(const char *a, const char *b)
+{
+  return strcmp(a, b) == 0 || (strcmp(a, "bond") != 0 && strcmp(b, "bond") != 0);
+}
+
 static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *c)
 {
   const int model = model_of(s, q);
   const char *law = NULL;
+  bool mixed = false;
   /* Nothing deforms: the numbers only have to be some. */
   if (!bw_scene__deforms(&s->config.bodies[model])) {
     c->rho = s->config.fluid.density;
@@ -154,10 +161,12 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
     bw_pd_material material;
     set_material(s, deforms ? b : model, m, &material);
     const char *own = s->config.materials[m].law;
-    BW_REQUIRE(law == NULL || strcmp(law, own) == 0, BW_EINPUT,
-               "bodies.%s.material: its law is %s, but a body on the same lattice has %s; bodies "
-               "that share a flow or hold each other have one law",
+    BW_REQUIRE(law == NULL || may_meet(law, own), BW_EINPUT,
+               "bodies.%s.material: its law is %s, but a body on the same lattice has %s; bonds "
+               "meet no other law on one lattice: law: ordinary with poisson_ratio: 0.25 (1/3 in "
+               "plane stress) is what they are, and meets correspondence",
                s->config.bodies[b].name, own, law);
+    mixed |= law != NULL && strcmp(law, own) != 0;
     law = own;
     if (g == 0)
       c->rho = material.rho, c->E = material.E, c->nu = material.nu, c->G0 = material.G0;
@@ -165,7 +174,7 @@ static bw_status materials_of(bw_scene *s, bw_scene__solid *q, bw_solid_config *
       c->more.material[g - 1] = material;
   }
   c->more.n = q->n_groups - 1;
-  c->law = bw_solid_law_by_name(law);
+  c->law = mixed ? &bw_pd_state_mixed_law : bw_solid_law_by_name(law);
   return BW_OK;
 }
 
@@ -282,7 +291,7 @@ static bw_status named(const bw_scene *s, const bw_scene__solid *q, bw_status st
 static bw_status plan_solid(bw_scene *s, bw_scene__solid *q)
 {
   bw_solid_config c;
-  bw_scene__options room;
+  bw_pd_state_mixed_options room;
   q->contact = meets_itself(s, q);
   settings_of(s, q, &c);
   BW_TRY(lattice_of(s, q, &c));
@@ -297,7 +306,7 @@ static bw_status plan_solid(bw_scene *s, bw_scene__solid *q)
 static bw_status make_solid(bw_scene *s, bw_scene__solid *q)
 {
   bw_solid_config c;
-  bw_scene__options room;
+  bw_pd_state_mixed_options room;
   bw_scene__sites sites = {0};
   q->contact = meets_itself(s, q);
   settings_of(s, q, &c);

@@ -7,13 +7,15 @@
  * Measured   strips three times as long as high, cracked over 0.45 of their length; in space
  *            periodic along the front. At rest (linear solve) the load at which the law breaks its
  *            first bond is found by halving, these bonds are broken, and so on until the crack has
- *            advanced by four spacings: the first load gives the G of the first bond, the largest
- *            that of the crack. Strains of 1e-5. The ordinary law was calibrated in another body
- *            (crack_tip.c). Correspondence was calibrated in strips of 24 cells at three of
- *            Poisson's ratios, of which 0.3 is none.
- * Tolerance  5 %, asked for. The stress along the crack, which a strip has and the tip of a long
- *            crack has not, makes the ordinary law's crack cheaper: by 1 to 7 % in strips of 10 to
- *            30 horizons; rows where that is above 5 % are reported (full).
+ *            advanced by eight spacings: the first load gives the G of the first bond, the largest
+ *            that of the crack. W is that of a strip without end or crack (periodic): near the free
+ *            end the strain differs by up to 7 %. Strains of 1e-5. The laws were calibrated in
+ *            another body, at the tip of a long crack (crack_tip.c).
+ * Tolerance  correspondence 5 %, asked for. A strip has a stress along the crack, T = -0.59
+ *            K/sqrt(h) at nu = 0.3 (eight-node finite elements), -0.77 at 0.1, -0.46 at 0.4, which
+ *            a long crack has not: at 12 horizons it makes a crack of the ordinary law 8 % cheaper,
+ *            one of correspondence 4 % dearer (crack_tip.c, full). Ordinary: 5 % and those 8. Other
+ *            ratios are reported (full).
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 timeout=3600 */
 #include "crack.h"
@@ -32,25 +34,43 @@ static int choose(const int32_t site[3], const void *data, uint8_t *group)
   return fabs(y) > 0.5 * s->height ? BW_PD_PRESCRIBED : BW_PD_FREE;
 }
 
-/* The slope of u over y ahead of the crack. */
-static double ahead(const crack_body *b, const strip *s)
+static void pull(crack_body *b, const strip *s)
 {
-  double strain[2] = {0};
   const double middle = s->grip + 0.5 * s->height;
-  for (size_t i = 0; i < bw_solid_count(b->pd); i++) {
-    const double x = b->r.X0[3 * i], y = b->r.X0[3 * i + 1] - middle;
-    if (x < 0.8 * s->length || x > 0.9 * s->length || fabs(y) > 0.3 * s->height) continue;
-    strain[0] += b->U[3 * i + 1] * y;
-    strain[1] += y * y;
+  for (size_t i = 0; i < bw_solid_count(b->pd); i++)
+    if (bw_solid_kind(b->pd)[i] & BW_PD_PRESCRIBED)
+      b->U[3 * i + 1] = b->r.X0[3 * i + 1] > middle ? 0.5 : -0.5;
+}
+
+/* The strain far ahead of the crack for edges 1 apart: that of a strip without end or crack. */
+static bw_status ahead(const bw_comm *comm, const bw_solid_config *given, const strip *cracked,
+                       int deep, double *strain)
+{
+  const strip s = {.length = 4 * cracked->grip, .height = cracked->height, .grip = cracked->grip};
+  const double middle = s.grip + 0.5 * s.height;
+  bw_solid_config c = *given;
+  crack_body b = {0};
+  double sum[2] = {0};
+  c.period[0] = s.length;
+  BW_TRY(crack_make(comm, &c, (int[3]){s.length, s.height + 2 * s.grip, deep}, choose, &s, &b));
+  pull(&b, &s);
+  BW_TRY(crack_rest(&b));
+  for (size_t i = 0; i < bw_solid_count(b.pd); i++) {
+    const double y = b.r.X0[3 * i + 1] - middle;
+    if (fabs(y) > 0.3 * s.height) continue;
+    sum[0] += b.U[3 * i + 1] * y;
+    sum[1] += y * y;
   }
-  return strain[0] / strain[1];
+  *strain = sum[0] / sum[1];
+  crack_release(&b);
+  return BW_OK;
 }
 
 static bw_status drive(bw_validation *v, const crack_material *a, int height, double tolerance)
 {
   strip s = {.length = 3 * height, .height = height, .grip = (int)ceil(a->m + 0.5)};
   crack_body b = {0};
-  double lam, mu, first = 0, hardest = 0, load = 1e-4;
+  double lam, mu, strain, first = 0, hardest = 0, load = 1e-4;
   char extra[200], more[40];
   bw_solid_config c = crack_config(a, &lam, &mu);
   const double middle = s.grip + 0.5 * height;
@@ -58,16 +78,15 @@ static bw_status drive(bw_validation *v, const crack_material *a, int height, do
   c.G0 = 0.5 * (lam + 2 * mu) * CRACK_STRAIN * CRACK_STRAIN * height;
   BW_TRY(crack_make(bw_validation_comm(v), &c, (int[3]){s.length, height + 2 * s.grip, deep},
                     choose, &s, &b));
-  for (size_t i = 0; i < bw_solid_count(b.pd); i++)
-    if (bw_solid_kind(b.pd)[i] & BW_PD_PRESCRIBED)
-      b.U[3 * i + 1] = b.r.X0[3 * i + 1] > middle ? 0.5 : -0.5;
+  BW_TRY(ahead(bw_validation_comm(v), &c, &s, deep, &strain));
+  pull(&b, &s);
   BW_TRY(crack_cut(&b, -1, 0.45 * s.length, middle));
   const double start = crack_tip(&b);
-  for (int n = 0; n < 400 && crack_tip(&b) < start + 4; n++) {
+  for (int n = 0; n < 1000 && crack_tip(&b) < start + 8; n++) {
     BW_TRY(crack_rest(&b));
     BW_TRY(crack_advance(&b, &load));
     /* W h for edges `load` apart: (lam + 2 mu)/2 (load eps)^2 (1/eps). */
-    const double G = 0.5 * (lam + 2 * mu) * load * load * ahead(&b, &s);
+    const double G = 0.5 * (lam + 2 * mu) * load * load * strain;
     if (n == 0) first = G;
     hardest = fmax(hardest, G);
   }
@@ -81,29 +100,30 @@ static bw_status drive(bw_validation *v, const crack_material *a, int height, do
   return BW_OK;
 }
 
-static bw_status ordinary(bw_validation *v, bw_pd_geometry geometry, double nu, double m,
-                          int height, double tolerance)
-{
-  const crack_material a = {geometry, BW_SOLID_ORDINARY, BW_PD_STATE_CONSTANT, nu, m};
-  return drive(v, &a, height, tolerance);
-}
-
 static bw_status run(bw_validation *v)
 {
-  crack_material c = {BW_PD_PLANE_STRAIN, BW_SOLID_CORRESPONDENCE, BW_PD_STATE_CUBIC, 0.3, 3};
-  BW_TRY(ordinary(v, BW_PD_PLANE_STRAIN, 0.3, 3, 36, 0.05));
-  BW_TRY(ordinary(v, BW_PD_PLANE_STRAIN, 0.3, 2, 40, 0.05));
+  const bw_pd_geometry plane = BW_PD_PLANE_STRAIN;
+  crack_material o = {plane, BW_SOLID_ORDINARY, BW_PD_STATE_CONSTANT, 0.3, 3};
+  crack_material c = {plane, BW_SOLID_CORRESPONDENCE, BW_PD_STATE_CUBIC, 0.3, 3};
+  BW_TRY(drive(v, &o, 36, 0.13));
   BW_TRY(drive(v, &c, 24, 0.05));
+  o.m = c.m = 2;
+  BW_TRY(drive(v, &o, 40, 0.13));
+  BW_TRY(drive(v, &c, 40, 0.05));
   if (!bw_validation_full(v)) return BW_OK;
-  /* Taller strips, of the law that was calibrated by the one above; and how far the ordinary law
-   * misses its goal of 5 % elsewhere. */
-  BW_TRY(drive(v, &c, 48, INFINITY));
-  for (double nu = -0.1; nu < 0.45; nu += 0.17)
-    for (double m = 2; m < 4; m++) {
-      BW_TRY(ordinary(v, BW_PD_PLANE_STRAIN, nu, m, 36, INFINITY));
-      BW_TRY(ordinary(v, BW_PD_PLANE_STRESS, nu, m, 48, INFINITY));
+  for (o.nu = -0.1; o.nu < 0.45; o.nu += 0.17)
+    for (o.m = 2; o.m < 4; o.m++) {
+      c.nu = o.nu, c.m = o.m;
+      for (o.geometry = BW_PD_PLANE_STRESS; o.geometry <= BW_PD_PLANE_STRAIN; o.geometry++) {
+        c.geometry = o.geometry;
+        BW_TRY(drive(v, &o, 36, INFINITY));
+        BW_TRY(drive(v, &c, 36, INFINITY));
+      }
     }
-  return ordinary(v, BW_PD_3D, 0.3, 2, 24, INFINITY);
+  o = (crack_material){BW_PD_3D, BW_SOLID_ORDINARY, BW_PD_STATE_CONSTANT, 0.3, 2};
+  c = (crack_material){BW_PD_3D, BW_SOLID_CORRESPONDENCE, BW_PD_STATE_CUBIC, 0.3, 2};
+  BW_TRY(drive(v, &o, 24, INFINITY));
+  return drive(v, &c, 24, INFINITY);
 }
 
 int main(int argc, char **argv)

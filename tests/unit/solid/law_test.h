@@ -5,6 +5,21 @@
 
 static const double ROUND_OFF = 200 * BW_REAL_EPSILON;
 
+/* A body; of two materials where the config has two: from the third layer along x on the other. */
+static inline bw_solid *law_make(const bw_comm *comm, const bw_solid_config *c, const pd_body *body)
+{
+  bw_solid *s = NULL;
+  uint8_t *group = NULL;
+  if (c->more.n == 0) return pd_make(comm, c, body);
+  bw_check_ok(BW_ALLOCATE(&group, (size_t)body->n));
+  for (int64_t q = 0; q < body->n; q++)
+    group[q] = body->site[3 * q] > 1;
+  const int64_t n = bw_comm_rank(comm) == 0 ? body->n : 0;
+  bw_check_ok(bw_solid_create(comm, c, &(bw_pd_sites){n, body->site, body->kind, group}, &s));
+  bw_release(&group);
+  return s;
+}
+
 static void wave(const double X0[3], double u[3])
 {
   for (int k = 0; k < 3; k++)
@@ -17,7 +32,7 @@ static void check_force(const bw_solid_config *c)
   const double h = 1e-4 * 0.5;
   bw_comm *self = pd_alone();
   pd_body body = pd_box(4, 4, 3);
-  bw_solid *pd = pd_make(self, c, &body);
+  bw_solid *pd = law_make(self, c, &body);
   double X[3 * 48], V[3 * 48] = {0}, a[3 * 48], most = 0, difference = 0;
   pd_set(pd, wave, NULL);
   bw_check_ok(bw_solid_evaluate(pd));
@@ -51,7 +66,7 @@ static void check_rest(const bw_solid_config *c)
   pd_body body = pd_box(10, 4, 4);
   for (int64_t q = 0; q < body.n; q++)
     if (body.site[3 * q] < 2 || body.site[3 * q] > 7) body.kind[q] = BW_PD_PRESCRIBED;
-  bw_solid *pd = pd_make(bw_check_world(), c, &body);
+  bw_solid *pd = law_make(bw_check_world(), c, &body);
   const size_t n = bw_solid_count(pd);
   double *U = NULL, *X = NULL, *X0 = NULL, *V = NULL, *F = NULL;
   double **array[] = {&U, &X, &X0, &V, &F};

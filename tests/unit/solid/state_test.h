@@ -31,7 +31,7 @@ static inline double state_departure(const bw_solid_config *c, double fraction, 
                                      bw_solid_ledger *end)
 {
   pd_body body = pd_box(9, 6, c->geometry == BW_PD_3D ? 5 : 1);
-  bw_solid *pd = pd_make(bw_check_world(), c, &body);
+  bw_solid *pd = law_make(bw_check_world(), c, &body);
   pd_set(pd, NULL, state_tremble);
   const bw_solid_ledger first = ledger_of(pd);
   const double dt = fraction * bw_solid_dt_max(pd), start = state_energy(pd);
@@ -55,8 +55,8 @@ static inline void state_check_ranks(const bw_solid_config *c)
 {
   bw_comm *self = pd_alone();
   pd_body body = pd_box(9, 6, c->geometry == BW_PD_3D ? 5 : 1);
-  bw_solid *all = pd_make(bw_check_world(), c, &body), *one = pd_make(self, c, &body);
-  bw_solid *next = pd_make(bw_check_world(), c, &body);
+  bw_solid *all = law_make(bw_check_world(), c, &body), *one = law_make(self, c, &body);
+  bw_solid *next = law_make(bw_check_world(), c, &body);
   const double dt = 0.4 * bw_solid_dt_max(one);
   bw_check_near(bw_solid_dt_max(all) / bw_solid_dt_max(one), 1, 1e-5);
   pd_set(all, NULL, state_shake);
@@ -92,7 +92,7 @@ static inline void state_turn(const double X0[3], double u[3])
 static inline void state_check_turn(const bw_solid_config *c)
 {
   pd_body body = pd_box(7, 6, c->geometry == BW_PD_3D ? 5 : 1);
-  bw_solid *pd = pd_make(bw_check_world(), c, &body);
+  bw_solid *pd = law_make(bw_check_world(), c, &body);
   double *a = NULL;
   bw_check_ok(BW_ALLOCATE(&a, 3 * bw_solid_count(pd)));
   pd_set(pd, state_turn, NULL);

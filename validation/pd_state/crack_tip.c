@@ -15,8 +15,9 @@
  *            times this. Quick: knots in discs of 24, and plane stress between them; full: all of
  *            it. Also what the crack costs when the field has a stress T along the crack, in units
  *            of K/sqrt(horizon): reported, as no long crack has one, and every specimen has.
- * Tolerance  2 %: straight lines between the knots, and the disc (24 to 40 spacings: 2e-3). In space
- *            3 %: its knots of correspondence are from discs of 14 and four spacings of the crack.
+ * Tolerance  2 %: straight lines between the knots, and the disc (24 to 40 spacings: 2e-3). In
+ *            space 3 %: its knots of correspondence are from discs of 14 and four spacings of the
+ *            crack.
  * BUILD modules=solid,solid_tools
  * TEST  ranks=1 timeout=3600 */
 #include "crack.h"

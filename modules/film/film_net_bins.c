@@ -8,8 +8,9 @@ enum { MOST = 512 }; /* bins each way */
 
 double bw_film_net__reach(const bw_film_net *w)
 {
-  const double along = FILM_NET_REACH * w->config.spacing;
-  return w->config.limit + 2.0 * w->config.spacing + along;
+  /* Two heights of half a spacing lie between centres. */
+  const double ds = w->config.spacing;
+  return hypot(w->config.limit + (FILM_NET_BEYOND + 1.0) * ds, FILM_NET_REACH * ds);
 }
 
 static int bin_along(const bw_film_net *w, int d, double x)

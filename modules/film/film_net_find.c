@@ -43,7 +43,7 @@ static void look_ahead(const bw_film_net *w, size_t s, const double N[3], front 
     if (q == s || film_net__dot(N, w->N + 3 * q) > FACING) continue;
     film_net__between(w, w->X + 3 * s, w->X + 3 * q, way);
     const double along = film_net__dot(way, N), gap = gap_along(w, s, q, way, N);
-    if (gap < -THROUGH * ds || gap > w->config.limit + ds) continue;
+    if (gap < -THROUGH * ds || gap > w->config.limit + FILM_NET_BEYOND * ds) continue;
     if (film_net__dot(way, way) - along * along > range * range) continue;
     o->point[o->n++] = (int32_t)q;
     nearest = fmin(nearest, gap);

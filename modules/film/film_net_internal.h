@@ -2,7 +2,8 @@
 #pragma once
 #include "bw_film_net.h"
 
-#define FILM_NET_REACH 1.6 /* neighbours along a face, in spacings: next ones and diagonals */
+#define FILM_NET_REACH  1.6 /* neighbours along a face, in spacings: next ones and diagonals */
+#define FILM_NET_BEYOND 0.5 /* how far beyond the limit points of a foot may be, in spacings */
 
 enum { FILM_NET_FACE = 64 }; /* points within reach of one, on one face */
 

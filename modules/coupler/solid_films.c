@@ -133,7 +133,7 @@ static void release_rows(bw_coupler__solid_films *f)
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&f->row);
-  bw_release(&f->whole);
+  bw_release(&f->keeps);
 }
 
 void bw_coupler__solid_films_destroy(bw_coupler__solid_films **films)
@@ -159,9 +159,9 @@ bw_status bw_coupler__solid_films_rows(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&f->a, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&f->edge_p, c->n));
   BW_TRY(BW_ALLOCATE(&f->row, c->n));
-  BW_TRY(BW_ALLOCATE(&f->whole, c->n));
+  BW_TRY(BW_ALLOCATE(&f->keeps, c->n));
   for (size_t i = 0; i < c->n; i++)
-    f->edge_p[i] = NAN;
+    f->edge_p[i] = NAN, f->keeps[i] = 1.0;
   return BW_OK;
 }
 
@@ -170,9 +170,9 @@ bool bw_coupler__solid_films_any(const bw_coupler *c)
   return c->films != NULL && c->films->n_nodes > 0;
 }
 
-bool bw_coupler__solid_films_whole(const bw_coupler *c, size_t p)
+double bw_coupler__solid_films_keep(const bw_coupler *c, size_t p)
 {
-  return c->films != NULL && c->films->whole[p];
+  return c->films == NULL ? 1.0 : c->films->keeps[p];
 }
 
 double *bw_coupler__solid_films_edge(const bw_coupler *c)
@@ -255,11 +255,12 @@ bw_status bw_coupler__solid_films_find(bw_coupler *c)
   f->n_nodes = bw_film_net_nodes(f->net, &f->node);
   f->n_used = bw_film_net_used(f->net, &f->used);
   f->n_edges = bw_film_net_edges(f->net, &f->edge_point);
-  memset(f->whole, 0, c->n * sizeof *f->whole);
+  for (size_t i = 0; i < c->n; i++)
+    f->keeps[i] = 1.0;
   for (size_t a = 0; a < f->n_nodes; a++)
-    if (bw_coupler__film_own(f, f->node[a].point) && f->node[a].share == 1.0 &&
-        f->node[a].gap < 2.0 * c->h)
-      f->whole[f->list[f->node[a].point].particle] = true;
+    if (bw_coupler__film_own(f, f->node[a].point))
+      f->keeps[f->list[f->node[a].point].particle] =
+          fmin(1.0, fmax(0.0, f->node[a].gap / c->h - 1.0));
   for (size_t i = 0; i < c->n; i++)
     f->row[i] = -1;
   for (size_t q = 0; q < c->n_surface; q++)

@@ -35,7 +35,7 @@ typedef struct bw_coupler__solid_films {
   double *before, *v, *a; /* (particles,3) places and velocities before a sub-step; scratch */
   double *edge_p;         /* pressure at an edge, relaxed; NaN: not known */
   int32_t *row;           /* of the coupler's surface; -1: none */
-  bool *whole;
+  double *keeps;          /* of the memory of its marker, from one (2 cells) to none (1 cell) */
 } bw_coupler__solid_films;
 
 static inline bool bw_coupler__film_own(const bw_coupler__solid_films *f, int32_t s)
@@ -55,8 +55,9 @@ bw_status bw_coupler__solid_films_follow(bw_coupler *c) BW_MUST_CHECK;
 bw_status bw_coupler__solid_films_find(bw_coupler *c) BW_MUST_CHECK;
 /* Are there any? The same on all ranks. */
 bool bw_coupler__solid_films_any(const bw_coupler *c);
-/* Does the film of own particle p stand in the grid's place? Local. */
-bool bw_coupler__solid_films_whole(const bw_coupler *c, size_t p);
+/* What the marker of own particle p keeps of its memory from step to step, 1 without films: both
+ * faces of a gap ask the same cells for two velocities, below two cells for ever. Local. */
+double bw_coupler__solid_films_keep(const bw_coupler *c, size_t p);
 
 /* After c->load is that of c->force: the pressure at the edges of the films, `relaxation` of it
  * new; what the grid does between faces out of c->load. Collective. */

@@ -207,15 +207,15 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
   return BW_OK;
 }
 
-/* The memory of the surface points: that of their particles, none where a bond has broken or a film
- * stands for the grid: both faces of a gap ask the same cells for two velocities. */
+/* The memory of the surface points: that of their particles, none where a bond has broken, less and
+ * less where a film stands for the grid. */
 static void place_memory(bw_coupler *c)
 {
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
+    const double keeps = bw_coupler__solid_films_keep(c, p);
     for (size_t d = 0; d < 3; d++)
-      c->marker_M[3 * q + d] =
-          c->broken[p] > 0 || bw_coupler__solid_films_whole(c, p) ? NAN : c->M[3 * p + d];
+      c->marker_M[3 * q + d] = c->broken[p] > 0 ? NAN : keeps * c->M[3 * p + d];
   }
 }
 

@@ -27,6 +27,7 @@ extern "C" {
 #endif
 
 typedef struct bw_shape_source bw_shape_source; /* the file of an open mask; opaque */
+typedef struct bw_shape_field bw_shape_field;   /* distances of a surface; opaque */
 
 /* What a file said about itself. */
 typedef struct {
@@ -49,6 +50,7 @@ typedef struct {
   int64_t first, held;     /* layers in z that are held: first <= k < first + held */
   uint8_t *solid;          /* (held, size[1], size[0]), x fastest; 0: empty */
   bw_shape_source *source; /* where other layers are read from; NULL: all layers are held */
+  bw_shape_field *surface; /* where bw_shape_mask_find_surface has found it; else NULL */
   bw_shape_about about;    /* what the file said */
 } bw_shape_mask;
 
@@ -79,6 +81,14 @@ bw_status bw_shape_mask_flip(bw_shape_mask *mask, int axis) BW_MUST_CHECK;
  * Crop and flip first. BW_EINPUT for a factor that is none or longer than the mask, for a mask
  * without a file, or coarsened before. Local. */
 bw_status bw_shape_mask_coarsen(bw_shape_mask *mask, const int factor[3]) BW_MUST_CHECK;
+
+/* The surface of the body that the voxels are, for bw_shape_surface.h: a smooth one, which holds
+ * as much as they do; planes and spheres come out to a tenth of a voxel, edges are rounded by
+ * one. All layers are held, with 29 bytes a voxel while it is found and 5 after; `lower` and
+ * `spacing` may not be changed any more. planar: of a mask of one layer, in two dimensions.
+ * BW_EINPUT where voxels tell no surface: none are solid, pieces that do not touch, most of it
+ * fewer than about four voxels thick, more than 1e8 of them; BW_EIO, BW_EMEM. Local. */
+bw_status bw_shape_mask_find_surface(bw_shape_mask *mask, bool planar) BW_MUST_CHECK;
 
 /* The solid of a mask. */
 typedef struct {

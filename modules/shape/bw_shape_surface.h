@@ -8,7 +8,8 @@
  *           (exact where the nearest point of the surface is that of the shape that decides). It
  *           is zero too on a face within the body at which two added shapes touch.
  * Planar    z is ignored; areas are lengths, per unit of depth.
- * Images    have no such surface: masks give NaN, and are refused where there is a status. */
+ * Images    have such a surface once bw_shape_mask_find_surface has found it; before, masks give
+ *           NaN, and are refused where there is a status. */
 #pragma once
 #include "bw_shape.h"
 #ifdef __cplusplus

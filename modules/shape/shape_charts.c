@@ -162,10 +162,3 @@ bw_status bw_shape__charts_cylinder(const bw_shape *s, int dims, const bw_shape_
   c.n[1] = pieces(2.0 * PI * s->radius, spacing, 4);
   return take(to, &c);
 }
-
-bw_status bw_shape__charts_mask(const bw_shape *s, int dims, const bw_shape__extent *e,
-                                double spacing, bw_shape__take take, void *to)
-{
-  (void)s, (void)dims, (void)e, (void)spacing, (void)take, (void)to;
-  return BW_FAIL(BW_EINPUT, "surface: a mask has no smooth surface; take its sites instead");
-}

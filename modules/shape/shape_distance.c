@@ -79,10 +79,3 @@ double bw_shape__distance_pores(const bw_shape *s, int dims, const double y[3], 
   }
   return least;
 }
-
-double bw_shape__distance_mask(const bw_shape *s, int dims, const double y[3], double g[3])
-{
-  (void)s, (void)dims, (void)y;
-  g[0] = g[1] = g[2] = NAN;
-  return NAN;
-}

@@ -1,6 +1,6 @@
 /* Masks: cells that are held, layers that are fetched, pieces of an image. */
 #include "bw_memory.h"
-#include "shape_internal.h"
+#include "shape_field.h"
 #include "shape_source.h"
 
 #include <math.h>
@@ -20,6 +20,7 @@ void bw_shape_mask_destroy(bw_shape_mask **mask)
   if (*mask == NULL) return;
   close_source(*mask);
   bw_release(&(*mask)->solid);
+  bw_shape__field_destroy(&(*mask)->surface);
   bw_release(mask);
 }
 

@@ -19,6 +19,8 @@ static bw_status check_config(const bw_rigid_config *c, int n)
   BW_REQUIRE(c->stiffness >= 0.0 && c->gap >= 0.0, BW_EINPUT,
              "rigid: stiffness = %g and gap = %g of the contact must not be negative", c->stiffness,
              c->gap);
+  BW_REQUIRE(c->friction >= 0.0 && c->friction <= 10.0, BW_EINPUT,
+             "rigid: friction = %g of the contact must lie in [0, 10]", c->friction);
   BW_REQUIRE(c->safety > 0.0 && c->safety <= 1.0, BW_EINPUT,
              "rigid: safety = %g of the step: must lie in (0, 1]", c->safety);
   for (int d = 0; d < 3; d++)
@@ -80,7 +82,7 @@ bw_status bw_rigid_create(const bw_comm *comm, const bw_rigid_config *config, in
     r->comm = comm, r->config = *config, r->n = n;
     st = BW_ALLOCATE(&r->body, (size_t)n);
   }
-  BW_THEN(st, BW_ALLOCATE(&r->sum, 6 * (size_t)n + 1));
+  BW_THEN(st, BW_ALLOCATE(&r->sum, 12 * (size_t)n + 1));
   for (int q = 0; q < n; q++)
     BW_THEN(st, make_body(config, q, &body[q], &r->body[q]));
   BW_THEN(st, bw_rigid__make_points(r));
@@ -91,6 +93,8 @@ bw_status bw_rigid_create(const bw_comm *comm, const bw_rigid_config *config, in
   }
   for (int q = 0; q < n; q++)
     bw_rigid_set_motion(r, q, body[q].velocity, body[q].spin);
+  /* Of the fastest swing: 1/w. */
+  r->lag = isfinite(bw_rigid_dt_max(r)) ? bw_rigid_dt_max(r) / (2.0 * config->safety) : 0.0;
   /* The first half kick needs them. */
   bw_rigid__forces(r);
   *out = r;
@@ -210,4 +214,9 @@ void bw_rigid_restore(bw_rigid *r, double time, const double row[])
   }
   r->time = time;
   bw_rigid__forces(r);
+}
+
+void bw_rigid_set_rubbed(bw_rigid *r, double rubbed)
+{
+  r->rubbed = rubbed;
 }

@@ -18,6 +18,12 @@
  *          pressure -k d/2 on its area, the other body is pushed back at the same point, and the
  *          same holds with the two exchanged. Walls: -k d. So momentum and angular momentum are
  *          kept, and the force has the energy k d^2/4 per area. d counts from `gap` away.
+ * Friction Coulomb's: where the pressure p acts on faces that slide past each other at u, it is
+ *          -mu p u/sqrt(u^2 + e^2) on both sides of the same point. e = mu |d|/T, T the time in
+ *          which contact lets a body swing by a radian at most, is what a body at rest creeps by:
+ *          friction is a damper of k T per area there, which no step that contact allows overdoes.
+ *          With it goes a damper along the normal, of 2 % of the critical damping, as sliding
+ *          would feed the bouncing of what loses nothing. What both take is booked.
  * Planar   shapes are sections, masses are those of the depth, only x, y and the turn about z live.
  * MPI      every rank holds all bodies and computes the same motion; only surface points, and the
  *          search for contact, are divided. Functions are collective unless they say local.
@@ -55,6 +61,7 @@ typedef struct {
   double depth;      /* of planar bodies [L]                     default 1 */
   double gravity[3]; /* [L/T^2]                                  default 0 */
   double stiffness;  /* k of contact [M/(L^2 T^2)]; 0: none      default 0 */
+  double friction;   /* mu of contact [-]                        default 0 */
   double gap;        /* distance at which contact begins [L]     default 0 */
   bool walled[3][2]; /* which planes of the box below are walls  default none */
   double lower[3];   /* [L] */
@@ -116,12 +123,14 @@ bw_status bw_rigid_step(bw_rigid *rigid, double dt) BW_MUST_CHECK;
 bw_status bw_rigid_begin(bw_rigid *rigid, double dt) BW_MUST_CHECK;
 bw_status bw_rigid_end(bw_rigid *rigid, double dt) BW_MUST_CHECK;
 
-/* Energies now [M L^2/T^2]; their sum is constant without load, damping and held motion. */
+/* Energies now [M L^2/T^2]; their sum is constant without load, damping and work of what is
+ * held. */
 typedef struct {
   double kinetic; /* of the centres and the turns */
   double weight;  /* -m g.X */
   double spring;  /* of both kinds */
   double contact; /* between bodies and with walls */
+  double rubbed;  /* taken by friction so far */
 } bw_rigid_energy;
 bw_rigid_energy bw_rigid_energy_of(const bw_rigid *rigid); /* Collective. */
 
@@ -141,6 +150,10 @@ void bw_rigid_sum(const bw_rigid *rigid, const double f[], double F[], double T[
 /* Signed distance of x (3) from a body where it is now, negative inside (bw_shape_distance).
  * Local. */
 double bw_rigid_distance(const bw_rigid *rigid, int body, const double x[3]);
+/* The unit vector (3) along which that distance grows fastest at x (3) (bw_shape_normal). Local. */
+void bw_rigid_normal(const bw_rigid *rigid, int body, const double x[3], double normal[3]);
+/* Area of a body's surface [L^2] (planar: its sides, without the two ends). Local. */
+double bw_rigid_area(const bw_rigid *rigid, int body);
 /* What an impulse and its moment about the centre, impulse (6) [M L/T], [M L^2/T], change of a
  * body's velocity and spin, change (6) [L/T], [1/T]: nothing in held directions. Local. */
 void bw_rigid_answer(const bw_rigid *rigid, int body, const double impulse[6], double change[6]);
@@ -153,5 +166,7 @@ double bw_rigid_radius(const bw_rigid *rigid, int body);
 enum { BW_RIGID_ROW = 24 /* numbers per body */ };
 void bw_rigid_save(const bw_rigid *rigid, double row[]);
 void bw_rigid_restore(bw_rigid *rigid, double time, const double row[]);
+/* What friction has taken so far [M L^2/T^2], for a restart, too. Local. */
+void bw_rigid_set_rubbed(bw_rigid *rigid, double rubbed);
 
 BW_END_DECLS

@@ -19,6 +19,7 @@ typedef struct {
   double angle[3];                   /* integral of the spin where it is not free */
   double F[3], T[3];                 /* loaded */
   double f[3], t[3];                 /* springs, weight, contact */
+  double rub[6];                     /* of that, force and torque by friction */
 } bw_rigid__body;
 
 struct bw_rigid {
@@ -27,13 +28,16 @@ struct bw_rigid {
   int n;
   bw_rigid__body *body; /* (n) */
   double time, contact; /* contact: energy of the last evaluation */
+  double rubbed;        /* taken by friction so far */
+  double lag;           /* T of friction [T] */
   size_t points;        /* of this rank */
   int64_t all;          /* points of all ranks */
   int64_t *id;          /* (points) number among them */
   int *of;              /* (points) body */
   double *area;         /* (points) */
   double *y, *m;        /* (points,3) place and normal in the frame of the principal axes */
-  double *sum;          /* (n,6) forces and torques to be added over ranks, and the energy */
+  double *sum; /* (n,6) forces and torques to be added over ranks, the same by friction, and
+                           the energy */
 };
 
 static inline double rigid_dot(const double a[3], const double b[3])
@@ -71,7 +75,8 @@ bw_status bw_rigid__make_points(bw_rigid *rigid) BW_MUST_CHECK;
 void bw_rigid__find_spin(bw_rigid__body *b);
 /* f, t of all bodies where they are. Collective. */
 void bw_rigid__forces(bw_rigid *rigid);
-/* The contact's part of it: adds to sum (n,6), returns this rank's part of the energy. Local. */
+/* The contact's part of it: adds to sum (n,6) and, where there is friction, its own part to the
+ * n rows behind; returns this rank's part of the energy. Local. */
 double bw_rigid__contact(const bw_rigid *rigid, double sum[]);
 /* The turn since the start as angle times axis. Local. */
 void bw_rigid__turned(const bw_rigid__body *b, double angle[3]);

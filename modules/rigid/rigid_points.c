@@ -149,9 +149,73 @@ double bw_rigid_distance(const bw_rigid *r, int q, const double x[3])
   return bw_shape_distance(r->body[q].count, r->body[q].shape, r->config.planar, start);
 }
 
+/* The normal of the shape at the start, turned with the body. */
+static void normal_at(const bw_rigid *r, int q, const double start[3], double n[3])
+{
+  const bw_rigid__body *b = &r->body[q];
+  double at_start[3], in_frame[3];
+  bw_shape_normal(b->count, b->shape, r->config.planar, start, at_start);
+  rigid_turn_back((const double(*)[3])b->axes, at_start, in_frame);
+  rigid_turn((const double(*)[3])b->R, in_frame, n);
+}
+
+void bw_rigid_normal(const bw_rigid *r, int q, const double x[3], double normal[3])
+{
+  double start[3];
+  bw_rigid__at_start(&r->body[q], x, start);
+  normal_at(r, q, start, normal);
+}
+
+double bw_rigid_area(const bw_rigid *r, int q)
+{
+  return r->body[q].area;
+}
+
 double bw_rigid_radius(const bw_rigid *r, int q)
 {
   return r->body[q].radius;
+}
+
+/* Velocity of a place x that moves with body q. */
+static void velocity_at(const bw_rigid *r, int q, const double x[3], double v[3])
+{
+  const bw_rigid__body *b = &r->body[q];
+  const double from[3] = {x[0] - b->X[0], x[1] - b->X[1], x[2] - b->X[2]};
+  rigid_cross(b->W, from, v);
+  for (int d = 0; d < 3; d++)
+    v[d] += b->V[d];
+}
+
+static const double LOSS = 0.02; /* damping of contact along its normal, of the critical one */
+
+/* Friction at x on body q, and the other way on body other (-1: a wall at rest), which it
+ * presses on with `push` along the unit vector n, `deep` inside. */
+static void rub(const bw_rigid *r, int q, int other, const double x[3], const double n[3],
+                double push, double deep, double sum[])
+{
+  const double mu = r->config.friction;
+  double u[3], back[3] = {0.0, 0.0, 0.0}, force[3], slip[3] = {0.0, 0.0, 0.0};
+  if (mu == 0.0) return;
+  velocity_at(r, q, x, u);
+  if (other >= 0) velocity_at(r, other, x, slip);
+  for (int d = 0; d < 3; d++)
+    u[d] -= slip[d];
+  const double along = rigid_dot(u, n);
+  for (int d = 0; d < 3; d++)
+    u[d] -= along * n[d];
+  const double creep = mu * deep / r->lag, size = sqrt(rigid_dot(u, u) + creep * creep);
+  /* Without it sliding feeds the bouncing of bodies; it never pulls. */
+  const double damp = fmin(fmax(2.0 * LOSS * r->lag / deep * along, -1.0), 1.0);
+  for (int d = 0; d < 3; d++) {
+    force[d] = -push * (mu * u[d] / size + damp * n[d]);
+    back[d] = -force[d];
+  }
+  /* Of all contact, and once more by itself, for the book. */
+  for (int part = 0; part < 2; part++) {
+    double *to = sum + (part == 0 ? 0 : 6 * (ptrdiff_t)r->n);
+    add_force(r, q, x, force, to);
+    if (other >= 0) add_force(r, other, x, back, to);
+  }
 }
 
 /* Walls against point i at x: full pressure -k d. */
@@ -168,6 +232,8 @@ static double meet_walls(const bw_rigid *r, size_t i, const double x[3], double 
       double force[3] = {0.0, 0.0, 0.0};
       force[d] = -inward * c->stiffness * away * r->area[i];
       add_force(r, r->of[i], x, force, sum);
+      const double n[3] = {d == 0, d == 1, d == 2};
+      rub(r, r->of[i], -1, x, n, fabs(force[d]), -away, sum);
       energy += 0.5 * c->stiffness * away * away * r->area[i];
     }
   return energy;
@@ -177,7 +243,7 @@ static double meet_walls(const bw_rigid *r, size_t i, const double x[3], double 
 static double meet_body(const bw_rigid *r, size_t i, const double x[3], int q, double sum[])
 {
   const bw_rigid__body *b = &r->body[q];
-  double start[3], at_start[3], in_frame[3], n[3], force[3], back[3];
+  double start[3], n[3], force[3], back[3];
   const double from[3] = {x[0] - b->X[0], x[1] - b->X[1], x[2] - b->X[2]};
   const double near = b->radius + r->config.gap;
   if (rigid_dot(from, from) > near * near) return 0.0;
@@ -185,16 +251,14 @@ static double meet_body(const bw_rigid *r, size_t i, const double x[3], int q, d
   const double away =
       bw_shape_distance(b->count, b->shape, r->config.planar, start) - r->config.gap;
   if (!(away < 0.0)) return 0.0;
-  /* The normal of the shape at the start, turned with the body. */
-  bw_shape_normal(b->count, b->shape, r->config.planar, start, at_start);
-  rigid_turn_back((const double(*)[3])b->axes, at_start, in_frame);
-  rigid_turn((const double(*)[3])b->R, in_frame, n);
+  normal_at(r, q, start, n);
   for (int d = 0; d < 3; d++) {
     force[d] = -0.5 * r->config.stiffness * away * r->area[i] * n[d];
     back[d] = -force[d];
   }
   add_force(r, r->of[i], x, force, sum);
   add_force(r, q, x, back, sum);
+  rub(r, r->of[i], q, x, n, -0.5 * r->config.stiffness * away * r->area[i], -away, sum);
   return 0.25 * r->config.stiffness * away * away * r->area[i];
 }
 

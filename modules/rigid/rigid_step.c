@@ -60,13 +60,14 @@ void bw_rigid__turned(const bw_rigid__body *b, double angle[3])
 void bw_rigid__forces(bw_rigid *r)
 {
   const bool meets = r->config.stiffness > 0.0;
-  const size_t n = (size_t)r->n;
-  memset(r->sum, 0, (6 * n + 1) * sizeof *r->sum);
+  const bool rubs = meets && r->config.friction > 0.0;
+  const size_t n = (size_t)r->n, rows = rubs ? 12 * n : 6 * n;
+  memset(r->sum, 0, (12 * n + 1) * sizeof *r->sum);
   if (meets) {
-    r->sum[6 * n] = bw_rigid__contact(r, r->sum);
-    bw_comm_sum(r->comm, 6 * n + 1, r->sum);
+    r->sum[rows] = bw_rigid__contact(r, r->sum);
+    bw_comm_sum(r->comm, rows + 1, r->sum);
   }
-  r->contact = r->sum[6 * n];
+  r->contact = r->sum[rows];
   for (int q = 0; q < r->n; q++) {
     bw_rigid__body *b = &r->body[q];
     double angle[3];
@@ -76,6 +77,8 @@ void bw_rigid__forces(bw_rigid *r)
                 b->stiffness[d] * (b->X[d] - b->start[d]);
       b->t[d] = r->sum[6 * q + 3 + d] - b->stiffness[3 + d] * angle[d];
     }
+    for (size_t d = 0; d < 6 && rubs; d++)
+      b->rub[d] = r->sum[6 * (n + (size_t)q) + d];
   }
 }
 
@@ -113,6 +116,22 @@ static void kick(bw_rigid__body *b, double half, bool second)
     const double I = inertia_about(b, d), c = half * b->damping[3 + d] / I;
     const double W = b->W[d] + half * (b->T[d] + b->t[d]) / I;
     b->W[d] = second ? W / (1.0 + c) : W - c * b->W[d];
+  }
+}
+
+/* Half a step of all; what friction takes is its force times the mean of the velocities before and
+ * after. */
+static void kick_all(bw_rigid *r, double half, bool second)
+{
+  for (int q = 0; q < r->n; q++) {
+    bw_rigid__body *b = &r->body[q];
+    double before[6];
+    memcpy(before, b->V, sizeof b->V);
+    memcpy(before + 3, b->W, sizeof b->W);
+    kick(b, half, second);
+    for (int d = 0; d < 3; d++)
+      r->rubbed -= 0.5 * half *
+                   (b->rub[d] * (before[d] + b->V[d]) + b->rub[3 + d] * (before[3 + d] + b->W[d]));
   }
 }
 
@@ -196,11 +215,12 @@ bw_status bw_rigid_begin(bw_rigid *r, double dt)
   const double most = bw_rigid_dt_max(r);
   BW_REQUIRE(dt > 0.0 && dt <= most, BW_ECFL, "rigid: dt = %g: must be > 0 and at most %g", dt,
              most);
-  /* f, t are those of the places at the beginning. */
-  for (int q = 0; q < r->n; q++) {
-    kick(&r->body[q], 0.5 * dt, false);
+  /* f, t are those of the places at the beginning; friction was of the velocities within the step
+   * before, and a restart does not know them. */
+  if (r->config.friction > 0.0) bw_rigid__forces(r);
+  kick_all(r, 0.5 * dt, false);
+  for (int q = 0; q < r->n; q++)
     drift(&r->body[q], dt);
-  }
   return BW_OK;
 }
 
@@ -208,9 +228,9 @@ bw_status bw_rigid_end(bw_rigid *r, double dt)
 {
   bool finite = true;
   bw_rigid__forces(r);
+  kick_all(r, 0.5 * dt, true);
   for (int q = 0; q < r->n; q++) {
-    bw_rigid__body *b = &r->body[q];
-    kick(b, 0.5 * dt, true);
+    const bw_rigid__body *b = &r->body[q];
     for (int d = 0; d < 3; d++)
       finite = finite && isfinite(b->X[d]) && isfinite(b->V[d]) && isfinite(b->W[d]);
   }
@@ -228,7 +248,7 @@ bw_status bw_rigid_step(bw_rigid *r, double dt)
 
 bw_rigid_energy bw_rigid_energy_of(const bw_rigid *r)
 {
-  bw_rigid_energy e = {.contact = r->contact};
+  bw_rigid_energy e = {.contact = r->contact, .rubbed = r->rubbed};
   for (int q = 0; q < r->n; q++) {
     const bw_rigid__body *b = &r->body[q];
     double M[3], angle[3];

@@ -95,6 +95,7 @@ void bw_coupler__push_solid(bw_coupler *c)
 {
   const bool probed = c->config.load == BW_LOAD_PROBES;
   /* The gradient that drives the fluid pushes the solid's volume as well (ERRATA 31). */
+  const int axis = bw_ns_channel_settings(c->fluid)->forcing_axis;
   const double driven = probed ? c->config.rho * bw_ns_channel_driving(c->fluid) : 0.0;
   /* V is scratch here: velocities are read anew after the solid has moved. */
   for (size_t i = 0; i < c->n; i++) {
@@ -102,7 +103,7 @@ void bw_coupler__push_solid(bw_coupler *c)
     for (int d = 0; d < 3; d++) {
       /* Weight less buoyancy. */
       double more = excess * c->config.gravity[d];
-      if (d == 0 && probed) more += driven;
+      if (d == axis && probed) more += driven;
       c->V[3 * i + d] = c->F[3 * i + d] + more;
     }
   }

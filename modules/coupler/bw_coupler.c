@@ -111,7 +111,7 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 26 };
+enum { N_VECTORS = 27 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
@@ -119,7 +119,7 @@ static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
       &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
       &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V,      &c->load,
       &c->moment,   &c->M,        &c->marker_M, &c->book.X,    &c->book.V,      &c->book.change,
-      &c->height,   &c->side};
+      &c->height,   &c->side,     &c->flow};
   memcpy(vector, all, sizeof all);
 }
 
@@ -299,6 +299,7 @@ void bw_coupler_destroy(bw_coupler **coupler)
 {
   bw_coupler *c = *coupler;
   if (c == NULL) return;
+  bw_coupler__touch_destroy(&c->touch);
   release_particle_arrays(c);
   bw_timer_destroy(&c->timer);
   bw_release(&c->p_mean);

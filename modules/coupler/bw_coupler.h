@@ -72,6 +72,7 @@
 #pragma once
 #include "bw_checkpoint.h"
 #include "bw_coupler_films.h"
+#include "bw_coupler_rigid.h"
 #include "bw_ibm_mdf.h"
 #include "bw_log.h"
 #include "bw_ns_channel.h"
@@ -138,6 +139,15 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
                             bw_coupler **out) BW_MUST_CHECK;
 /* Releases everything but fluid and solid, sets *c to NULL; NULL is fine. Collective. */
 void bw_coupler_destroy(bw_coupler **c);
+
+/* Rigid bodies of the same fluid join the steps of the coupler, which then are theirs, too: they
+ * are not stepped by themselves any more. With `contact` particles and the bodies' true surfaces
+ * push each other as particles and walls do (rigid_touch.h). Iterated steps find the fluid's answer
+ * to the solid's motion; the bodies' loads stay those of explicit steps with a virtual mass.
+ * Checkpoints of the coupler hold no bodies (bw_coupler_rigid_get_state). Borrowed until the
+ * coupler is destroyed. BW_EINPUT for a second set, and where a body and a particle pierce each
+ * other; BW_EMEM. Collective. */
+bw_status bw_coupler_join(bw_coupler *c, bw_coupler_rigid *bodies, bool contact) BW_MUST_CHECK;
 
 /* Hold the solid where it is (true) or let it move (false). Local. */
 void bw_coupler_hold_solid(bw_coupler *c, bool held);
@@ -215,6 +225,12 @@ typedef struct {
 /* Measures the last step; probes are read for it where they do not load the solid. BW_EMEM.
  * Collective. */
 bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHECK;
+
+/* force (3) <- what the flow did in the last step to the own particles i with on[i] (count), summed
+ * over ranks, by the route that loads the solid, whole and not relaxed, with what the gradient that
+ * drives the fluid does to them [M L/T^2]; NaN where a held solid has probes in a step that was not
+ * watched. BW_EMEM. Collective. */
+bw_status bw_coupler_force_on(bw_coupler *c, const bool on[], double force[3]) BW_MUST_CHECK;
 
 /* One warning on `log`, with the remedy, when slip or leak of five reports in a row are above 2 %;
  * r is the report of bw_coupler_measure. Not in the first hundred steps, in which every flow slips.

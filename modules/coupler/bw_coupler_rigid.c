@@ -2,26 +2,10 @@
 #include "bw_coupler_rigid.h"
 #include "bw_memory.h"
 #include "rigid_films.h"
+#include "rigid_impl.h"
 
 #include <math.h>
 #include <string.h>
-
-struct bw_coupler_rigid {
-  bw_coupler_rigid_config config;
-  bw_ns_channel *fluid; /* borrowed */
-  bw_rigid *rigid;      /* borrowed */
-  bw_ibm_mdf *ibm;
-  bw_coupler__films *films; /* NULL: none */
-  size_t n;                 /* markers of this rank */
-  bool placed;
-  double *X, *V, *N, *dV; /* (n,3), dV (n) */
-  double *seen;           /* (n) of dV what the grid sees: films keep sides away from other faces */
-  double *M, *Q;          /* (n,3) M memory, Q force of a step, then lack */
-  double *inside;         /* (bodies,6) int (u - U) dV, its moment at the beginning */
-  double *load;           /* (bodies,6) as the bodies have it: relaxed, with weight */
-  double *hydro;          /* (bodies,6) of the fluid in the last step */
-  double *scratch;        /* (bodies,6) */
-};
 
 bw_coupler_rigid_config bw_coupler_rigid_config_default(void)
 {
@@ -86,6 +70,8 @@ static bw_status make_arrays(bw_coupler_rigid *c)
   BW_THEN(st, BW_ALLOCATE(&c->load, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->hydro, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->scratch, 6 * bodies));
+  BW_THEN(st, BW_ALLOCATE(&c->acting, 6 * bodies));
+  BW_THEN(st, BW_ALLOCATE(&c->marked, 3 * c->n));
   return st;
 }
 
@@ -127,80 +113,12 @@ void bw_coupler_rigid_destroy(bw_coupler_rigid **coupler)
   if (c == NULL) return;
   bw_ibm_mdf_destroy(&c->ibm);
   bw_coupler__films_destroy(&c->films);
-  void *const arrays[] = {&c->seen, &c->X,      &c->V,    &c->N,     &c->dV,     &c->M,
-                          &c->Q,    &c->inside, &c->load, &c->hydro, &c->scratch};
+  void *const arrays[] = {&c->seen,    &c->X,      &c->V,      &c->N,    &c->dV,
+                          &c->M,       &c->Q,      &c->inside, &c->load, &c->hydro,
+                          &c->scratch, &c->acting, &c->marked};
   for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
     bw_release(arrays[a]);
   bw_release(coupler);
-}
-
-/* Cells lo <= i <= hi of this rank in direction d that the ball of radius R about x may reach; with
- * the ball across a periodic side all of them. */
-static void reach(const bw_grid_view *g, int d, double x, double R, int lo[3], int hi[3])
-{
-  const double h = g->spacing[d], from = (x - R) / h, to = (x + R) / h;
-  lo[d] = 1, hi[d] = g->m[d];
-  if (g->n[d] == 1 || (g->periodic[d] && (from < 1.0 || to > g->n[d] - 1.0))) return;
-  lo[d] = (int)fmax(1.0, floor(from) - g->lo[d]);
-  hi[d] = (int)fmin(g->m[d], ceil(to) + 1.0 - g->lo[d]);
-}
-
-/* int (u - U) dV over body q where it is, or will be after dt at its present velocity and spin, and
- * its moment about the centre there, into sum (6): component d of the velocity in the cells of its
- * own points, by the share of each that is inside. U is the body's own motion, which does not
- * change in a step: without it the shares, whose sum changes as the body passes through the cells,
- * would push. Local. */
-static void add_inside(const bw_coupler_rigid *c, int q, double dt, double sum[6])
-{
-  const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
-  bw_real *const *u = bw_ns_channel_velocity(c->fluid);
-  const bw_rigid_state s = bw_rigid_state_of(c->rigid, q);
-  const double R = bw_rigid_radius(c->rigid, q) + g->spacing[0];
-  const double volume = g->spacing[0] * g->spacing[1] * g->spacing[2];
-  const int dims = g->n[2] == 1 ? 2 : 3;
-  int lo[3], hi[3];
-  double X[3];
-  for (int d = 0; d < 3; d++) {
-    X[d] = s.position[d] + dt * s.velocity[d];
-    reach(g, d, X[d], R, lo, hi);
-  }
-  for (int d = 0; d < dims; d++)
-    for (int k = lo[2]; k <= hi[2]; k++)
-      for (int j = lo[1]; j <= hi[1]; j++)
-        for (int i = lo[0]; i <= hi[0]; i++) {
-          const int cell[3] = {i, j, k};
-          double x[3], r[3] = {0.0, 0.0, 0.0};
-          /* From the centre to the nearest image of the point. */
-          for (int e = 0; e < dims; e++) {
-            r[e] = (cell[e] + g->lo[e] - (e == d ? 0.0 : 0.5)) * g->spacing[e] - X[e];
-            if (g->periodic[e]) r[e] -= g->length[e] * round(r[e] / g->length[e]);
-          }
-          /* The shape is known where it is now: back from there, and turned back. */
-          for (int e = 0; e < 3; e++)
-            x[e] =
-                s.position[e] + r[e] -
-                dt * (s.spin[(e + 1) % 3] * r[(e + 2) % 3] - s.spin[(e + 2) % 3] * r[(e + 1) % 3]);
-          const double away = bw_rigid_distance(c->rigid, q, x) / g->spacing[0];
-          const double share = fmin(1.0, fmax(0.0, 0.5 - away)) * volume;
-          if (share == 0.0) continue;
-          /* (r x u e_d): e_e gets r_f u_d by the cyclic sign. */
-          const int a = (d + 1) % 3, b = (d + 2) % 3;
-          const double own = s.velocity[d] + s.spin[a] * r[b] - s.spin[b] * r[a];
-          const double momentum = share * ((double)u[d][bw_at(g, i, j, k)] - own);
-          sum[d] += momentum;
-          sum[3 + a] += r[b] * momentum;
-          sum[3 + b] -= r[a] * momentum;
-        }
-}
-
-/* The same of all bodies, over all ranks. Collective. */
-static void measure_inside(const bw_coupler_rigid *c, double dt, double sum[])
-{
-  const int n = bw_rigid_count(c->rigid);
-  memset(sum, 0, 6 * (size_t)n * sizeof *sum);
-  for (int q = 0; q < n; q++)
-    add_inside(c, q, dt, sum + 6 * (ptrdiff_t)q);
-  bw_comm_sum(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 6 * (size_t)n, sum);
 }
 
 /* Does any body move? The same on all ranks. */
@@ -233,24 +151,34 @@ static bw_status place(bw_coupler_rigid *c, const double *memory)
 bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)
 {
   /* What is to be taken out of the reaction: the fluid inside now, against that after the step. */
-  measure_inside(c, 0.0, c->inside);
+  bw_coupler__rigid_inside(c, 0.0, c->inside);
+  /* What is placed by a restart is not placed again: what it remembers would round. */
+  const bool stays = c->fresh || (c->placed && !moves(c->rigid));
+  c->fresh = false;
+  if (!stays && c->placed) bw_ibm_mdf_memory(c->ibm, c->M);
+  if (!stays) BW_TRY(place(c, c->placed ? c->M : NULL));
+  /* Behind that, as the pressure inside goes out of the memory by the normals of now. */
   bw_ibm_mdf_begin_step(c->ibm);
-  if (c->placed && !moves(c->rigid)) return BW_OK;
-  if (c->placed) bw_ibm_mdf_memory(c->ibm, c->M);
-  return place(c, c->placed ? c->M : NULL);
+  return BW_OK;
 }
 
 void bw_coupler_rigid_get_state(bw_coupler_rigid *c, double M[], double load[])
 {
   memset(M, 0, 3 * c->n * sizeof *M);
-  if (c->placed) bw_ibm_mdf_memory(c->ibm, M);
+  /* Of markers that were placed with a memory it is that one: they have let pressure out of it. */
+  if (c->fresh)
+    memcpy(M, c->M, 3 * c->n * sizeof *M);
+  else if (c->placed)
+    bw_ibm_mdf_memory(c->ibm, M);
   memcpy(load, c->load, 6 * (size_t)bw_rigid_count(c->rigid) * sizeof *load);
 }
 
 bw_status bw_coupler_rigid_set_state(bw_coupler_rigid *c, const double M[], const double load[])
 {
   memcpy(c->load, load, 6 * (size_t)bw_rigid_count(c->rigid) * sizeof *load);
-  return place(c, M);
+  memcpy(c->M, M, 3 * c->n * sizeof *M);
+  c->fresh = true;
+  return place(c, c->M);
 }
 
 void bw_coupler_rigid_force(bw_coupler_rigid *c, double dt)
@@ -275,12 +203,27 @@ static void find_force(bw_coupler_rigid *c, double dt)
     }
   /* The reaction moves the fluid inside, too: that is no force on the body. It goes with the body:
    * over a place that stands still, what the body comes to cover would count as pushed. */
-  measure_inside(c, dt, c->scratch);
+  bw_coupler__rigid_inside(c, dt, c->scratch);
   for (int i = 0; i < 6 * n; i++)
     c->hydro[i] += rho * (c->scratch[i] - c->inside[i]) / dt;
 }
 
-bw_status bw_coupler_rigid_advance(bw_coupler_rigid *c, double dt)
+bw_rigid *bw_coupler__rigid_set(const bw_coupler_rigid *c)
+{
+  return c->rigid;
+}
+
+const double *bw_coupler__rigid_acting(const bw_coupler_rigid *c)
+{
+  return c->acting;
+}
+
+double *bw_coupler__rigid_scratch(bw_coupler_rigid *c)
+{
+  return c->scratch;
+}
+
+bw_status bw_coupler__rigid_find_load(bw_coupler_rigid *c, double dt)
 {
   const int n = bw_rigid_count(c->rigid);
   find_force(c, dt);
@@ -293,12 +236,17 @@ bw_status bw_coupler_rigid_advance(bw_coupler_rigid *c, double dt)
       const double F = c->hydro[6 * q + d] + weight;
       /* (m + m_v) A = F + m_v A before, with m A the load. */
       c->load[6 * q + d] += w * (F - c->load[6 * q + d]);
-      c->scratch[(d < 3 ? 0 : 3 * n) + 3 * q + d % 3] = c->load[6 * q + d];
+      c->acting[(d < 3 ? 0 : 3 * n) + 3 * q + d % 3] = c->load[6 * q + d];
     }
   }
-  if (c->films != NULL)
-    BW_TRY(bw_coupler__films_brake(c->films, dt, c->scratch, c->scratch + 3 * (ptrdiff_t)n));
-  bw_rigid_load(c->rigid, c->scratch, c->scratch + 3 * (ptrdiff_t)n);
+  if (c->films == NULL) return BW_OK;
+  return bw_coupler__films_brake(c->films, dt, c->acting, c->acting + 3 * (ptrdiff_t)n);
+}
+
+bw_status bw_coupler_rigid_advance(bw_coupler_rigid *c, double dt)
+{
+  BW_TRY(bw_coupler__rigid_find_load(c, dt));
+  bw_rigid_load(c->rigid, c->acting, c->acting + 3 * (ptrdiff_t)bw_rigid_count(c->rigid));
   /* Springs and contact may ask for shorter steps than the fluid. */
   const double parts = fmax(1.0, ceil(dt / bw_rigid_dt_max(c->rigid)));
   BW_REQUIRE(parts <= 1e5, BW_ECFL,

@@ -2,6 +2,7 @@
 #pragma once
 #include "bw_coupler.h"
 #include "bw_exchange.h"
+#include "rigid_touch.h"
 
 /* Of the fluid on the solid since the start, this rank's share [M L^2/T^2]: given through the
  * markers; by the load; of that, what is held back; what the solid received. What films took. */
@@ -34,6 +35,7 @@ typedef struct {
   double sums[BW_SOLID_RESTART_SUMS], work[BW_COUPLER__WORKS]; /* of all ranks */
   uint8_t *bits;                                               /* (n, bits_bytes) */
   double *V_before, *F, *M;                                    /* (n,3) */
+  double *bodies;                                              /* joined.c; NULL: none */
   double *edge; /* (n) pressure at the edges of films; NULL: no films */
 } bw_coupler__state;
 
@@ -102,6 +104,7 @@ struct bw_coupler {
   bool on_surface;                  /* markers know their normals and stand on the surface */
   double *accel, *traction, *force; /* (n,3) each: of the surface points */
   double *load;                     /* (n,3) of c->force, on the particles [M L/T^2] */
+  double *flow;                     /* (n,3) the same without the couples of their moments */
   double *moment;                   /* (n,3) of the interface's rows [M L^2/T^2] */
   double *turn;                     /* (n,3) spin of the interface's rows */
   double *spin, *root_V;            /* (n,3) of the surface points */
@@ -130,6 +133,8 @@ struct bw_coupler {
   bw_pd_link *link;             /* (family) scratch */
   bw_coupler__work work;
   bw_coupler__book book;
+  bw_coupler_rigid *floats; /* rigid bodies in the same flow, borrowed; NULL: none */
+  bw_coupler__touch *touch; /* contact with them; NULL: none */
   bw_coupler__state kept;
   bw_coupler__iteration iteration;
   int iterations;

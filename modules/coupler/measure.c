@@ -101,14 +101,17 @@ static bool much_slip(const bw_coupler *c)
 static void tell_slip(bw_coupler *c, bw_log *log)
 {
   char start[64] = "";
+  /* A body that swings is held back by a memory (docs/verification/coupler). */
+  const bool memory = c->config.memory == 0.0 && c->config.coupling_iterations == 1;
   if (c->steps < BW_COUPLER__START)
     snprintf(start, sizeof start, "run longer (%lld steps are a start), ", (long long)c->steps);
   c->slip_above = -1;
   bw_log_warn(log,
               "slip at the markers is %.1f %% of the flow, %.1f %% of it passes through the "
-              "surface: forces come out too low; %stake smaller steps, give the forcing its memory "
-              "(coupling.memory: 0.2), or, without it, more iterations",
-              100.0 * c->slip_last[0], 100.0 * c->slip_last[1], start);
+              "surface: forces come out too low; %stake smaller steps%s or more forcing iterations",
+              100.0 * c->slip_last[0], 100.0 * c->slip_last[1], start,
+              memory ? ", a memory of the forcing (coupling.memory, in scenes numerics.memory: 0.2)"
+                     : "");
 }
 
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
@@ -186,7 +189,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   for (size_t q = 0; q < c->n_surface; q++)
     r.surface_area += c->area[q];
   /* The pressure that probes see lacks the gradient that drives the fluid (ERRATA 31). */
-  r.force_probe[0] += c->config.rho * bw_ns_channel_driving(c->fluid) * bw_coupler__wetted(c);
+  r.force_probe[bw_ns_channel_settings(c->fluid)->forcing_axis] +=
+      c->config.rho * bw_ns_channel_driving(c->fluid) * bw_coupler__wetted(c);
   bw_comm_sum(comm, 3, r.force_probe);
   bw_comm_sum(comm, 1, &r.surface_area);
   bw_comm_sum(comm, 1, &r.work_given);
@@ -203,5 +207,42 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   r.probes_shortened = count[0];
   r.probes_blocked = count[1];
   *out = r;
+  return BW_OK;
+}
+
+/* Of a held solid, which nothing loads: read now. */
+static bw_status read_flow(bw_coupler *c, bool probed)
+{
+  if (probed)
+    BW_TRY(bw_coupler__probe_force(c, c->checked_dt));
+  else
+    bw_coupler__reaction_force(c);
+  memset(c->flow, 0, 3 * c->n * sizeof *c->flow);
+  for (size_t q = 0; q < c->n_surface; q++)
+    memcpy(c->flow + 3 * (size_t)c->particle[q], c->force + 3 * q, 3 * sizeof *c->flow);
+  return BW_OK;
+}
+
+bw_status bw_coupler_force_on(bw_coupler *c, const bool on[], double force[3])
+{
+  const bool probed = c->config.load == BW_LOAD_PROBES;
+  const bool known = !c->held || !probed || c->p_mean_known || !c->stepped;
+  double wet = 0.0;
+  force[0] = force[1] = force[2] = 0.0;
+  if (!c->stepped) BW_TRY(bw_coupler__place_markers(c));
+  if (c->held && known) BW_TRY(read_flow(c, probed));
+  for (size_t i = 0; i < c->n; i++) {
+    if (!on[i]) continue;
+    for (size_t d = 0; d < 3; d++)
+      force[d] += c->flow[3 * i + d];
+    wet += bw_solid_volume_of(c->solid, i);
+  }
+  /* The pressure that probes see lacks the gradient that drives the fluid (ERRATA 31). */
+  if (probed)
+    force[bw_ns_channel_settings(c->fluid)->forcing_axis] +=
+        c->config.rho * bw_ns_channel_driving(c->fluid) * wet;
+  bw_comm_sum(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 3, force);
+  for (int d = 0; d < 3 && !known; d++)
+    force[d] = NAN;
   return BW_OK;
 }

@@ -2,6 +2,7 @@
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "rigid_joined.h"
 #include "solid_films.h"
 
 #include <math.h>
@@ -23,6 +24,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->V_before);
   bw_release(&s->F);
   bw_release(&s->M);
+  bw_release(&s->bodies);
   bw_release(&s->edge);
   s->filled = false;
 }
@@ -46,6 +48,7 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
+  BW_TRY(bw_coupler__joined_room(c, &s->bodies));
   if (c->films != NULL) BW_TRY(BW_ALLOCATE(&s->edge, c->n));
   return BW_ALLOCATE(&s->M, 3 * c->n);
 }
@@ -73,6 +76,7 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
+  bw_coupler__joined_capture(c, s->bodies);
   if (c->films != NULL) memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
   s->filled = true;
 }
@@ -206,7 +210,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
   if (c->films != NULL) memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
-  return BW_OK;
+  return bw_coupler__joined_restore(c, s->fluid_numbers[0], s->bodies);
 }
 
 bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck)
@@ -227,6 +231,7 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
   BW_TRY(make_room(c));
   /* Read as a whole first: a bad file leaves fluid and solid as they were. */
   BW_TRY(read_state(c, &c->kept, ck));
+  bw_coupler__joined_capture(c, c->kept.bodies); /* whoever saved the bodies sets them later */
   c->kept.filled = true;
   /* Work was saved as the sum of all ranks: one of them gets it. */
   const double own = bw_comm_rank(comm) == 0 ? 1.0 : 0.0;

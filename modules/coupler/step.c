@@ -1,6 +1,7 @@
 /* The recipe of POROUS 4.3: what happens in one time step, in this order. */
 #include "bw_coupler.h"
 #include "coupler_internal.h"
+#include "rigid_joined.h"
 #include "solid_films.h"
 
 #include <limits.h>
@@ -11,7 +12,8 @@ static double substeps(const bw_coupler *c, double dt)
   /* The squares of their frequencies add: a particle held by its bonds and pressed on all sides. */
   const double rate = hypot(1.0 / bw_solid_dt_max(c->solid), 1.0 / bw_solid_dt_contact(c->solid));
   const double n = ceil(dt * rate / c->config.solid_safety);
-  return n < 1.0 ? 1.0 : n; /* fmax would hide NaN */
+  const double joined = bw_coupler__joined_parts(c, dt);
+  return n < joined ? joined : n; /* fmax would hide NaN */
 }
 
 int bw_coupler_substeps(const bw_coupler *c, double dt)
@@ -79,8 +81,9 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
   if (c->films != NULL) BW_TRY(bw_coupler__solid_films_find(c));
   bw_timer_start(c->timer, BW_PART_FORCING);
   /* Markers of the surface at t, with its velocity; their force of the step begins at zero. */
-  const bw_status st = bw_coupler__place_markers(c);
+  bw_status st = bw_coupler__place_markers(c);
   bw_ibm_mdf_begin_step(c->ibm);
+  if (c->floats != NULL) BW_THEN(st, bw_coupler_rigid_begin(c->floats));
   bw_timer_stop(c->timer, BW_PART_FORCING);
   if (st != BW_OK) return st;
   for (int r = 0; r < 3; r++) {
@@ -89,6 +92,7 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
     bw_timer_stop(c->timer, BW_PART_MOMENTUM);
     bw_timer_start(c->timer, BW_PART_FORCING);
     bw_ibm_mdf_force(c->ibm, u, dt); /* u^: no slip on the moving surface */
+    if (c->floats != NULL) bw_coupler_rigid_force(c->floats, dt);
     bw_timer_stop(c->timer, BW_PART_FORCING);
     bw_timer_start(c->timer, BW_PART_MOMENTUM);
     const double before = bw_ns_channel_cost(c->fluid).poisson;
@@ -123,6 +127,7 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   bw_coupler__relax_load(c, dt, relaxation);
   /* With weight and buoyancy: from here on the solid knows its load. */
   bw_coupler__push_solid(c);
+  if (c->floats != NULL) BW_THEN(st, bw_coupler__rigid_find_load(c->floats, dt));
   bw_timer_stop(c->timer, BW_PART_PROBES);
   return st;
 }
@@ -138,12 +143,9 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
   /* The surface's acceleration over the step will be told from it. */
   bw_solid_get_velocity(c->solid, c->V_before);
   BW_THEN(st, bw_coupler__resist(c, dt, relaxation));
-  for (int q = 0; q < n; q++) {
-    /* Films are stiffer than any sub-step: their force is that at its end. */
-    if (c->films != NULL) BW_THEN(st, bw_coupler__solid_films_press(c, dt / n));
-    BW_THEN(st, bw_solid_step(c->solid, dt / n));
-    if (c->films != NULL && st == BW_OK) bw_coupler__solid_films_book(c, dt / n);
-  }
+  for (int q = 0; q < n && c->floats == NULL; q++)
+    BW_THEN(st, bw_coupler__step_solid(c, dt / n));
+  if (c->floats != NULL) BW_THEN(st, bw_coupler__step_joined(c, dt, n, true));
   /* Spin and velocities are those of t; the next reader makes them anew. */
   c->motion_known = false;
   bw_coupler__book_motion(c, dt);
@@ -186,8 +188,9 @@ static bw_status step(bw_coupler *c, double dt)
   c->iterations = 1;
   /* A held solid: the fluid alone, around markers that do not move. */
   if (c->held) {
-    const bw_status st = bw_coupler__advance_fluid(c, dt);
+    bw_status st = bw_coupler__advance_fluid(c, dt);
     bw_coupler__remember(c);
+    if (c->floats != NULL) BW_THEN(st, bw_coupler__step_floats(c, dt));
     return st;
   }
   bw_coupler__book_open(c);

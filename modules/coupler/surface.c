@@ -3,6 +3,7 @@
 #include "bw_exchange.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
+#include "rigid_joined.h"
 #include "solid_films.h"
 
 #include <math.h>
@@ -126,6 +127,7 @@ static bool inside_is_stale(bw_coupler *c)
     const double far = fabs(c->root[i] - c->root_inside[i]);
     moved = far > moved ? far : moved;
   }
+  if (c->floats != NULL) moved = fmax(moved, bw_coupler__rigid_moved(c->floats));
   /* All ranks mark anew or none does. */
   bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 1, &moved);
   return moved > 0.1 * c->h;
@@ -176,6 +178,7 @@ static bw_status mark_inside(bw_coupler *c)
     memset(c->inside, 0, g->size * sizeof *c->inside);
     for (size_t q = 0; q < bw_exchange_received(plan); q++)
       c->inside[cell_of(g, receive + 3 * q)] = 1;
+    if (c->floats != NULL) bw_coupler__rigid_mark(c->floats, c->inside);
     bw_halo_update(grid, 1, &c->inside);
     st = bw_comm_agree(bw_grid_comm(grid), bw_probe_set_obstacles(c->probe, c->inside));
     /* What inside_is_stale will compare with. */
@@ -283,7 +286,8 @@ void bw_coupler__find_reach(bw_coupler *c)
  * fluid: with that alone fluid would fall along without pressure. Collective. */
 static void surface_motion(bw_coupler *c, double dt)
 {
-  const double drive[3] = {bw_ns_channel_driving(c->fluid)};
+  double drive[3] = {0.0, 0.0, 0.0};
+  drive[bw_ns_channel_settings(c->fluid)->forcing_axis] = bw_ns_channel_driving(c->fluid);
   /* On the nominal surface, where probes begin. */
   bw_coupler__surface_velocity(c, false, c->root_V);
   for (size_t q = 0; q < c->n_surface; q++) {
@@ -375,6 +379,7 @@ void bw_coupler__carry_force(bw_coupler *c, bool marker)
       moment[d] = out * (N[e] * force[f] - N[f] * force[e]);
     }
   }
+  memcpy(c->flow, c->load, 3 * c->n * sizeof *c->flow);
   /* Moments become couples on the line elements that tell the spin: power stays what it is. */
   bw_pd_interface_twist(c->interface, c->moment, c->load);
 }

@@ -83,8 +83,9 @@ typedef enum {
 typedef struct {
   bw_ns_side side[3][2]; /* [direction][lower, upper] */
   double nu;             /* kinematic viscosity [L^2/T]             required */
-  bw_ns_forcing forcing; /* in x                                    default none */
-  double forcing_value;  /* bulk velocity [L/T], or -dp/dx / rho [L/T^2] */
+  bw_ns_forcing forcing; /* along a periodic direction              default none */
+  int forcing_axis;      /* that direction: 0, 1, 2                 default 0: x */
+  double forcing_value;  /* bulk velocity [L/T], or -dp/dx / rho [L/T^2], along it */
   bw_ns_viscous viscous; /*                                         default explicit */
   bw_ns_eddy eddy;       /*                                         default none */
   double eddy_constant;  /* C of WALE, nu_t = (C Delta)^2 ... [-]   default 0.325 */
@@ -111,7 +112,7 @@ bw_status bw_ns_channel_plan(const bw_grid *grid, const bw_ns_channel_config *co
                              bw_ns_plan *plan) BW_MUST_CHECK;
 
 /* `grid` is borrowed until destroy. BW_EINPUT for impossible or contradictory boundaries (named),
- * nu <= 0 or NaN, forcing without periodic x; BW_EMEM. Fluid at rest. Collective. */
+ * nu <= 0 or NaN, forcing along what is not periodic; BW_EMEM. Fluid at rest. Collective. */
 bw_status bw_ns_channel_create(bw_grid *grid, const bw_ns_channel_config *config,
                                bw_ns_channel **out) BW_MUST_CHECK;
 /* Releases everything and sets *ns to NULL; NULL is fine. Collective. */
@@ -180,7 +181,7 @@ double bw_ns_channel_divergence(bw_ns_channel *ns);
 
 /* What a line of a history wants to know of the present field. */
 typedef struct {
-  double bulk_velocity;     /* mean u over the box [L/T] */
+  double bulk_velocity;     /* mean over the box, along forcing_axis [L/T] */
   double kinetic_energy;    /* integral u.u/2 [L^5/T^2] */
   double pressure_gradient; /* mean forcing -dp/dx/rho applied in the last step [L/T^2] */
   double inflow;            /* volume flux along +x through the lower x side [L^3/T] */
@@ -227,7 +228,8 @@ void bw_ns_channel_control_volume(bw_ns_channel *ns, double force[3]);
  * flow); from the next predict on. No effect without forcing. Local, the same on all ranks. */
 void bw_ns_channel_set_forcing(bw_ns_channel *ns, double value);
 
-/* The mean gradient -dp/dx/rho that drove the last step [L/T^2], 0 without forcing. The pressure
+/* The mean gradient -dp/dx/rho along forcing_axis that drove the last step [L/T^2], 0 without
+ * forcing. The pressure
  * field is without it: the whole one falls by so much more per length. Local. */
 double bw_ns_channel_driving(const bw_ns_channel *ns);
 

@@ -121,13 +121,15 @@ static double momentum(const bw_ns_channel *ns, int c)
   return sum;
 }
 
-static double volume_of_u(const bw_ns_channel *ns)
+/* Of the cells of what is driven. */
+static double driven_volume(const bw_ns_channel *ns)
 {
-  const box_range b = range_of(ns, 0);
+  const int c = ns->config.forcing_axis;
+  const box_range b = range_of(ns, c);
   if (b.hi[0] <= b.lo[0] || b.hi[2] <= b.lo[2]) return 0.0;
   double sum = 0.0;
   for (int j = b.lo[1] + 1; j <= b.hi[1]; j++)
-    sum += volume(ns, 0, j);
+    sum += volume(ns, c, j);
   return sum * (b.hi[0] - b.lo[0]) * (b.hi[2] - b.lo[2]);
 }
 
@@ -156,7 +158,7 @@ void bw_ns__box_fluxes(bw_ns_channel *ns, int r, double dt, double gradient)
     box->flux[c] = now;
   }
   /* The gradient that drives the flow pushes every cell alike. */
-  box->impulse[0] += gamma_dt * gradient * volume_of_u(ns);
+  box->impulse[ns->config.forcing_axis] += gamma_dt * gradient * driven_volume(ns);
   box->known = true;
 }
 
@@ -172,7 +174,7 @@ void bw_ns__box_projection(bw_ns_channel *ns, double gamma_dt, double shift)
   if (!ns->box.on) return;
   for (int c = 0; c < ns->components; c++)
     ns->box.impulse[c] += gamma_dt * through(ns, c, c, pressure_value, ns->phi);
-  ns->box.impulse[0] += shift * volume_of_u(ns);
+  ns->box.impulse[ns->config.forcing_axis] += shift * driven_volume(ns);
 }
 
 void bw_ns__box_finish(bw_ns_channel *ns, double dt)

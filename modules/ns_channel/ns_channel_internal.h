@@ -35,7 +35,7 @@ typedef struct {
   bw_real nu;            /* 0 where all of the viscous term is implicit */
   bw_ns_viscous viscous; /* implicit in y: a part of that here with weight kappa */
   bw_real alpha_dt, beta_dt, gamma_dt, kappa; /* kappa = old dt nu */
-  bw_real source;                             /* dt gamma g */
+  bw_real source[3];                          /* dt gamma g along x, y, z */
 } bw_ns_sweep;
 
 /* Boundary planes of one side: normal velocity on the face, Dirichlet values of the others.

@@ -140,11 +140,15 @@ bw_status bw_ns__config_check(const bw_grid_view *g, const bw_ns_channel_config 
     for (int s = 0; s < 2; s++)
       BW_TRY(side_check(g, c, d, s));
   }
-  /* Forcing drives a flow that closes in itself along x; elsewhere the sides drive it. */
+  BW_REQUIRE(c->forcing_axis >= 0 && c->forcing_axis < (g->n[2] == 1 ? 2 : 3), BW_EINPUT,
+             "ns_channel: forcing_axis = %d: give 0, 1 or, in three dimensions, 2",
+             c->forcing_axis);
+  /* Forcing drives a flow that closes in itself; elsewhere the sides drive it. */
   if (c->forcing != BW_FORCING_NONE) {
-    BW_REQUIRE(g->periodic[0], BW_EINPUT,
-               "ns_channel: forcing needs periodic x; between inflow and outflow the pressure "
-               "drives the flow");
+    BW_REQUIRE(g->periodic[c->forcing_axis], BW_EINPUT,
+               "ns_channel: forcing needs periodic %s; between inflow and outflow the pressure "
+               "drives the flow, and nothing passes walls",
+               direction_name[c->forcing_axis]);
     BW_REQUIRE(isfinite(c->forcing_value), BW_EINPUT,
                "ns_channel: forcing_value is %g; give a bulk velocity or a gradient",
                c->forcing_value);

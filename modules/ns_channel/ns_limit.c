@@ -168,7 +168,7 @@ static double courant_everywhere(bw_ns_channel *ns)
  * g dt to the velocity: dt (g dt)/dx stays below the imaginary limit, too. */
 static double convective(bw_ns_channel *ns)
 {
-  const double value = fabs(ns->config.forcing_value) / ns->g->spacing[0];
+  const double value = fabs(ns->config.forcing_value) / ns->g->spacing[ns->config.forcing_axis];
   double c = courant_everywhere(ns), push = 0.0;
   if (ns->config.forcing == BW_FORCING_FLOW_RATE && value > c) c = value;
   if (ns->config.forcing == BW_FORCING_GRADIENT) push = value / imaginary_limit;

@@ -22,7 +22,7 @@ typedef struct {          /* scalars of one row; fluxes in x and z are scaled by
   bw_real rdyf, rdyc;     /* height of the row's cells: u, w and v */
   bw_real below2, above2; /* twice the shares */
   bw_real dy_u, dy_v;     /* implicit in y: kappa/d above in y for u, w and for v */
-  bw_real alpha, beta, gx, gy, gz, source;
+  bw_real alpha, beta, gx, gy, gz, source[3];
 } row_scalars;
 
 typedef struct { /* row (j, k), j + 1 (n), k + 1 (t): [i] is cell i */
@@ -75,7 +75,7 @@ BW_NS_INLINE void update_u(int n, bool planar, int stage, bw_ns_viscous viscous,
                            bw_real *restrict R, bw_real *restrict out)
 {
   const bw_real quarter = (bw_real)0.25, ey = c->ey_u, cz = c->cz, ez = c->ez, rdy = c->rdyf;
-  const bw_real alpha = c->alpha, beta = c->beta, gx = c->gx, source = c->source;
+  const bw_real alpha = c->alpha, beta = c->beta, gx = c->gx, source = c->source[0];
   /* R(u) = -div(u u) + nu lap u (POROUS 3.74) as differences of fluxes. */
   for (int i = 1; i <= n; i++) {
     const bw_real y = flux(v[i] + v[i + 1], u[i], un[i], quarter, ey);
@@ -110,7 +110,7 @@ BW_NS_INLINE void update_v(int n, bool planar, int stage, bw_ns_viscous viscous,
 {
   const bw_real quarter = (bw_real)0.25, ey = c->ey_v, cz = c->cz, ez = c->ez, rdy = c->rdyc;
   const bw_real below2 = c->below2, above2 = c->above2;
-  const bw_real alpha = c->alpha, beta = c->beta, gy = c->gy;
+  const bw_real alpha = c->alpha, beta = c->beta, gy = c->gy, source = c->source[1];
   /* As for u; volume fluxes across x and z have the shares of the two cells they belong to. */
   for (int i = 1; i <= n; i++) {
     const bw_real y = flux(v[i] + vn[i], v[i], vn[i], quarter, ey);
@@ -129,7 +129,7 @@ BW_NS_INLINE void update_v(int n, bool planar, int stage, bw_ns_viscous viscous,
       rhs += fz[i] - z;
       fz[i] = z;
     }
-    BW_UPDATE(v, out, R, gy * (p[i] - pn[i]));
+    BW_UPDATE(v, out, R, gy * (p[i] - pn[i]) + source);
   }
 }
 
@@ -141,7 +141,7 @@ BW_NS_INLINE void update_w(int n, int stage, bw_ns_viscous viscous, const row_sc
                            bw_real *restrict dy, bw_real *restrict R, bw_real *restrict out)
 {
   const bw_real cz = c->cz, ez = c->ez, rdy = c->rdyf;
-  const bw_real alpha = c->alpha, beta = c->beta, gz = c->gz;
+  const bw_real alpha = c->alpha, beta = c->beta, gz = c->gz, source = c->source[2];
   /* Last of the three, as u and v of this cell need the old w. */
   for (int i = 1; i <= n; i++) {
     const bw_real z = flux(w[i] + wt[i], w[i], wt[i], cz, ez);
@@ -154,7 +154,7 @@ BW_NS_INLINE void update_w(int n, int stage, bw_ns_viscous viscous, const row_sc
       dy[i] = d;
     }
     fz[i] = z;
-    BW_UPDATE(w, out, R, gz * (p[i] - pt[i]));
+    BW_UPDATE(w, out, R, gz * (p[i] - pt[i]) + source);
   }
 }
 
@@ -207,7 +207,7 @@ static row_scalars scalars_of_row(const bw_ns_sweep *s, int j)
                    .gx = s->gamma_dt * m->rdx,
                    .gy = s->gamma_dt * m->rdyc[j],
                    .gz = s->gamma_dt * m->rdz,
-                   .source = s->source};
+                   .source = {s->source[0], s->source[1], s->source[2]}};
   return c;
 }
 

@@ -67,7 +67,8 @@ static void predict(bw_ns_channel *ns, int r, double dt, bool faces)
   s->beta_dt = (bw_real)(bw_ns__beta[r] * dt);
   s->gamma_dt = (bw_real)gamma_dt;
   s->kappa = (bw_real)(bw_ns__old[r] * dt * ns->config.nu);
-  s->source = (bw_real)(gamma_dt * gradient);
+  for (int d = 0; d < 3; d++)
+    s->source[d] = d == ns->config.forcing_axis ? (bw_real)(gamma_dt * gradient) : 0;
   /* Books the mean gradient of the step, weighted as pressure is. */
   if (r == 0) ns->applying = 0.0;
   ns->applying += bw_ns__gamma[r] * gradient;
@@ -113,7 +114,36 @@ void bw_ns_channel_ghosts(bw_ns_channel *ns)
   bw_ns__ghosts_velocity(ns);
 }
 
-/* Uniform change of u that the constant flow rate still needs; sum: this rank's sum u dy. */
+/* This rank's sum of the driven component times dy, where it is not u, whose sum divergence
+ * gives. */
+static double sum_along(const bw_ns_channel *ns)
+{
+  const bw_grid_view *g = ns->g;
+  const bw_real *q = ns->u[ns->config.forcing_axis];
+  double sum = 0.0;
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++) {
+      const ptrdiff_t at = bw_at(g, 0, j, k);
+      double row = 0.0;
+      for (int i = 1; i <= g->m[0]; i++)
+        row += (double)q[at + i];
+      sum += ns->metrics.dyf[j] * row;
+    }
+  return sum;
+}
+
+static void add_along(bw_ns_channel *ns, double shift)
+{
+  const bw_grid_view *g = ns->g;
+  bw_real *q = ns->u[ns->config.forcing_axis];
+  for (int k = 1; k <= g->m[2]; k++)
+    for (int j = 1; j <= g->m[1]; j++)
+      for (int i = 1; i <= g->m[0]; i++)
+        q[bw_at(g, i, j, k)] += (bw_real)shift;
+}
+
+/* Uniform change of the driven component that the constant flow rate still needs; sum: this rank's
+ * sum of it times dy. */
 static double flow_rate_shift(bw_ns_channel *ns, double sum)
 {
   const bw_grid_view *g = ns->g;
@@ -127,6 +157,7 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
 {
   const double gamma_dt = bw_ns__gamma[r] * dt;
   const bool flow_rate = ns->config.forcing == BW_FORCING_FLOW_RATE;
+  const bool along_x = ns->config.forcing_axis == 0;
   double mark = bw_wall_time(), shift = 0.0;
   /* A body has changed u* since predict. */
   if (!fresh) {
@@ -137,10 +168,11 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   /* phi <- div u* over gamma_r dt, the right side of lap p^ (POROUS 3.71). The sum gives the bulk
    * velocity. */
   const double sum =
-      bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0 / gamma_dt, flow_rate, ns->phi);
-  /* The change of u that the flow rate still needs is uniform, hence without divergence. */
+      bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0 / gamma_dt, flow_rate && along_x, ns->phi);
+  /* The change that the flow rate still needs is uniform, hence without divergence. */
   if (flow_rate) {
-    shift = flow_rate_shift(ns, sum);
+    shift = flow_rate_shift(ns, along_x ? sum : sum_along(ns));
+    if (!along_x) add_along(ns, shift);
     ns->applying += shift / dt;
     /* A velocity that was just set may have another bulk: that jump is no gradient. */
     if (!ns->impulsive) ns->gradient += shift / gamma_dt;
@@ -157,8 +189,8 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   /* The watched box books p^ and the shift before they are spent. */
   bw_ns__box_projection(ns, gamma_dt, shift);
   /* u <- u* - gamma_r dt grad p^, p <- p + p^ (POROUS 3.72, 3.73): from here on div u = 0. */
-  ns->courant = bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, gamma_dt, shift,
-                               r == BW_NS_STAGES - 1);
+  ns->courant = bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, gamma_dt,
+                               along_x ? shift : 0.0, r == BW_NS_STAGES - 1);
   ns->courant_known = false;
   lap(&mark, &ns->cost.correct);
   /* Everything is valid again: interior, halos, ghosts. */

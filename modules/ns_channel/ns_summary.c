@@ -46,7 +46,7 @@ bw_ns_summary bw_ns_channel_summary(bw_ns_channel *ns)
         for (int c = 0; c < ns->components; c++) {
           const double here = (double)ns->u[c][at], below = (double)ns->u[c][at - g->stride[c]];
           squares += here * here + below * below;
-          if (c == 0) sum[BULK] += 0.5 * (here + below) * volume;
+          if (c == ns->config.forcing_axis) sum[BULK] += 0.5 * (here + below) * volume;
         }
         sum[ENERGY] += 0.25 * squares * volume; /* each face's half belongs to this cell */
       }

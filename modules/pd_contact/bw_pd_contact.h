@@ -47,6 +47,9 @@ void bw_pd_contact_recheck(bw_pd_contact *c);
 /* Step that resolves a collision of two particles [T]. Local. */
 double bw_pd_contact_time(const bw_pd_contact *c);
 
+/* k_c dV^2 of own particle i with its like [M L/T^2]. Local. */
+double bw_pd_contact_force_of(const bw_pd_body *pd, size_t i);
+
 /* Least distance of a pair so far over its r_c, of this rank; INFINITY: none. Local. */
 double bw_pd_contact_closest(const bw_pd_contact *c);
 

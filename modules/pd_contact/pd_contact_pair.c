@@ -54,3 +54,11 @@ bw_pd_pair bw_pd_contact__pair(const bw_pd_contact *c, int a, int b)
   pair.closest = c->closest;
   return pair;
 }
+
+double bw_pd_contact_force_of(const bw_pd_body *pd, size_t i)
+{
+  const int kind = bw_pd_contact__kind(pd, i);
+  const bw_pd_pair pair = bw_pd_contact__law(pd, kind, pd, kind);
+  /* pair.k is an acceleration of the owner, pair.weight its mass. */
+  return pair.k * pair.weight;
+}

@@ -115,9 +115,6 @@ bw_status bw_scene__check_fluid(const bw_scene_config *c)
   BW_REQUIRE(f->start.file[0] == '\0', BW_EINPUT,
              "fluid.start.file = %s: not in this build; start from velocity and vortices",
              f->start.file);
-  BW_REQUIRE(!c->fluid.has_forcing || f->forcing.axis == 0, BW_EINPUT,
-             "fluid.forcing.axis = %s: not in this build, which forces along x; turn the scene",
-             bw_scene__word(bw_scene__axis_words, f->forcing.axis));
   BW_REQUIRE(!f->start.developed || (f->sides.x.lower.kind == BW_SIDE_INFLOW &&
                                      f->sides.x.lower.profile == BW_PROFILE_POISEUILLE),
              BW_EINPUT,

@@ -28,6 +28,9 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
 
 /* Is some body rigid? */
 bool bw_scene__any_rigid(const bw_scene_config *c);
+/* In a flow on a grid: is some body that is not rigid an image or a surface of triangles? It is
+ * made of particles then, as are all that are not rigid. */
+bool bw_scene__any_image(const bw_scene_config *c);
 /* Is body b one of bw_rigid's: rigid, or one that does not deform in a scene of rigid ones? */
 bool bw_scene__in_rigid(const bw_scene_config *c, int b);
 /* Bits 0 .. 5 <- directions that a rigid body is held in: x, y, z, turn about x, y, z. False: a

@@ -179,8 +179,12 @@ static bw_status check_overlap(const bw_scene_config *c, int a, int b, const bw_
     double x[3];
     for (int d = 0; d < 3; d++)
       x[d] = lower[d] + (at[d] + 0.5) / POINTS * (upper[d] - lower[d]);
-    /* Less than half a particle of the finer one is the lattice's rounding. */
-    const double deep = -0.5 * fmin(c->bodies[a].spacing, c->bodies[b].spacing);
+    /* Less than half a particle of the finer one is the lattice's rounding, of which the true
+     * surface of a rigid body in a flow has none: it may be a fifth of one beyond a face. */
+    const bool true_surface = bw_scene__has_fluid(c) && (c->bodies[a].motion == BW_SCENE_RIGID ||
+                                                         c->bodies[b].motion == BW_SCENE_RIGID);
+    const double deep =
+        (true_surface ? -0.1 : -0.5) * fmin(c->bodies[a].spacing, c->bodies[b].spacing);
     BW_REQUIRE(
         bw_shape_distance(sa->n, sa->shape, flat, x) > deep ||
             bw_shape_distance(sb->n, sb->shape, flat, x) > deep,
@@ -285,8 +289,10 @@ bw_status bw_scene__check_loads(const bw_scene_config *c)
                q);
     BW_TRY(check_where(c, l, q, b));
   }
-  BW_REQUIRE(c->contact.friction == 0.0, BW_EINPUT,
-             "contact.friction = %g: not in this build, contact is without friction; give 0",
+  BW_REQUIRE(c->contact.friction == 0.0 || (bw_scene__any_rigid(c) && !bw_scene__any_deforms(c)),
+             BW_EINPUT,
+             "contact.friction = %g: in this build rigid bodies rub against each other, against "
+             "fixed and prescribed ones and walls, where no body deforms; give 0",
              c->contact.friction);
   BW_REQUIRE(strcmp(c->contact.between, "all") == 0 || strcmp(c->contact.between, "none") == 0,
              BW_EINPUT, "contact.between = %s: must be all or none in this build",

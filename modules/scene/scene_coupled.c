@@ -2,6 +2,7 @@
 #include "scene_impl.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sides that particles of the solid stand beyond are walls that it leans on. */
 static void find_leaning(bw_scene *s, bw_coupler_config *c)
@@ -49,5 +50,8 @@ bw_status bw_scene__coupled_create(bw_scene *s)
   c.films.on = !isnan(s->config.fluid.film_roughness);
   c.films.limit = s->config.fluid.film_limit, c.films.roughness = s->config.fluid.film_roughness;
   if (!isnan(s->config.fluid.film_least)) c.films.least = s->config.fluid.film_least;
-  return bw_coupler_create(&c, s->fluid, s->solid[0].solid, &s->coupler);
+  BW_TRY(bw_coupler_create(&c, s->fluid, s->solid[0].solid, &s->coupler));
+  if (s->floats == NULL) return BW_OK;
+  const bool contact = strcmp(s->config.contact.between, "none") != 0;
+  return bw_scene__rigid_named(s, bw_coupler_join(s->coupler, s->floats, contact));
 }

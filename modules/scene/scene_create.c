@@ -133,7 +133,7 @@ bw_status bw_scene__create(const bw_comm *comm, const bw_scene_config *config, b
   s->alive = bw_scene__any_deforms(&s->config);
   for (int b = 0; b < s->config.n_bodies; b++)
     s->alive = s->alive || s->config.bodies[b].motion == BW_SCENE_PRESCRIBED ||
-               s->config.bodies[b].motion == BW_SCENE_RIGID;
+               (s->config.bodies[b].motion == BW_SCENE_RIGID && !bw_scene__has_fluid(&s->config));
   bw_status st = bw_comm_agree(comm, bw_scene_check(&s->config));
   BW_THEN(st, build(s));
   if (st != BW_OK) bw_scene_destroy(&s);
@@ -167,7 +167,8 @@ void bw_scene_blocks(const bw_scene *s, FILE *out)
       !flow && !water && s->n_solids > 1 && strcmp(s->config.contact.between, "none") != 0;
   for (int q = 0; q < s->n_solids; q++)
     contact = contact || s->solid[q].contact;
-  const bool meet = contact || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
+  const bool joined = rigid && flow && solids && strcmp(s->config.contact.between, "none") != 0;
+  const bool meet = contact || joined || (rigid && isfinite(bw_rigid_dt_max(s->rigid)));
   /* Fields and particles first: the other blocks stand on them. */
   block(out, flow, "fluid, pressure", "the scene has a fluid on a grid",
         water ? "the fluid is of particles" : "no fluid");

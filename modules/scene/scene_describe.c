@@ -116,6 +116,18 @@ static void describe_rigid(bw_scene *s, bw_log *log)
               bw_rigid_dt_max(s->rigid));
 }
 
+/* One iteration of the forcing leaves what a memory would settle. */
+static void warn_of_slip(const bw_scene *s, bw_log *log)
+{
+  const bw_scene_numerics *n = &s->config.numerics;
+  if (s->grid == NULL || s->config.n_bodies == 0 || n->memory > 0.0) return;
+  if (n->forcing_iterations > 1) return;
+  bw_log_warn(log,
+              "numerics.memory = 0 with numerics.forcing_iterations = %d leaves some 15 %% of the "
+              "flow as slip at the bodies: take a memory of 0.2, or 2 iterations or more",
+              n->forcing_iterations);
+}
+
 /* Pieces of a solid in a fluid of particles meet each other and the sides of the box alone. */
 static void warn_of_walls(const bw_scene *s, bw_log *log)
 {
@@ -246,6 +258,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
               isnan(end) ? "; end by " : ", steps in all about ",
               isnan(end) ? (double)s->config.n_phases : end / limit);
   bw_scene__warn(s, log);
+  warn_of_slip(s, log);
   warn_of_walls(s, log);
   BW_TRY(bw_scene__look_at_gaps(s, log));
   return s->planned ? bw_scene__plan_describe(s, log) : BW_OK;

@@ -42,7 +42,8 @@ static const bw_config_field domain_fields[] = {
 static const bw_config_field contact_fields[] = {
     V(bw_scene_contact, between, BW_OPTIONAL, BW_TEXTS, "",
       "all: any two bodies that move; none: they pass through each other"),
-    V(bw_scene_contact, friction, BW_OPTIONAL, BW_FROM_TO(0, 10), "", "coefficient of friction"),
+    V(bw_scene_contact, friction, BW_OPTIONAL, BW_FROM_TO(0, 10), "",
+      "coefficient of friction of rigid bodies, where none deforms"),
     BW_CONFIG_END};
 
 const bw_config_field bw_scene__output_fields[] = {

@@ -57,9 +57,9 @@ static const bw_config_field forcing_fields[] = {
     BW_CONFIG_WORD(bw_scene_forcing, kind, BW_REQUIRED, bw_ns_forcing_words,
                    "what is held constant along a periodic direction"),
     BW_CONFIG_WORD(bw_scene_forcing, axis, BW_OPTIONAL, bw_scene__axis_words,
-                   "along which direction"),
+                   "along which direction, which has to be periodic; left out: x"),
     V(bw_scene_forcing, value, BW_REQUIRED, BW_ANY, "L/T or L/T2",
-      "the bulk velocity, or the gradient -dp/dx over the density"),
+      "the bulk velocity, or the gradient -dp/dx over the density, along the axis"),
     BW_CONFIG_END};
 const bw_config_field bw_scene__fluid_fields[] = {
     BW_CONFIG_WORD(bw_scene_fluid, model, BW_OPTIONAL, model_words, "what the fluid is"),

@@ -184,6 +184,7 @@ static bw_status configure(bw_scene *s, bw_grid_config *grid, bw_ns_channel_conf
   if (f->has_forcing) {
     fluid->forcing = (bw_ns_forcing)f->forcing.kind;
     fluid->forcing_value = f->forcing.value;
+    fluid->forcing_axis = f->forcing.axis;
     if (fluid->forcing == BW_FORCING_FLOW_RATE)
       s->speed = fmax(s->speed, 1.5 * fabs(f->forcing.value));
   }

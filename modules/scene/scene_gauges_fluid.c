@@ -68,7 +68,7 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
     }
     if (bw_grid_owner(s->grid, inside) != bw_comm_rank(s->comm)) continue;
     if (pressure) /* with the gradient that drives the flow, which the field is without */
-      value[q] = rho * (at_place(s, 3, at) - drive * at[0]);
+      value[q] = rho * (at_place(s, 3, at) - drive * at[s->flow.forcing_axis]);
     else
       for (int k = 0; k < 3; k++)
         value[3 * q + (size_t)k] = at_place(s, k, at);
@@ -109,6 +109,22 @@ static bw_status coupled_force(bw_scene *s, double value[BW_SCENE__COMPONENTS])
   return BW_OK;
 }
 
+/* Of the coupler, on the bodies that a gauge names, by the route that loads them. Collective. */
+static bw_status some_force(bw_scene *s, const bw_scene_gauge_config *g,
+                            double value[BW_SCENE__COMPONENTS])
+{
+  const bw_scene__solid *q = &s->solid[0];
+  bool *on = NULL;
+  BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&on, q->n)));
+  for (size_t i = 0; i < q->n; i++)
+    on[i] = bw_scene__listed(g->body, s->config.bodies[bw_scene__body_of(q, i)].name);
+  const int route =
+      s->config.numerics.load == BW_LOAD_PROBES ? BW_SCENE__BY_PROBES : BW_SCENE__BY_REACTION;
+  const bw_status st = bw_coupler_force_on(s->coupler, on, value + 3 * (ptrdiff_t)route);
+  bw_release(&on);
+  return st;
+}
+
 /* Of the flow along each axis, in the region or the whole box; empty along an axis in which nothing
  * but rounding flows. Collective. */
 static void tortuosity(bw_scene *s, const bw_scene_gauge_config *g, double value[3])
@@ -128,11 +144,16 @@ static void tortuosity(bw_scene *s, const bw_scene_gauge_config *g, double value
  * Collective. */
 static double film_value(const bw_scene *s, bool of_gap)
 {
-  if (!of_gap)
-    return s->coupler != NULL ? bw_coupler_film_energy(s->coupler)
-                              : bw_coupler_rigid_film_energy(s->floats);
-  const double gap =
-      s->coupler != NULL ? bw_coupler_film_gap(s->coupler) : bw_coupler_rigid_film_gap(s->floats);
+  double energy = 0.0, gap = INFINITY;
+  if (s->coupler != NULL) {
+    energy += bw_coupler_film_energy(s->coupler);
+    gap = fmin(gap, bw_coupler_film_gap(s->coupler));
+  }
+  if (s->floats != NULL) {
+    energy += bw_coupler_rigid_film_energy(s->floats);
+    gap = fmin(gap, bw_coupler_rigid_film_gap(s->floats));
+  }
+  if (!of_gap) return energy;
   return isinf(gap) ? NAN : gap;
 }
 
@@ -146,6 +167,8 @@ bw_status bw_scene__measure_fluid(bw_scene *s, int gauge, const bw_scene__quanti
   }
   /* Forces are those of the last step. */
   if (strcmp(what->word, "force") == 0 && s->steps == 0) return BW_OK;
+  if (strcmp(what->word, "force") == 0 && bw_scene__some_of_coupled(&s->config, g))
+    return some_force(s, g, value);
   if (strcmp(what->word, "force") == 0)
     return s->coupler != NULL ? coupled_force(s, value)
                               : bw_scene__surface_force(s, g->body, value);

@@ -186,6 +186,7 @@ static bw_status add_rigid(bw_scene *s, bw_solid_ledger *sum)
   sum->kinetic += e.kinetic;
   sum->elastic += e.spring;
   sum->contact += e.contact;
+  sum->damping += e.rubbed;
   sum->external -= e.weight - s->rigid_weight;
   return BW_OK;
 }

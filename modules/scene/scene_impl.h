@@ -83,7 +83,7 @@ struct bw_scene {
   bool
       planned; /* it is only looked at: nothing of the fluid is made, solids where they are small */
   bool sketched; /* planned, and its solids are too large to be made */
-  bool alive;    /* some body deforms, or is rigid or prescribed */
+  bool alive;    /* some body deforms, is prescribed, or is rigid and has particles */
 
   /* solids */
   int n_solids;
@@ -94,14 +94,15 @@ struct bw_scene {
   bw_scene__acting acting[BW_SCENE_LOADS];
 
   /* rigid bodies, and what does not deform beside them */
-  bw_rigid *rigid;               /* NULL: none */
-  bw_coupler_rigid *floats;      /* they are in a flow; NULL: they are not */
-  int rigid_of[BW_SCENE_BODIES]; /* number in `rigid` of each body; -1: it is none */
-  bw_rigid_state *rigid_start;   /* (count) */
-  bw_rigid_state *rigid_before;  /* (count) at the beginning of the step */
-  double *rigid_load;            /* (6 count) of contact with solids: forces, then torques */
-  double rigid_weight;           /* energy of the weights at the start */
-  bool too_fast;                 /* has been said */
+  bw_rigid *rigid;                /* NULL: none */
+  bw_coupler_rigid *floats;       /* they are in a flow; NULL: they are not */
+  int rigid_of[BW_SCENE_BODIES];  /* number in `rigid` of each body; -1: it is none */
+  bw_rigid_state *rigid_start;    /* (count) */
+  bw_rigid_state *rigid_before;   /* (count) at the beginning of the step */
+  double *rigid_load;             /* (6 count) of contact with solids: forces, then torques */
+  double rigid_weight;            /* energy of the weights at the start */
+  bw_scene__shapes *rigid_shapes; /* (count) theirs, whose masks are borrowed */
+  bool too_fast;                  /* has been said */
 
   /* fluid */
   bw_grid *grid;             /* where planned, one that is only looked at */
@@ -215,6 +216,8 @@ void bw_scene__velocity(const bw_scene_body *b, const double X[3], double time, 
 /* scene_rigid.c: bodies of six numbers. */
 bw_status bw_scene__rigid_create(bw_scene *s) BW_MUST_CHECK;
 void bw_scene__rigid_destroy(bw_scene *s);
+/* The status of what refuses "rigid body NUMBER", with the name that the file has. Local. */
+bw_status bw_scene__rigid_named(const bw_scene *s, bw_status st) BW_MUST_CHECK;
 /* Prescribed ones among them are told how to move in the step from s->time. Local. */
 void bw_scene__rigid_tell(bw_scene *s, double dt);
 /* A step of solids and rigid bodies without fluid: contact of the solids' particles loads the rigid

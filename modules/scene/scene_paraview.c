@@ -202,7 +202,7 @@ static bw_status look(bw_scene *s, shown *p, int *n, double lower[3], double upp
     p[*n].array = "damage";
     bw_scene__series_name(s, q, p[(*n)++].file);
   }
-  if (s->rigid != NULL && s->n_solids == 0) {
+  if (s->rigid != NULL && (s->n_solids == 0 || s->floats != NULL)) {
     p[*n] = points;
     p[*n].array = "body";
     p[*n].most = s->config.n_bodies;

@@ -44,7 +44,9 @@ static bw_status mask_surfaces(bw_scene *s, bw_real *mask)
   const bw_grid_view *g = bw_grid_look(s->grid);
   for (int b = 0; b < s->config.n_bodies; b++) {
     bw_scene__shapes shapes;
-    bw_status st = bw_scene__shapes_make(&s->config, b, &shapes);
+    if (s->solid_of[b] >= 0) continue; /* its particles mark it */
+    memset(&shapes, 0, sizeof shapes);
+    bw_status st = s->rigid != NULL ? BW_OK : bw_scene__shapes_make(&s->config, b, &shapes);
     st = bw_comm_agree(s->comm, st);
     for (int k = 1; st == BW_OK && k <= g->m[2]; k++)
       for (int j = 1; j <= g->m[1]; j++)
@@ -93,7 +95,8 @@ static bw_status write_fluid(bw_scene *s, int solid, const char *path)
   bw_status st = BW_OK;
   if (s->config.n_bodies > 0) {
     st = bw_comm_agree(s->comm, bw_field_create(s->grid, &body));
-    BW_THEN(st, s->n_solids > 0 ? mask_particles(s, body) : mask_surfaces(s, body));
+    if (s->n_solids > 0) BW_THEN(st, mask_particles(s, body));
+    BW_THEN(st, mask_surfaces(s, body));
     /* The number of the body in the file, and a mask of each by its name. */
     field[n++] = (bw_vtk_field){.name = "body", .data = {body}};
     for (int b = 0; b < s->config.n_bodies && st == BW_OK; b++) {
@@ -221,7 +224,7 @@ bw_status bw_scene_picture(bw_scene *s, const bw_case *run)
     BW_TRY(add_to_series(s, run, "walls", ".vtp", 0, bw_scene__walls_picture));
   }
   bw_scene__series_name(s, -1, what);
-  if (s->rigid != NULL && s->n_solids == 0)
+  if (s->rigid != NULL && (s->n_solids == 0 || s->floats != NULL))
     BW_TRY(add_to_series(s, run, what, ".vtp", 0, write_surfaces));
   for (int q = 0; q < s->n_solids; q++) {
     bw_scene__series_name(s, q, what);

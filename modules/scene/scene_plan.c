@@ -62,6 +62,8 @@ bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
 
 static bool has_pores(const bw_scene_body *b)
 {
+  /* A rigid image is a grain. */
+  if (b->motion == BW_SCENE_RIGID) return false;
   for (int p = 0; p < b->n_shape; p++)
     if (b->shape[p].has_image || b->shape[p].has_pores) return true;
   return false;

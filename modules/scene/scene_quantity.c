@@ -1,6 +1,7 @@
 /* The table of what gauges can measure, and what a run would refuse of gauges. */
 #include "scene_quantity.h"
 
+#include "bw_coupler.h"
 #include "bw_ns_channel.h"
 #include "scene_check.h"
 #include <math.h>
@@ -75,11 +76,31 @@ bool bw_scene__names_all(const bw_scene_config *c, const bw_scene_gauge_config *
   return true;
 }
 
+/* Does it name all bodies but those that are bw_rigid's? */
+static bool names_all_others(const bw_scene_config *c, const bw_scene_gauge_config *g)
+{
+  for (int b = 0; b < c->n_bodies && g->body[0] != '\0'; b++)
+    if (!bw_scene__in_rigid(c, b) && !bw_scene__listed(g->body, c->bodies[b].name)) return false;
+  return true;
+}
+
+bool bw_scene__some_of_coupled(const bw_scene_config *c, const bw_scene_gauge_config *g)
+{
+  const bool coupled =
+      bw_scene__has_fluid(c) && (bw_scene__any_deforms(c) || bw_scene__any_image(c));
+  return coupled && !names_all_others(c, g) &&
+         !bw_scene__of_rigid(c, g, bw_scene__quantity_named(g, "force"));
+}
+
 bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config *g,
                            bw_scene__route route)
 {
+  const bw_scene__quantity *force = bw_scene__quantity_named(g, "force");
+  if (bw_scene__some_of_coupled(c, g))
+    return (route == BW_SCENE__BY_PROBES) == (c->numerics.load == BW_LOAD_PROBES) &&
+           route != BW_SCENE__BY_BOX;
   if (route == BW_SCENE__BY_REACTION) return true;
-  if (bw_scene__any_rigid(c) || bw_scene__has_particles(c)) return false;
+  if (bw_scene__has_particles(c) || bw_scene__of_rigid(c, g, force)) return false;
   if (route == BW_SCENE__BY_PROBES) return true;
   /* The implicit viscous term keeps no fluxes of which a box could make a balance. */
   return c->numerics.viscous != BW_VISCOUS_IMPLICIT && bw_scene__names_all(c, g);
@@ -123,14 +144,18 @@ static bw_status check_bodies(const bw_scene_config *c, const bw_scene_gauge_con
                               const bw_scene__quantity *q)
 {
   char name[BW_SCENE_NAME];
-  int rigid = 0, others = 0, any_rigid = bw_scene__any_rigid(c);
+  int rigid = 0, others = 0;
   for (const char *rest = g->body; bw_scene__next_name(&rest, name);) {
     const int b = bw_scene__body_named(c, name);
     if (b < 0) continue; /* said by check_gauge */
     bw_scene__in_rigid(c, b) ? rigid++ : others++;
   }
-  const bool force = strcmp(q->word, "force") == 0, support = q->source == BW_SCENE__OF_BODIES;
-  BW_REQUIRE(q->source != BW_SCENE__OF_RIGID || (rigid == 1 && others == 0), BW_EINPUT,
+  const bool support = q->source == BW_SCENE__OF_BODIES;
+  BW_REQUIRE(q->source != BW_SCENE__OF_RIGID || others == 0, BW_EINPUT,
+             "gauges.%s.of = %s: that of a body that moves as one piece, and not all of %s do; "
+             "leave it out, or make it rigid",
+             g->name, q->word, g->body);
+  BW_REQUIRE(q->source != BW_SCENE__OF_RIGID || rigid == 1, BW_EINPUT,
              "gauges.%s.of = %s: that of one body of a scene with rigid ones; name one", g->name,
              q->word);
   BW_REQUIRE(!bw_scene__of_rigid(c, g, q) || others == 0, BW_EINPUT,
@@ -139,12 +164,6 @@ static bw_status check_bodies(const bw_scene_config *c, const bw_scene_gauge_con
   BW_REQUIRE(!bw_scene__of_rigid(c, g, q) || rigid == 1 || support, BW_EINPUT,
              "gauges.%s.body = %s: %s is that of one rigid body; give each a gauge of its own",
              g->name, g->body, q->word);
-  BW_REQUIRE(!force || any_rigid || !bw_scene__any_deforms(c) || bw_scene__names_all(c, g) ||
-                 bw_scene__has_particles(c),
-             BW_EINPUT,
-             "gauges.%s.body = %s: this build knows the force on all bodies of a flow together "
-             "where one deforms, not on some of them; name all",
-             g->name, g->body);
   return BW_OK;
 }
 

@@ -42,6 +42,9 @@ const bw_scene__quantity *bw_scene__quantity_named(const bw_scene_gauge_config *
  * bodies, for some of them or around bodies that are rigid; not by probes for those. */
 bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config *g,
                            bw_scene__route route);
+/* Is it asked of some of the bodies of particles in a flow? Then it is known by the route alone
+ * that loads them. */
+bool bw_scene__some_of_coupled(const bw_scene_config *c, const bw_scene_gauge_config *g);
 /* Does a gauge name (or, without names, mean) every body? */
 bool bw_scene__names_all(const bw_scene_config *c, const bw_scene_gauge_config *g);
 /* Is this quantity of this gauge that of one rigid body? */

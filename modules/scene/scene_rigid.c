@@ -1,9 +1,9 @@
 /* Rigid bodies of a scene.
  *
  * Alone, or with bodies that are fixed or prescribed beside them, all are bw_rigid's, which finds
- * their contacts; in a flow bw_coupler_rigid joins them to it. Beside solids of particles a rigid
- * body is a solid, too, whose particles are prescribed: contact between lattices presses on them,
- * the sum of it loads the body, and they follow it. A step is that of velocity Verlet of all:
+ * their contacts; bw_coupler_rigid joins them to a flow, bw_coupler_join to particles in it. Beside
+ * solids of particles without a flow a rigid body is a solid, too, whose particles are prescribed:
+ * contact between lattices loads it, and they follow it, in a Verlet step of all:
  *   kick the bodies dt/2, drift; particles of theirs to where they now are, solids step, contact
  *   there; kick dt/2 with its load. */
 #include "scene_impl.h"
@@ -17,6 +17,9 @@ void bw_scene__rigid_destroy(bw_scene *s)
 {
   bw_coupler_rigid_destroy(&s->floats);
   bw_rigid_destroy(&s->rigid);
+  for (int q = 0; s->rigid_shapes != NULL && q < s->config.n_bodies; q++)
+    bw_scene__shapes_release(&s->rigid_shapes[q]);
+  bw_release(&s->rigid_shapes);
   bw_release(&s->rigid_start);
   bw_release(&s->rigid_before);
   bw_release(&s->rigid_load);
@@ -24,15 +27,29 @@ void bw_scene__rigid_destroy(bw_scene *s)
 
 /* ---- making them ---- */
 
-/* The shapes of the bodies of the set; they live until it is made. */
+/* The bodies of the set, while it is made. */
 typedef struct {
   int n;
   int number[BW_SCENE_BODIES]; /* in the file */
-  bw_scene__shapes shapes[BW_SCENE_BODIES];
+  bw_scene__shapes *shapes;    /* (n) those that the scene keeps */
   bw_rigid_body ask[BW_SCENE_BODIES];
 } maker;
 
-/* Mass, centre and inertia where the file names some of them: the rest is that of the shapes. */
+/* The shapes of a body; images and surfaces of triangles by the surface of their voxels. */
+static bw_status find_shapes(const bw_scene *s, int b, bw_scene__shapes *shapes)
+{
+  BW_TRY(bw_scene__shapes_make(&s->config, b, shapes));
+  for (int q = 0; q < shapes->n_masks; q++) {
+    const bw_status st = bw_shape_mask_find_surface(shapes->mask[q], s->planar);
+    if (st == BW_EINPUT)
+      return BW_FAIL(st, "bodies.%s.shape: a rigid body needs its surface; %s",
+                     s->config.bodies[b].name, bw_last_message());
+    BW_TRY(st);
+  }
+  return BW_OK;
+}
+
+/* Mass, centre and inertia where the file names some: the rest is that of the shapes. */
 static bw_status set_mass(const bw_scene *s, const bw_rigid_config *config,
                           const bw_scene_body *body, bw_rigid_body *ask)
 {
@@ -91,7 +108,7 @@ static bw_status ask_for(const bw_scene *s, const bw_rigid_config *config, maker
     bw_scene__shapes *shapes = &m->shapes[m->n];
     bw_rigid_body *ask = &m->ask[m->n];
     m->number[m->n++] = b;
-    BW_TRY(bw_scene__shapes_make(&s->config, b, shapes));
+    BW_TRY(find_shapes(s, b, shapes));
     *ask = (bw_rigid_body){.count = shapes->n, .shape = shapes->shape};
     set_freedom(body, ask);
     bw_status st = set_mass(s, config, body, ask);
@@ -111,7 +128,9 @@ static double stiffness_of(const bw_scene *s, const maker *m, double spacing)
   const double *g = c->gravity, weight = hypot(hypot(g[0], g[1]), g[2]), d = 0.5 * spacing;
   double lower[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   double most = 0.0, span = 0.0;
-  if (strcmp(c->contact.between, "none") == 0 || bw_scene__any_deforms(c)) return 0.0;
+  /* Outside of flows contact between lattices does it. */
+  const bool lattices = bw_scene__any_deforms(c) && !bw_scene__has_fluid(c);
+  if (lattices || strcmp(c->contact.between, "none") == 0) return 0.0;
   if (!isnan(c->numerics.contact_stiffness)) return c->numerics.contact_stiffness;
   for (int q = 0; q < m->n; q++)
     for (int k = 0; k < (s->planar ? 2 : 3); k++) {
@@ -143,6 +162,7 @@ static void configure(const bw_scene *s, bw_rigid_config *config)
   *config = bw_rigid_config_default();
   config->planar = s->planar;
   config->depth = c->thickness;
+  config->friction = c->contact.friction;
   config->spacing = HUGE_VAL;
   for (int b = 0; b < c->n_bodies; b++)
     if (bw_scene__in_rigid(c, b)) config->spacing = fmin(config->spacing, c->bodies[b].spacing);
@@ -165,15 +185,24 @@ static bw_status make(bw_scene *s, maker *m)
 {
   bw_rigid_config config;
   configure(s, &config);
-  /* Each rank makes the same. */
   BW_TRY(bw_comm_agree(s->comm, ask_for(s, &config, m)));
   config.stiffness = stiffness_of(s, m, config.spacing);
-  bw_status st = bw_rigid_create(s->comm, &config, m->n, m->ask, &s->rigid);
+  const bw_status st = bw_rigid_create(s->comm, &config, m->n, m->ask, &s->rigid);
+  for (int q = 0; q < m->n; q++)
+    s->rigid_of[m->number[q]] = q;
+  return bw_scene__rigid_named(s, st);
+}
+
+/* The modules count, the file has names. */
+bw_status bw_scene__rigid_named(const bw_scene *s, bw_status st)
+{
   int number = 0;
-  /* The module counts, the file has names. */
-  if (st == BW_EINPUT && sscanf(bw_last_message(), "rigid body %d", &number) == 1 && number < m->n)
-    st = BW_FAIL(BW_EINPUT, "bodies.%s: %s", s->config.bodies[m->number[number]].name,
-                 bw_last_message());
+  char words[1024];
+  snprintf(words, sizeof words, "%s", bw_last_message());
+  if (st != BW_EINPUT || sscanf(words, "rigid body %d", &number) != 1) return st;
+  for (int b = 0; b < s->config.n_bodies; b++)
+    if (s->rigid_of[b] == number)
+      return BW_FAIL(st, "bodies.%s: %s", s->config.bodies[b].name, words);
   return st;
 }
 
@@ -191,10 +220,9 @@ static void motion_of(const bw_scene_body *b, const double centre[3], double tim
 static bw_status allocate(bw_scene *s)
 {
   const size_t n = (size_t)bw_rigid_count(s->rigid);
-  bw_status st = BW_ALLOCATE(&s->rigid_start, n);
-  BW_THEN(st, BW_ALLOCATE(&s->rigid_before, n));
-  BW_THEN(st, BW_ALLOCATE(&s->rigid_load, 6 * n));
-  return bw_comm_agree(s->comm, st);
+  BW_TRY(BW_ALLOCATE(&s->rigid_start, n));
+  BW_TRY(BW_ALLOCATE(&s->rigid_before, n));
+  return BW_ALLOCATE(&s->rigid_load, 6 * n);
 }
 
 static bw_status join(bw_scene *s)
@@ -208,7 +236,7 @@ static bw_status join(bw_scene *s)
   c.films.on = !isnan(s->config.fluid.film_roughness);
   c.films.limit = s->config.fluid.film_limit, c.films.roughness = s->config.fluid.film_roughness;
   memcpy(c.gravity, s->config.gravity, sizeof c.gravity);
-  return bw_coupler_rigid_create(&c, s->fluid, s->rigid, &s->floats);
+  return bw_scene__rigid_named(s, bw_coupler_rigid_create(&c, s->fluid, s->rigid, &s->floats));
 }
 
 bw_status bw_scene__rigid_create(bw_scene *s)
@@ -217,14 +245,14 @@ bw_status bw_scene__rigid_create(bw_scene *s)
   for (int b = 0; b < s->config.n_bodies; b++)
     s->rigid_of[b] = -1;
   if (!bw_scene__any_rigid(&s->config)) return BW_OK;
-  BW_TRY(bw_comm_agree(s->comm, BW_ALLOCATE(&m, 1)));
-  bw_status st = make(s, m);
-  BW_THEN(st, allocate(s));
-  for (int q = 0; q < m->n; q++) {
+  bw_status st = BW_ALLOCATE(&m, 1);
+  BW_THEN(st, BW_ALLOCATE(&s->rigid_shapes, (size_t)s->config.n_bodies));
+  st = bw_comm_agree(s->comm, st);
+  if (st == BW_OK) m->shapes = s->rigid_shapes;
+  BW_THEN(st, make(s, m));
+  BW_THEN(st, bw_comm_agree(s->comm, allocate(s)));
+  for (int q = 0; st == BW_OK && q < m->n; q++) {
     const bw_scene_body *body = &s->config.bodies[m->number[q]];
-    s->rigid_of[m->number[q]] = q;
-    bw_scene__shapes_release(&m->shapes[q]);
-    if (st != BW_OK) continue;
     double V[3], W[3];
     motion_of(body, bw_rigid_state_of(s->rigid, q).position, 0.0, V, W);
     bw_rigid_set_motion(s->rigid, q, V, W);
@@ -333,10 +361,11 @@ static void remember(bw_scene *s)
 
 bw_status bw_scene__rigid_step(bw_scene *s, double dt, bw_status (*solids)(bw_scene *s, double dt))
 {
-  double *F = s->rigid_load, *T = F + 3 * (ptrdiff_t)bw_rigid_count(s->rigid);
+  const size_t n = (size_t)bw_rigid_count(s->rigid);
+  double *F = s->rigid_load, *T = F + 3 * n;
   remember(s);
   if (s->n_solids == 0) {
-    memset(F, 0, 6 * (size_t)bw_rigid_count(s->rigid) * sizeof *F);
+    memset(F, 0, 6 * n * sizeof *F);
     bw_scene__rigid_tell(s, dt);
     damp(s);
     bw_rigid_load(s->rigid, F, T);
@@ -351,50 +380,4 @@ bw_status bw_scene__rigid_step(bw_scene *s, double dt, bw_status (*solids)(bw_sc
   damp(s);
   bw_rigid_load(s->rigid, F, T);
   return bw_rigid_end(s->rigid, dt);
-}
-
-/* ---- restart ---- */
-
-static bw_status fluid_state(bw_scene *s, bw_checkpoint *ck, bool read)
-{
-  const size_t n = bw_rigid_points(s->rigid), bodies = (size_t)bw_rigid_count(s->rigid);
-  const int64_t *id = bw_rigid_point_id(s->rigid);
-  int64_t all = (int64_t)n;
-  double *M = NULL, *load = NULL;
-  bw_comm_sum_int(s->comm, 1, &all);
-  bw_status st = BW_ALLOCATE(&M, 3 * n);
-  BW_THEN(st, BW_ALLOCATE(&load, 6 * bodies));
-  st = bw_comm_agree(s->comm, st);
-  if (st == BW_OK && !read) bw_coupler_rigid_get_state(s->floats, M, load);
-  if (read) {
-    BW_THEN(st, bw_checkpoint_get_numbers(ck, "rigid/fluid_load", 6 * (int)bodies, load));
-    BW_THEN(st, bw_checkpoint_get_table(ck, "rigid/memory", all, n, id, 3, BW_CK_DOUBLE, M));
-    BW_THEN(st, bw_coupler_rigid_set_state(s->floats, M, load));
-  } else {
-    BW_THEN(st, bw_checkpoint_put_numbers(ck, "rigid/fluid_load", 6 * (int)bodies, load));
-    BW_THEN(st, bw_checkpoint_put_table(ck, "rigid/memory", all, n, id, 3, BW_CK_DOUBLE, M));
-  }
-  bw_release(&M);
-  bw_release(&load);
-  return st;
-}
-
-bw_status bw_scene__rigid_save(bw_scene *s, bw_checkpoint *ck)
-{
-  double row[BW_SCENE_BODIES * BW_RIGID_ROW];
-  const int n = bw_rigid_count(s->rigid);
-  bw_rigid_save(s->rigid, row);
-  BW_TRY(bw_checkpoint_put_numbers(ck, "rigid/rows", n * BW_RIGID_ROW, row));
-  BW_TRY(bw_checkpoint_put_numbers(ck, "rigid/load", 6 * n, s->rigid_load));
-  return s->floats != NULL ? fluid_state(s, ck, false) : BW_OK;
-}
-
-bw_status bw_scene__rigid_restore(bw_scene *s, bw_checkpoint *ck)
-{
-  double row[BW_SCENE_BODIES * BW_RIGID_ROW];
-  const int n = bw_rigid_count(s->rigid);
-  BW_TRY(bw_checkpoint_get_numbers(ck, "rigid/rows", n * BW_RIGID_ROW, row));
-  BW_TRY(bw_checkpoint_get_numbers(ck, "rigid/load", 6 * n, s->rigid_load));
-  bw_rigid_restore(s->rigid, s->time, row);
-  return s->floats != NULL ? fluid_state(s, ck, true) : BW_OK;
 }

@@ -1,6 +1,7 @@
 /* What a run would refuse of rigid bodies. */
 #include "scene_check.h"
 
+#include "bw_solid.h"
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +15,15 @@ bool bw_scene__any_rigid(const bw_scene_config *c)
 bool bw_scene__in_rigid(const bw_scene_config *c, int b)
 {
   if (c->bodies[b].motion == BW_SCENE_RIGID) return true;
-  return bw_scene__any_rigid(c) && !bw_scene__any_deforms(c);
+  return bw_scene__any_rigid(c) && !bw_scene__any_deforms(c) && !bw_scene__any_image(c);
+}
+
+bool bw_scene__any_image(const bw_scene_config *c)
+{
+  for (int b = 0; b < c->n_bodies && bw_scene__has_fluid(c); b++)
+    for (int p = 0; p < c->bodies[b].n_shape && c->bodies[b].motion != BW_SCENE_RIGID; p++)
+      if (c->bodies[b].shape[p].has_image || c->bodies[b].shape[p].has_stl) return true;
+  return false;
 }
 
 bool bw_scene__held_bits(const char *held, unsigned *bits, char wrong[])
@@ -72,10 +81,15 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
              "bodies.%s.rigid: the body is %s; leave the block out, or make it rigid", b->name,
              bw_scene__word(bw_scene__motion_words, b->motion));
   if (b->motion != BW_SCENE_RIGID) return BW_OK;
-  /* What this build cannot do together. */
-  BW_REQUIRE(!bw_scene__has_flow(c) || !bw_scene__any_deforms(c), BW_EINPUT,
-             "bodies.%s.motion = rigid: rigid bodies beside others that deform, in a flow: not in "
-             "this build; make all that moves rigid, or leave the fluid out",
+  const bool flow = bw_scene__has_fluid(c), beside = flow && bw_scene__any_deforms(c);
+  BW_REQUIRE(
+      !flow || !(c->numerics.memory == 0.0), BW_EINPUT,
+      "numerics.memory = 0: the forcing of bodies.%s, which is rigid in a flow, needs one on "
+      "its true surface; give 0.2, or leave it out",
+      b->name);
+  BW_REQUIRE(!beside || c->numerics.integrator == BW_SOLID_VERLET, BW_EINPUT,
+             "numerics.integrator = rk3: beside bodies.%s, which is rigid in the same flow, solids "
+             "are stepped by verlet; give that, or leave it out",
              b->name);
   BW_REQUIRE(!isnan(b->rigid.mass) || bw_scene__material_named(c, b->material) >= 0, BW_EINPUT,
              "bodies.%s.material = %s: there is no such material, and no mass; give the material, "
@@ -89,12 +103,6 @@ bw_status bw_scene__check_rigid(const bw_scene_config *c, const bw_scene_body *b
   BW_REQUIRE(bw_scene__planar(c) || (turns != 1 && turns != 2 && turns != 4), BW_EINPUT,
              "bodies.%s.rigid.held = %s: two free turns are no hinge; hold none, two, or all three",
              b->name, b->rigid.held);
-  /* Mass and points come from the true surface, which images have not. */
-  for (int p = 0; p < b->n_shape; p++)
-    BW_REQUIRE(!b->shape[p].has_image && !b->shape[p].has_stl, BW_EINPUT,
-               "bodies.%s.shape.%d: an image or a surface of triangles cannot be rigid in this "
-               "build; make the body of boxes, cylinders, spheres",
-               b->name, p);
   BW_REQUIRE(b->n_held == 0 && b->n_cracks == 0, BW_EINPUT,
              "bodies.%s: held and cracks belong to bodies that deform; a rigid one has rigid.held",
              b->name);

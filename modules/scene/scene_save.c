@@ -144,7 +144,12 @@ bw_status bw_scene_save(bw_scene *s, bw_checkpoint *ck)
                                    s->settled_energy,
                                    s->dt};
   BW_TRY(bw_checkpoint_put_numbers(ck, "scene/time", NUMBERS, numbers));
-  if (s->coupler != NULL) return bw_coupler_save(s->coupler, ck);
+  if (s->coupler != NULL) {
+    BW_TRY(bw_coupler_save(s->coupler, ck));
+    if (s->floats == NULL) return BW_OK;
+    BW_TRY(bw_scene__rigid_save(s, ck));
+    return film_energy(s, ck, false);
+  }
   if (s->water != NULL) return bw_scene__water_save(s, ck);
   if (s->fluid != NULL) BW_TRY(save_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_save(s, ck));
@@ -175,7 +180,12 @@ bw_status bw_scene_restore(bw_scene *s, bw_checkpoint *ck)
   /* What the phase allows, then the state: damping belongs to the forces that are restored. */
   BW_TRY(bw_scene__phase_begin(s));
   s->settled_energy = numbers[5];
-  if (s->coupler != NULL) return bw_coupler_load(s->coupler, ck);
+  if (s->coupler != NULL) {
+    BW_TRY(bw_coupler_load(s->coupler, ck));
+    if (s->floats == NULL) return BW_OK;
+    BW_TRY(bw_scene__rigid_restore(s, ck));
+    return film_energy(s, ck, true);
+  }
   if (s->water != NULL) return bw_scene__water_restore(s, ck);
   if (s->fluid != NULL) BW_TRY(restore_fluid(s, ck));
   if (s->rigid != NULL) BW_TRY(bw_scene__rigid_restore(s, ck));

@@ -1,6 +1,7 @@
 /* Sites of the bodies of one lattice: which they occupy, which are held, of which group. */
 #include "scene_impl.h"
 
+#include "bw_exchange.h"
 #include "bw_memory.h"
 #include <math.h>
 #include <string.h>
@@ -124,29 +125,115 @@ static bw_status set_groups(bw_scene *s, bw_scene__solid *q, int b, bw_scene__sh
   return BW_OK;
 }
 
-/* The sites of body b behind those that are there. */
+static bw_status make_room(size_t n, bw_scene__sites *sites)
+{
+  bw_status st = BW_ALLOCATE(&sites->site, 3 * n);
+  BW_THEN(st, BW_ALLOCATE(&sites->kind, n));
+  BW_THEN(st, BW_ALLOCATE(&sites->group, n));
+  sites->n = (int64_t)n;
+  if (st != BW_OK) bw_scene__sites_release(sites);
+  return st;
+}
+
+/* The sites of a body behind those that are there. */
 static bw_status append(bw_scene__sites *all, const bw_scene__sites *one)
 {
-  bw_scene__sites sum = {.n = all->n + one->n};
+  bw_scene__sites sum = {0};
   const size_t n = (size_t)all->n, more = (size_t)one->n;
-  bw_status st = BW_ALLOCATE(&sum.site, 3 * (n + more));
-  BW_THEN(st, BW_ALLOCATE(&sum.kind, n + more));
-  BW_THEN(st, BW_ALLOCATE(&sum.group, n + more));
-  if (st != BW_OK) {
-    bw_scene__sites_release(&sum);
-    return st;
-  }
-  if (n > 0) {
+  bw_status st = make_room(n + more, &sum);
+  if (st == BW_OK && n > 0) {
     memcpy(sum.site, all->site, 3 * n * sizeof *sum.site);
     memcpy(sum.kind, all->kind, n);
     memcpy(sum.group, all->group, n);
   }
-  memcpy(sum.site + 3 * n, one->site, 3 * more * sizeof *sum.site);
-  memcpy(sum.kind + n, one->kind, more);
-  memcpy(sum.group + n, one->group, more);
+  if (st == BW_OK) {
+    memcpy(sum.site + 3 * n, one->site, 3 * more * sizeof *sum.site);
+    memcpy(sum.kind + n, one->kind, more);
+    memcpy(sum.group + n, one->group, more);
+  }
   bw_scene__sites_release(all);
   *all = sum;
-  return BW_OK;
+  return st;
+}
+
+/* A site on its way to the rank that gives it to the solid. */
+typedef struct {
+  int64_t number; /* in the order of all ranks */
+  int32_t site[3];
+  uint8_t kind, group;
+} traveller;
+
+/* Number of each own site, body after body, whatever the ranks: a particle's id is its place in the
+ * list of all, and has to be the same in a restart on other ranks. share (n_bodies): how many of
+ * each body are here. Returns how many there are. Collective. */
+static int64_t number_sites(const bw_comm *comm, int n_bodies, const int64_t share[],
+                            const bw_scene__sites *sites, traveller item[])
+{
+  int64_t before = 0, i = 0;
+  for (int k = 0; k < n_bodies; k++) {
+    int64_t all = share[k], at = before + bw_comm_prefix_sum(comm, share[k]);
+    bw_comm_sum_int(comm, 1, &all);
+    before += all;
+    for (int64_t q = 0; q < share[k]; q++, i++) {
+      item[i] = (traveller){.number = at + q, .kind = sites->kind[i], .group = sites->group[i]};
+      memcpy(item[i].site, sites->site + 3 * i, sizeof item[i].site);
+    }
+  }
+  return before;
+}
+
+/* To the ranks of the plan, each of which has a row of numbers from `first` on. Collective. */
+static bw_status travel(const bw_comm *comm, size_t n, const int to[], const traveller item[],
+                        int64_t first, bw_scene__sites *out)
+{
+  bw_exchange *plan = NULL;
+  traveller *come = NULL;
+  bw_status st = bw_exchange_create(comm, n, to, &plan);
+  BW_TRY(st);
+  const size_t all = bw_exchange_received(plan);
+  st = BW_ALLOCATE(&come, all);
+  BW_THEN(st, make_room(all, out));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK) bw_exchange_forward(plan, sizeof *item, item, come);
+  for (size_t i = 0; st == BW_OK && i < all; i++) {
+    const size_t at = (size_t)(come[i].number - first);
+    memcpy(out->site + 3 * at, come[i].site, sizeof come[i].site);
+    out->kind[at] = come[i].kind, out->group[at] = come[i].group;
+  }
+  bw_exchange_destroy(&plan);
+  bw_release(&come);
+  return st;
+}
+
+/* The sites of several bodies, of which each rank has a share, in the order of the bodies over all
+ * ranks. Collective. */
+static bw_status put_in_order(const bw_comm *comm, int n_bodies, const int64_t share[],
+                              bw_scene__sites *sites)
+{
+  const int64_t size = bw_comm_size(comm), rank = bw_comm_rank(comm);
+  const size_t n = (size_t)sites->n;
+  traveller *item = NULL;
+  int *to = NULL;
+  bw_scene__sites sorted = {0};
+  if (n_bodies < 2 || size == 1) return BW_OK;
+  bw_status st = BW_ALLOCATE(&item, n);
+  BW_THEN(st, BW_ALLOCATE(&to, n));
+  st = bw_comm_agree(comm, st);
+  if (st == BW_OK) {
+    const int64_t all = number_sites(comm, n_bodies, share, sites, item);
+    /* Rank r has the numbers from r all/size, rounded down, on. */
+    for (size_t i = 0; i < n; i++)
+      to[i] = (int)(((item[i].number + 1) * size - 1) / all);
+    st = travel(comm, n, to, item, all * rank / size, &sorted);
+  }
+  bw_release(&item);
+  bw_release(&to);
+  if (st == BW_OK) {
+    bw_scene__sites_release(sites);
+    *sites = sorted;
+  } else
+    bw_scene__sites_release(&sorted);
+  return st;
 }
 
 static bw_status fill_body(bw_scene *s, bw_scene__solid *q, int b, const bw_solid_config *config,
@@ -181,13 +268,16 @@ bw_status bw_scene__sites_make(bw_scene *s, bw_scene__solid *q, const bw_solid_c
                                bw_scene__sites *out)
 {
   bw_status st = BW_OK;
+  int64_t share[BW_SCENE_BODIES];
   *out = (bw_scene__sites){0};
   for (int k = 0; k < q->n_bodies && st == BW_OK; k++) {
     bw_scene__sites one = {0};
     st = fill_body(s, q, q->body[k], config, &one);
     if (st == BW_OK) set_kinds(s, q->body[k], q, config, &one);
+    share[k] = one.n;
     if (st == BW_OK) st = bw_comm_agree(s->comm, append(out, &one));
     bw_scene__sites_release(&one);
   }
+  BW_THEN(st, put_in_order(s->comm, q->n_bodies, share, out));
   return st;
 }

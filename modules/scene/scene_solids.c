@@ -24,20 +24,14 @@ int bw_scene__body_of(const bw_scene__solid *q, size_t i)
   return q->body_of[bw_solid_group(q->solid, i)];
 }
 
-static bool any_image(const bw_scene_config *c)
-{
-  for (int b = 0; b < c->n_bodies; b++)
-    for (int p = 0; p < c->bodies[b].n_shape; p++)
-      if (c->bodies[b].shape[p].has_image || c->bodies[b].shape[p].has_stl) return true;
-  return false;
-}
-
 /* Is a body one of particles? What deforms is; what does not where something can meet it. */
 static bool has_particles(const bw_scene_config *c, int b)
 {
   if (bw_scene__deforms(&c->bodies[b])) return true;
   if (bw_scene__has_particles(c)) return !bw_scene__is_wall(c, b);
-  if (bw_scene__has_fluid(c) && any_image(c)) return true; /* no true surface */
+  /* A rigid body in a flow has a true surface alone. */
+  if (bw_scene__has_fluid(c) && c->bodies[b].motion == BW_SCENE_RIGID) return false;
+  if (bw_scene__any_image(c)) return true; /* no true surface */
   if (!bw_scene__any_deforms(c)) return false;
   if (bw_scene__has_fluid(c) || strcmp(c->contact.between, "none") != 0) return true;
   for (int a = 0; a < c->n_bodies; a++)

@@ -44,6 +44,7 @@ bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
   motion(pd, book);
   book[7] = bw_pd_body_elastic(pd);
   if (s->contact != NULL) book[8] = bw_pd_contact_energy(s->contact);
+  if (s->outside.who != NULL) book[8] += s->outside.energy(s->outside.who);
   book[9] = s->book.damping;
   book[10] = pd->bonds.released;
   book[11] = s->book.external;
@@ -57,6 +58,7 @@ bw_status bw_solid_account(bw_solid *s, bw_solid_ledger *out)
   book[17] = s->book.regrid;
   /* Until here all is of this rank; after this all ranks know the same of all. */
   double closest = s->contact != NULL ? bw_pd_contact_closest(s->contact) : INFINITY;
+  if (s->outside.who != NULL) closest = fmin(closest, s->outside.closest(s->outside.who));
   bw_comm_min(pd->comm, 1, &closest);
   bw_comm_sum(pd->comm, 18, book);
   bw_comm_sum_int(pd->comm, 3, count);

@@ -150,5 +150,6 @@ void bw_solid_destroy(bw_solid **solid)
   bw_pd_body_destroy(&s->body);
   bw_solid__drag_release(&s->drag);
   bw_solid__levels_release(s);
+  bw_release(&s->outside_X);
   bw_release(solid);
 }

@@ -3,6 +3,7 @@
 #include "bw_pd_material.h"
 #include "bw_solid.h"
 #include "bw_solid_levels.h"
+#include "bw_solid_outside.h"
 #include "pd_law.h"
 
 enum {
@@ -63,6 +64,8 @@ struct bw_solid {
   size_t n_retired;
   int32_t *retired; /* (n_retired of n) own particles */
   bw_solid__drag drag;
+  bw_solid_outside outside; /* who NULL: nobody */
+  double *outside_X;        /* (n,3) for it */
   bw_solid__levels *levels; /* NULL: they stay as they are */
   bw_solid_book book;
 };

@@ -59,21 +59,33 @@ static void still_retired(bw_solid *s)
     }
 }
 
+/* Its push joins load.extra, which is empty but for contact. */
+static bw_status push_outside(bw_solid *s)
+{
+  if (s->outside.who == NULL) return BW_OK;
+  bw_solid_get_position(s, s->outside_X);
+  return s->outside.push(s->outside.who, s, s->outside_X);
+}
+
 bw_status bw_solid__evaluate(bw_solid *s, bool check)
 {
   bw_pd_body *pd = s->body;
-  const bool damped = bw_pd_body_damped(pd), contact = s->contact != NULL;
+  const bool damped = bw_pd_body_damped(pd), outside = s->outside.who != NULL;
+  const bool contact = s->contact != NULL;
   s->evaluated++;
   s->restored = false;
   internal_forces(pd, check);
   /* Zeroed once more after the last load went, then left alone. */
-  if (contact || damped || s->loaded)
+  if (contact || damped || outside || s->loaded)
     for (int k = 0; k < pd->dimension; k++)
       memset(pd->load.extra[k], 0, pd->n * sizeof(bw_real));
-  s->loaded = contact || damped;
+  s->loaded = contact || damped || outside;
   /* A particle beyond a wall is an error of its rank alone, which goes on to where all agree. */
-  const bw_status st = contact ? bw_pd_contact_update(s->contact) : BW_OK;
+  bw_status st = contact ? bw_pd_contact_update(s->contact) : BW_OK;
   if (contact && st == BW_OK) bw_pd_contact_force(s->contact);
+  /* Collective, and called whatever has happened on this rank. */
+  const bw_status pushed = push_outside(s);
+  st = st == BW_OK ? pushed : st;
   /* extra = (C + D)/rho is complete; damp alone is kept for the ledger. */
   for (int k = 0; damped && k < pd->dimension; k++)
     for (size_t i = 0; i < pd->n; i++)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # A scene stopped and gone on with tells the same history to the last bit, and on other ranks the
-# same to round-off: solids that break, several solids in contact, a body in a flow, a gate in a fluid of particles.
+# same to round-off: solids that break, several solids in contact, a body in a flow, a gate in a fluid of particles,
+# rigid bodies beside others that bend and break.
 # usage: scene.sh SOURCE BUILD
 set -eu
 source=$1 build=$2
@@ -53,12 +54,17 @@ mpirun -n 3 "$build/bin/breakwater" "$source/scenes/impact_on_plate/impact_on_pl
   --set bodies.ball.spacing=2e-3 --set output.picture_every=0 --set output.sample_every=5e-6
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/hydraulic_crack/hydraulic_crack.yaml" --quiet \
   --out "$out/three_crack" --set phases.0.until.time=6e-5 $crack
-# One rank and three of many bodies, and three that go on from the checkpoint of one.
-several="$build/bin/breakwater $source/tests/support/several_bodies.yaml --quiet"
-$several --out "$out/several-1"
-mpirun -n 3 $several --out "$out/several-3"
-$several --out "$out/several-half" --set phases.0.until.time=30e-6
-mpirun -n 3 $several --out "$out/several-half" --restart "$out/several-half/checkpoint-last.h5"
+# One rank and three of many bodies, and three that go on from the checkpoint of one: alone, and in a flow.
+# many NAME HALF
+many() {
+  several="$build/bin/breakwater $source/tests/support/$1.yaml --quiet"
+  $several --out "$out/$1-1"
+  mpirun -n 3 $several --out "$out/$1-3"
+  $several --out "$out/$1-half" --set phases.0.until.time="$2"
+  mpirun -n 3 $several --out "$out/$1-half" --restart "$out/$1-half/checkpoint-last.h5"
+}
+many several_bodies 30e-6
+many bodies_in_a_flow 0.1
 cat >"$out/compare.py" <<'END'
 import csv, sys
 a, b = (list(csv.reader(open(path))) for path in sys.argv[1:])
@@ -78,6 +84,7 @@ END
 mpirun -n 3 "$build/bin/breakwater" "$source/scenes/dam_break_on_a_gate/dam_break_on_a_gate.yaml" \
   --quiet --out "$out/gate-3" --set phases.0.until.time=4e-3 $gate
 for pair in dam_break_on_a_gate-whole:gate-3 impact_on_plate-whole:three hydraulic_crack-whole:three_crack \
-            several-1:several-3 several-1:several-half; do
+            several_bodies-1:several_bodies-3 several_bodies-1:several_bodies-half \
+            bodies_in_a_flow-1:bodies_in_a_flow-3 bodies_in_a_flow-1:bodies_in_a_flow-half; do
   /usr/bin/python3 "$out/compare.py" "$out/${pair%:*}/history.csv" "$out/${pair#*:}/history.csv"
 done

@@ -72,3 +72,28 @@ static inline bw_scene *again(bw_scene *s, const char *text)
   bw_check_ok(bw_checkpoint_close(&ck));
   return other;
 }
+
+/* Runs through, and again from a checkpoint at `until`: gauges at the end agree to the last bit. */
+static inline void check_restart(const char *text, double until, const char *const names[])
+{
+  bw_scene *s = made(text);
+  while (bw_scene_time(s) < until)
+    bw_check_ok(bw_scene_step(s, until));
+  bw_scene *other = again(s, text);
+  run(s);
+  run(other);
+  for (int q = 0; names[q] != NULL; q++)
+    bw_check_near(gauge(other, names[q]), gauge(s, names[q]), 0.0);
+  bw_scene_destroy(&s);
+  bw_scene_destroy(&other);
+}
+
+/* Angular momentum about z and the origin, of one solid and one rigid body. */
+static inline double angular_momentum(bw_scene *s, int solid, int body)
+{
+  const bw_rigid_state b = bw_rigid_state_of(s->rigid, body);
+  bw_solid_ledger book;
+  bw_check_ok(bw_solid_account(s->solid[solid].solid, &book));
+  return book.angular[2] + b.inertia[2] * b.spin[2] +
+         b.mass * (b.position[0] * b.velocity[1] - b.position[1] * b.velocity[0]);
+}

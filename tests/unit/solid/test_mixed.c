@@ -51,6 +51,19 @@ START_TEST(the_book_closes_and_momenta_stay)
 }
 END_TEST
 
+/* Nothing but the joint can break, and it does, from both ends alike. */
+START_TEST(a_joint_breaks)
+{
+  bw_pd_state_mixed_options o;
+  bw_solid_config c = with(BW_PD_3D, &o, false);
+  bw_solid_ledger end;
+  c.more.joint_G0[0][1] = c.more.joint_G0[1][0] = 2e-4;
+  const double broken = state_departure(&c, 0.2, 5, &end);
+  ck_assert_int_gt(end.broken, 10);
+  ck_assert_double_lt(broken, STATE_SWING(0.2));
+}
+END_TEST
+
 START_TEST(same_on_any_number_of_ranks_and_after_a_restart)
 {
   bw_pd_state_mixed_options o;
@@ -117,6 +130,7 @@ END_TEST
 static const bw_check_test tests[] = {BW_TEST(force_is_the_derivative_of_energy),
                                       BW_TEST(rest_by_relaxation_and_by_the_linear_solve),
                                       BW_TEST(the_book_closes_and_momenta_stay),
+                                      BW_TEST(a_joint_breaks),
                                       BW_TEST(same_on_any_number_of_ranks_and_after_a_restart),
                                       BW_TEST(turned_bodies_are_at_rest),
                                       BW_TEST(one_law_alone_is_that_law),

@@ -89,6 +89,26 @@ START_TEST(a_body_goes_with_the_fluid)
 }
 END_TEST
 
+/* The memory of the step to come holds no pressure inside the ball (bw_ibm_mdf_close). */
+static void check_pressure_inside(scene *s)
+{
+  const size_t n = bw_rigid_points(s->rigid);
+  double *X = NULL, *V = NULL, *N = NULL, *M = NULL, load[6], sums[2] = {0.0, 0.0};
+  double **const arrays[] = {&X, &V, &N, &M};
+  for (int q = 0; q < 4; q++)
+    bw_check_ok(BW_ALLOCATE(arrays[q], 3 * n));
+  bw_check_ok(bw_coupler_rigid_begin(s->coupler));
+  bw_coupler_rigid_get_state(s->coupler, M, load);
+  bw_rigid_surface(s->rigid, X, V, N);
+  for (size_t i = 0; i < 3 * n; i++)
+    sums[0] += M[i] * N[i], sums[1] += fabs(M[i]);
+  bw_comm_sum(bw_check_world(), 2, sums);
+  ck_assert_double_gt(sums[1], 0.0);
+  bw_check_near(sums[0] / sums[1], 0.0, 1e4 * BW_REAL_EPSILON);
+  for (int q = 0; q < 4; q++)
+    bw_release(arrays[q]);
+}
+
 /* A held ball takes from the fluid outside what that loses: momentum of all fluid, less that
  * inside, changes by -F dt. A free one of the fluid's density takes the momentum with it. */
 START_TEST(momentum_is_passed_on)
@@ -123,6 +143,7 @@ START_TEST(momentum_is_passed_on)
       bw_check_near(state.velocity[0] * state.mass / impulse, 1.0, 0.03);
     bw_check_near(report.force[1], 0.0, 2e-2 * fabs(report.force[0]) + 1e-3);
     ck_assert_msg(report.slip < 0.05, "slip %g", report.slip);
+    check_pressure_inside(&s);
     destroy(&s);
   }
 }

@@ -85,6 +85,21 @@ START_TEST(ramp)
 }
 END_TEST
 
+/* The memory of the step to come holds no pressure inside the bodies (bw_ibm_mdf_close). */
+static void check_pressure_inside(bw_scene *s)
+{
+  const bw_scene__points *p = &s->inner;
+  double along = 0.0, all = 0.0;
+  bw_ibm_mdf_begin_step(s->markers);
+  bw_ibm_mdf_memory(s->markers, p->M);
+  for (size_t i = 0; i < 3 * p->n; i++)
+    along += p->M[i] * p->N[i], all += fabs(p->M[i]);
+  double sums[2] = {along, all};
+  bw_comm_sum(s->comm, 2, sums);
+  ck_assert_double_gt(sums[1], 0.0);
+  bw_check_near(sums[0] / sums[1], 0.0, 1e4 * BW_REAL_EPSILON);
+}
+
 /* A sphere that does not move: markers have its area, the three routes its drag. The momentum
  * balance is the scheme's own, so that two of them are one to round-off. */
 START_TEST(force)
@@ -113,6 +128,7 @@ START_TEST(force)
    * and 10.8 cells per radius (t = 0.3). The bound h/R = 1/3.6 was set after the first of them. */
   bw_check_near(gauge(s, "f.probe.x") / reaction, 1.0, 0.28);
   bw_check_near(gauge(s, "f.reaction.y"), 0.0, 1e4 * BW_REAL_EPSILON);
+  check_pressure_inside(s);
   bw_scene_destroy(&s);
 }
 END_TEST

@@ -15,7 +15,7 @@
 static const double LENGTH = 2.5, HEIGHT = 0.41, CENTRE = 0.2, RADIUS = 0.05;
 static const double THICK = 0.02, END = 0.6, RHO = 1000.0, NU = 1e-3;
 static const double PI = 3.14159265358979323846;
-enum { ACROSS = 12, SAVE_EVERY = 250 };
+enum { SAVE_EVERY = 250 };
 
 typedef struct {
   const char *name;
@@ -118,7 +118,9 @@ static inline bw_solid_config flap_material(const flap *f)
 
 static inline bw_status flap_make_solid(const bw_comm *comm, flap *f)
 {
-  f->ds = THICK / ACROSS;
+  /* Twelve particles across, and two a cell at least: markers of single particles, about as far apart
+   * as cells, would leave the cylinder its steps. */
+  f->ds = THICK / fmax(12.0, ceil(2.0 * THICK / f->h - 1e-9));
   const bw_solid_config s = flap_material(f);
   /* The cylinder is held, and with it the root of the flap. */
   const bw_shape body[2] = {{.kind = BW_SHAPE_BOX,
@@ -216,7 +218,7 @@ static inline bw_status flap_sample(const bw_comm *comm, flap *f)
 enum { SETTINGS = 6 };
 static inline void flap_settings(const flap *f, double x[SETTINGS])
 {
-  const double now[SETTINGS] = {f->dt, f->of.end, f->of.iterations, f->of.load, ACROSS, COLUMNS};
+  const double now[SETTINGS] = {f->dt, f->of.end, f->of.iterations, f->of.load, f->ds, COLUMNS};
   memcpy(x, now, sizeof now);
 }
 

@@ -8,9 +8,9 @@
  *            the fluid's density: both swing. FSI2, FSI3 from rest, the inflow comes up in 2 s.
  *            FSI1 rests, so that its density and damping are free: those of FSI2, about critical.
  * Solid      bonds, whose Poisson ratio is 1/4 and not 0.4: E such that E/(1 - nu^2), which bends,
- *            is the benchmark's. 12 particles across, horizon 3 spacings, surface correction
- *            `tensor`, as in bending_plate_fem; waves of the lattice are damped at a thirtieth of
- *            its own rate, which is 1e-4 of a period for the first mode.
+ *            is the benchmark's. 12 particles across, two a cell at least, horizon 3 spacings,
+ *            surface correction `tensor`, as in bending_plate_fem; waves of the lattice are damped
+ *            at a thirtieth of its own rate, which is 1e-4 of a period for the first mode.
  * Coupling   load by probes, iterated to 1e-3 (FSI1: explicit); all else by default.
  * Measured   (max + min)/2 and (max - min)/2 of each period, mean over the last ten. Forces on
  *            cylinder and flap per depth: the markers' reaction with the inertia of the fluid

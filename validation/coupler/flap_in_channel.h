@@ -118,8 +118,8 @@ static inline bw_solid_config flap_material(const flap *f)
 
 static inline bw_status flap_make_solid(const bw_comm *comm, flap *f)
 {
-  /* Twelve particles across, and two a cell at least: markers of single particles, about as far apart
-   * as cells, would leave the cylinder its steps. */
+  /* Twelve particles across, and two a cell at least: markers of single particles, about as far
+   * apart as cells, would leave the cylinder its steps. */
   f->ds = THICK / fmax(12.0, ceil(2.0 * THICK / f->h - 1e-9));
   const bw_solid_config s = flap_material(f);
   /* The cylinder is held, and with it the root of the flap. */

@@ -66,6 +66,7 @@ static bw_status make_arrays(bw_coupler_rigid *c)
   BW_THEN(st, BW_ALLOCATE(&c->Q, 3 * c->n));
   BW_THEN(st, BW_ALLOCATE(&c->dV, c->n));
   BW_THEN(st, BW_ALLOCATE(&c->seen, c->n));
+  BW_THEN(st, BW_ALLOCATE(&c->closed, c->n));
   BW_THEN(st, BW_ALLOCATE(&c->inside, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->load, 6 * bodies));
   BW_THEN(st, BW_ALLOCATE(&c->hydro, 6 * bodies));
@@ -113,6 +114,7 @@ void bw_coupler_rigid_destroy(bw_coupler_rigid **coupler)
   if (c == NULL) return;
   bw_ibm_mdf_destroy(&c->ibm);
   bw_coupler__films_destroy(&c->films);
+  bw_release(&c->closed);
   void *const arrays[] = {&c->seen,    &c->X,      &c->V,      &c->N,    &c->dV,
                           &c->M,       &c->Q,      &c->inside, &c->load, &c->hydro,
                           &c->scratch, &c->acting, &c->marked};
@@ -132,6 +134,20 @@ static bool moves(const bw_rigid *r)
   return false;
 }
 
+/* Which closed surface each marker lies on: that of its body, unless a film keeps some of that
+ * body's markers back. What is inside then presses on the gap, where nothing holds it. Collective. */
+static void find_closed(bw_coupler_rigid *c)
+{
+  const int *body = bw_rigid_point_body(c->rigid), bodies = bw_rigid_count(c->rigid);
+  double *open = c->scratch;
+  memset(open, 0, (size_t)bodies * sizeof *open);
+  for (size_t i = 0; i < c->n; i++)
+    if (c->seen[i] < c->dV[i]) open[body[i]] = 1.0;
+  bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), (size_t)bodies, open);
+  for (size_t i = 0; i < c->n; i++)
+    c->closed[i] = open[body[i]] > 0.0 ? -1 : body[i];
+}
+
 /* Markers where the bodies are, with a memory or without. */
 static bw_status place(bw_coupler_rigid *c, const double *memory)
 {
@@ -145,7 +161,8 @@ static bw_status place(bw_coupler_rigid *c, const double *memory)
   BW_TRY(bw_ibm_mdf_set_markers(c->ibm, c->n, c->X, c->V, c->seen, memory));
   c->placed = true;
   BW_TRY(bw_ibm_mdf_set_normals(c->ibm, c->N, c->config.nu));
-  return bw_ibm_mdf_close(c->ibm, bw_rigid_count(c->rigid), bw_rigid_point_body(c->rigid), c->N);
+  find_closed(c);
+  return bw_ibm_mdf_close(c->ibm, bw_rigid_count(c->rigid), c->closed, c->N);
 }
 
 bw_status bw_coupler_rigid_begin(bw_coupler_rigid *c)

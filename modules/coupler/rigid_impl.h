@@ -13,6 +13,7 @@ struct bw_coupler_rigid {
   bool placed, fresh;       /* fresh: by set_state, where the bodies are now */
   double *X, *V, *N, *dV;   /* (n,3), dV (n) */
   double *seen;    /* (n) of dV what the grid sees: films keep sides away from other faces */
+  int *closed;     /* (n) surface that the marker closes: its body, or -1 */
   double *M, *Q;   /* (n,3) M memory, Q force of a step, then lack */
   double *inside;  /* (bodies,6) int (u - U) dV, its moment at the beginning */
   double *load;    /* (bodies,6) as the bodies have it: relaxed, with weight */

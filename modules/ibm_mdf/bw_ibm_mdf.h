@@ -104,7 +104,7 @@ bw_status bw_ibm_mdf_set_normals(bw_ibm_mdf *ib, const double N[], double nu) BW
  * does not help, with ever more of it; the jump of the pressure across the sheet, smeared by the
  * kernel, then reaches whoever reads the pressure beside the surface. So it is taken out of the
  * memory of each surface in every step: M <- M - N dV sum M.N/sum dV, over markers with a memory.
- * A body that ends in walls is closed by them.
+ * A body that ends in walls is closed by them; one of which some markers are left out is open (-1).
  * Valid until the next set_markers; without memory nothing is done. BW_EINPUT for surfaces that are
  * not there and normals that are not of length 1, on all ranks; BW_EMEM. Collective. */
 bw_status bw_ibm_mdf_close(bw_ibm_mdf *ib, int surfaces, const int surface[],

@@ -135,7 +135,8 @@ static bool moves(const bw_rigid *r)
 }
 
 /* Which closed surface each marker lies on: that of its body, unless a film keeps some of that
- * body's markers back. What is inside then presses on the gap, where nothing holds it. Collective. */
+ * body's markers back. What is inside then presses on the gap, where nothing holds it.
+ * Collective. */
 static void find_closed(bw_coupler_rigid *c)
 {
   const int *body = bw_rigid_point_body(c->rigid), bodies = bw_rigid_count(c->rigid);

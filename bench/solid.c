@@ -2,11 +2,11 @@
  *
  * Block 48 x 32 x 32, family |xi| < 3.015 ds: bonds on the lattice and as a cloud, the ordinary law
  * and correspondence, and that with 26 neighbours (|xi| < 2 ds). All but the last may break. Rival:
- * LAMMPS, styles peri/pmb and peri/lps, on the same block (bench/lammps_block.in), run just before
- * by `./run bench solid` when the executable lmp is there (Debian package lammps), or another one
- * by `--rival lammps=PROGRAM`. Debian's has no smd/tlsph, the rival of correspondence. Floor:
- * positions read once and forces written once per particle, and the bond lists read once, at the
- * triad bandwidth of this run.
+ * LAMMPS, styles peri/pmb, peri/lps and smd/tlsph, on the same block (bench/lammps_block.in,
+ * bench/lammps_tlsph.in), run just before by `./run bench solid` when the executable lmp is there
+ * (Debian package lammps, which has no smd/tlsph), or another one by `--rival lammps=PROGRAM`.
+ * Floor: positions read once and forces written once per particle, and the bond lists read once, at
+ * the triad bandwidth of this run.
  * BUILD modules=solid,solid_tools,shape
  * TEST ranks=2 */
 #include "bw_bench_solid.h"
@@ -20,15 +20,15 @@
 
 enum { STEPS = 5 };
 
-/* The last "Loop time of T on N procs for M steps" of a style, ms per step; NaN where it was not
- * run. */
-static double lammps(const char *style, int ranks)
+/* The last "Loop time of T on N procs for M steps" of a run of LAMMPS, ms per step; NaN where there
+ * is none. */
+static double lammps(const char *name, int ranks)
 {
   const char *build = getenv("BW_BUILD_DIR");
   char path[640], line[256];
   double seconds, ms = NAN;
   int procs, steps;
-  snprintf(path, sizeof path, "%s/bench/lammps_%s_np%d.log", build != NULL ? build : "build", style,
+  snprintf(path, sizeof path, "%s/bench/lammps_%s_np%d.log", build != NULL ? build : "build", name,
            ranks);
   FILE *log = fopen(path, "r");
   while (log != NULL && fgets(line, sizeof line, log) != NULL)
@@ -43,14 +43,14 @@ typedef struct {
   const char *name;
   int law; /* bw_solid_law_row */
   double horizon_ratio, disorder;
-  const char *rival; /* style of LAMMPS, or NULL */
+  const char *style, *rival; /* of LAMMPS, and its run of `./run bench`; or NULL */
 } block;
 
 static bw_status measure(bw_bench *b, const bw_comm *comm, const block *what, double triad)
 {
   const char *name = what->name;
   char rival[40] = "";
-  if (what->rival != NULL) snprintf(rival, sizeof rival, "LAMMPS peri/%s", what->rival);
+  if (what->rival != NULL) snprintf(rival, sizeof rival, "LAMMPS %s", what->style);
   const bw_shape box = {.kind = BW_SHAPE_BOX, .upper = {0.048, 0.032, 0.032}};
   bw_solid_config c = bw_solid_config_default();
   bw_solid *pd = NULL;
@@ -105,15 +105,15 @@ static bw_status run(bw_bench *b)
   bw_status st = bw_comm_self(&self);
   /* Rank 0 alone: a block on the lattice, the same as a cloud, and by the state-based laws. */
   static const block alone[] = {
-      {"block_48x32x32_np1", BW_SOLID_BOND, 3.015, 0, "pmb"},
-      {"cloud_48x32x32_np1", BW_SOLID_BOND, 3.015, 0.3, NULL},
-      {"lps_48x32x32_np1", BW_SOLID_ORDINARY, 3.015, 0, "lps"},
-      {"state_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 3.015, 0, NULL},
-      {"state_short_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 1.5, 0, NULL}};
+      {"block_48x32x32_np1", BW_SOLID_BOND, 3.015, 0, "peri/pmb", "pmb"},
+      {"cloud_48x32x32_np1", BW_SOLID_BOND, 3.015, 0.3, NULL, NULL},
+      {"lps_48x32x32_np1", BW_SOLID_ORDINARY, 3.015, 0, "peri/lps", "lps"},
+      {"state_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 3.015, 0, "smd/tlsph", "tlsph_122"},
+      {"state_short_48x32x32_np1", BW_SOLID_CORRESPONDENCE, 1.5, 0, "smd/tlsph", "tlsph_26"}};
   for (int q = 0; bw_comm_rank(comm) == 0 && q < 5; q++)
     BW_THEN(st, measure(b, self, &alone[q], triad));
   st = bw_comm_agree(comm, st); /* the others wait here */
-  const block both = {"block_48x32x32_np2", BW_SOLID_BOND, 3.015, 0, "pmb"};
+  const block both = {"block_48x32x32_np2", BW_SOLID_BOND, 3.015, 0, "peri/pmb", "pmb"};
   if (bw_comm_size(comm) == 2) BW_THEN(st, measure(b, comm, &both, triad));
   bw_comm_destroy(&self);
   return st;

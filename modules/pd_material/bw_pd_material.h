@@ -46,7 +46,8 @@ typedef enum {
   BW_PD_MATERIAL_LINEAR,       /* of the symmetric gradient */
   BW_PD_MATERIAL_SAINT_VENANT, /* St. Venant-Kirchhoff: of Green's strain */
   BW_PD_MATERIAL_NEO_HOOKEAN,  /* of F^T F and J */
-  BW_PD_MATERIAL_HENCKY        /* of the logarithmic strain */
+  BW_PD_MATERIAL_HENCKY,       /* of the logarithmic strain */
+  BW_PD_MATERIAL_ENERGIES      /* how many */
 } bw_pd_material_elastic;
 
 /* Which Drucker-Prager cone stands for Mohr-Coulomb's cohesion and angle of friction. */

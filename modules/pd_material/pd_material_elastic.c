@@ -202,6 +202,13 @@ static void own_thickness(const bw_pd_material_point *m, lanes H[9])
   }
 }
 
+/* P and W of an energy of one's own, in the plane too. */
+static void own_stress(const bw_pd_material_point *m, lanes H[9], lanes P[9], lanes *W)
+{
+  if (m->plane == BW_PD_MATERIAL_PLANE_STRESS) own_thickness(m, H);
+  m->own->stress(m, H, P, W);
+}
+
 void bw_pd_material_stress(const bw_pd_material_point *m, bw_pd_material_lanes H[9],
                            bw_pd_material_lanes P[9], bw_pd_material_lanes *W)
 {
@@ -209,10 +216,5 @@ void bw_pd_material_stress(const bw_pd_material_point *m, bw_pd_material_lanes H
                                 lanes *) = {linear, saint_venant, neo_hookean, hencky};
   /* In the plane nothing leaves it: what the caller has out of it is replaced. */
   if (m->plane != BW_PD_MATERIAL_SPACE) H[2] = H[5] = H[6] = H[7] = H[8] = lanes_all(0);
-  if (m->own == NULL) {
-    stress[m->elastic](m, H, P, W);
-    return;
-  }
-  if (m->plane == BW_PD_MATERIAL_PLANE_STRESS) own_thickness(m, H);
-  m->own->stress(m, H, P, W);
+  (m->own != NULL ? own_stress : stress[m->elastic])(m, H, P, W);
 }

@@ -38,7 +38,7 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   const bw_pd_state_correspondence_options o = resolved(options);
   BW_TRY(bw_pd_state__check_poisson(c));
   BW_REQUIRE((unsigned)o.weight <= BW_PD_STATE_UNIFORM &&
-                 (unsigned)o.elastic <= BW_PD_MATERIAL_HENCKY &&
+                 (unsigned)o.elastic < BW_PD_MATERIAL_ENERGIES &&
                  (unsigned)o.breaks <= BW_PD_STATE_BREAKS_BY_CONE,
              BW_EINPUT, "solid: weight = %d, elastic = %d or breaks = %d is unknown", (int)o.weight,
              (int)o.elastic, (int)o.breaks);

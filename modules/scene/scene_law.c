@@ -1,25 +1,32 @@
 /* Materials of state-based laws: their words, and what a law is asked for. */
+#include "bw_solid_words.h"
 #include "scene_impl.h"
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
-
-/* The energies of the correspondence law, by the words of `elastic`. */
-static const bw_config_word elastic_words[] = {{"linear", BW_PD_MATERIAL_LINEAR, NULL},
-                                               {"saint_venant", BW_PD_MATERIAL_SAINT_VENANT, NULL},
-                                               {"neo_hookean", BW_PD_MATERIAL_NEO_HOOKEAN, NULL},
-                                               {"hencky", BW_PD_MATERIAL_HENCKY, NULL},
-                                               {NULL, 0, NULL}};
 
 static bool find_elastic(const char *word, bw_pd_material_elastic *out)
 {
-  for (const bw_config_word *w = elastic_words; w->word != NULL; w++)
+  for (const bw_config_word *w = bw_solid_elastic_words; w->word != NULL; w++)
     if (strcmp(w->word, word) == 0) {
       *out = (bw_pd_material_elastic)w->value;
       return true;
     }
   return false;
+}
+
+static bw_status check_elastic(const bw_scene_material *m)
+{
+  bw_pd_material_elastic elastic;
+  char words[120] = "";
+  if (m->elastic[0] == '\0' || find_elastic(m->elastic, &elastic)) return BW_OK;
+  size_t n = 0;
+  for (const bw_config_word *w = bw_solid_elastic_words; w->word != NULL && n < sizeof words; w++)
+    n += (size_t)snprintf(words + n, sizeof words - n, "%s%s", n > 0 ? ", " : "", w->word);
+  return BW_FAIL(BW_EINPUT, "materials.%s.elastic = %s: must be one of %s", m->name, m->elastic,
+                 words);
 }
 
 enum { NUMBERS = 5 };
@@ -86,7 +93,6 @@ static bw_status check_keys(const bw_scene_material *m)
 bw_status bw_scene__check_state(const bw_scene_material *m)
 {
   const bool correspondence = strcmp(m->law, "correspondence") == 0;
-  bw_pd_material_elastic elastic;
   BW_REQUIRE(
       m->elastic[0] == '\0' || correspondence, BW_EINPUT,
       "materials.%s.elastic = %s: it belongs to law: correspondence, this is %s; leave it out",
@@ -95,9 +101,7 @@ bw_status bw_scene__check_state(const bw_scene_material *m)
       m->plastic[0] == '\0' || correspondence, BW_EINPUT,
       "materials.%s.plastic = %s: it belongs to law: correspondence, this is %s; leave it out",
       m->name, m->plastic, m->law);
-  BW_REQUIRE(m->elastic[0] == '\0' || find_elastic(m->elastic, &elastic), BW_EINPUT,
-             "materials.%s.elastic = %s: must be one of linear, saint_venant, neo_hookean, hencky",
-             m->name, m->elastic);
+  BW_TRY(check_elastic(m));
   BW_REQUIRE(m->plastic[0] == '\0' || strcmp(m->plastic, "drucker_prager") == 0 ||
                  strcmp(m->plastic, "j2") == 0,
              BW_EINPUT, "materials.%s.plastic = %s: must be one of drucker_prager, j2", m->name,

@@ -123,7 +123,7 @@ void bw_ulph__turn_faces(bw_ulph *u)
 /* ---- forces on them ---- */
 /* The lanes of a cluster of faces, and sums over the fluid in front. */
 typedef struct {
-  vec x[3], v[3], normal[3], least, P[6], mu;
+  vec x[3], v[3], normal[3], least, P[6];
 } faces;
 typedef struct {
   vec F[3], D[3], s[3]; /* w V (P + P) x; viscous; w V x */
@@ -142,7 +142,6 @@ static faces load(const bw_ulph *u, const bw_ulph__cluster *c)
     for (int k = 0; k < 6; k++)
       o.P[k][l] = u->far[slot].P[k];
     o.least[l] = u->front[slot].least;
-    o.mu[l] = u->far[slot].g[0] + u->far[slot].g[2];
   }
   return o;
 }
@@ -151,6 +150,7 @@ static faces load(const bw_ulph *u, const bw_ulph__cluster *c)
 static sums sum(const bw_ulph *u, const bw_ulph__cluster *c, const faces *o)
 {
   const double over_R2 = 1 / (u->R * u->R), least_r2 = 1e-6 * u->R * u->R;
+  const double mu = u->config.mu + u->mu_wall;
   sums t = {0};
   for (size_t e = c->begin; e < c->walls; e++) {
     const bw_ulph__near *n = u->near + u->list[e];
@@ -163,7 +163,7 @@ static sums sum(const bw_ulph *u, const bw_ulph__cluster *c, const faces *o)
       before += o->normal[k] * x[k];
     }
     const vec wV = vec_where(before > o->least, vec_weight(r2, over_R2) * n->V);
-    const vec drag = o->mu * wV * vx / (f->m2 * (r2 + least_r2));
+    const vec drag = mu * wV * vx * vec_inverse(f->m2 * (r2 + least_r2));
     for (int a = 0; a < 3; a++) {
       vec Px = {0};
       for (int b = 0; b < 3; b++) {

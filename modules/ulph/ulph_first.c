@@ -11,7 +11,7 @@ typedef struct {
 
 /* The lanes themselves. */
 typedef struct {
-  vec x[3], v[3], rho;
+  vec x[3], v[3], rho, V;
 } owners;
 
 static owners load(const bw_ulph *u, const bw_ulph__cluster *c)
@@ -22,7 +22,7 @@ static owners load(const bw_ulph *u, const bw_ulph__cluster *c)
     const bw_ulph__near *q = u->near + u->fluid.slot_own[own];
     for (int k = 0; k < 3; k++)
       o.x[k][l] = q->x[k], o.v[k][l] = q->v[k];
-    o.rho[l] = q->rho;
+    o.rho[l] = q->rho, o.V[l] = q->V;
   }
   return o;
 }
@@ -79,39 +79,35 @@ static void pairs_3d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *
   pairs(u, c, o, fluid, all, 3);
 }
 
-/* tr(G Minv), with L = G Minv where it is wanted. */
-static double velocity_gradient(const double G[9], const double Minv[6], double L[9])
+/* L = G Minv, and its trace. */
+static vec velocity_gradient(const vec G[9], const vec Minv[6], vec L[9])
 {
   for (int a = 0; a < 3; a++)
-    bw_ulph__times(Minv, G + 3 * a, L + 3 * a);
+    vec_times(Minv, G + 3 * a, L + 3 * a);
   return L[0] + L[4] + L[8];
 }
 
-/* Density and pressure of one particle at the end of the step. The gradients belong to its end and
- * the velocity to its middle, so that L = L' (1 + dt L')^-1 of the gradient L' at its beginning;
- * the mean dilation is tr L + dt/2 tr L L but for dt^2. */
-static void finish(bw_ulph *u, bw_ulph__particle *p, bw_ulph__between *b, double dt)
+/* Density at the end of the step. The gradients belong to its end and the velocity to its middle,
+ * so that L = L' (1 + dt L')^-1 of the gradient L' at its beginning; the mean dilation is
+ * tr L + dt/2 tr L L but for dt^2. */
+static vec density(vec before, const vec L[9], double dt)
 {
-  const double c2 = u->config.c0 * u->config.c0, before = c2 * (p->rho - u->config.rho0);
-  const double *L = b->L;
-  double mean = L[0] + L[4] + L[8];
+  vec mean = L[0] + L[4] + L[8];
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       mean += 0.5 * dt * L[3 * i + k] * L[3 * k + i];
-  p->rho *= (1 - 0.5 * dt * mean) / (1 + 0.5 * dt * mean);
-  p->p = c2 * (p->rho - u->config.rho0);
-  b->p_mean = 0.5 * (before + p->p);
+  return before * (1 - 0.5 * dt * mean) / (1 + 0.5 * dt * mean);
 }
 
 /* A pair leaves the torque V_I w V_J x cross (P_I x); all pairs of a particle, those with walls
  * among them, V eps:(P M) = 0. */
-static void couple_of(const double P[6], const double M_fluid[6], double V, double couple[3])
+static void couple_of(const vec P[6], const vec M_fluid[6], vec V, vec couple[3])
 {
-  double PM[3][3], column[3], product[3];
+  vec PM[3][3], column[3], product[3];
   for (int a = 0; a < 3; a++) {
     for (int b = 0; b < 3; b++)
       column[b] = M_fluid[a < b ? bw_ulph__sym(a, b) : bw_ulph__sym(b, a)];
-    bw_ulph__times(P, column, product);
+    vec_times(P, column, product);
     for (int b = 0; b < 3; b++)
       PM[b][a] = product[b];
   }
@@ -119,49 +115,50 @@ static void couple_of(const double P[6], const double M_fluid[6], double V, doub
     couple[k] = V * (PM[(k + 2) % 3][(k + 1) % 3] - PM[(k + 1) % 3][(k + 2) % 3]);
 }
 
-/* What the second sweep of this particle and of its neighbours needs. */
-static void close_one(bw_ulph *u, size_t own, const double M[6], const double G[9],
-                      const double M_fluid[6], const double G_fluid[9], const double r[3],
-                      double dt)
-{
-  const int d = u->config.dimensions;
-  bw_ulph__particle *p = u->own + own;
-  bw_ulph__between *b = u->between + own;
-  bw_ulph__far *f = u->far + u->fluid.slot_own[own];
-  double L_fluid[9];
-  /* A cloud without volume has no gradient: then the central form. */
-  p->lone = bw_ulph__moment(u, M, b->Minv);
-  p->surface = bw_ulph__above(d, M, SURFACE * u->m2) ? 0 : 1;
-  f->m2 = p->lone ? u->m2 : (M[0] + M[3] + M[5]) / d;
-  const double div = velocity_gradient(G, b->Minv, b->L);
-  b->div_wall = div - velocity_gradient(G_fluid, b->Minv, L_fluid);
-  bw_ulph__times(b->Minv, r, b->g);
-  b->V = u->near[u->fluid.slot_own[own]].V;
-  finish(u, p, b, dt);
-  /* The pair forces are made of p M^-1 of either end. */
-  for (int k = 0; k < 6; k++)
-    f->P[k] = p->p * b->Minv[k];
-  couple_of(f->P, M_fluid, b->V, b->couple);
-  f->p = p->p;
-  memcpy(f->g, b->g, sizeof f->g);
-  f->surface = p->surface;
-}
-
-static void close_cluster(bw_ulph *u, const bw_ulph__cluster *c, const sums *fluid, const sums *all,
-                          double dt)
+/* What particles keep, and what their neighbours see of them in the second sweep. */
+static void store(bw_ulph *u, const bw_ulph__cluster *c, const bw_ulph__between *b, vec rho, vec m2,
+                  const vec P[6])
 {
   for (int l = 0; l < c->lanes; l++) {
-    double M[6], M_fluid[6], G[9], G_fluid[9], r[3];
+    const size_t own = c->first + (size_t)l;
+    bw_ulph__particle *p = u->own + own;
+    bw_ulph__far *f = u->far + u->fluid.slot_own[own];
+    p->rho = rho[l], p->p = f->p = b->p[l];
+    p->lone = b->lone[l] > 0, p->surface = f->surface = b->surface[l];
+    f->m2 = m2[l];
     for (int k = 0; k < 6; k++)
-      M[k] = all->M[k][l], M_fluid[k] = fluid->M[k][l];
-    for (int k = 0; k < 9; k++)
-      G[k] = all->G[k][l], G_fluid[k] = fluid->G[k][l];
-    for (int k = 0; k < 3; k++) {
-      r[k] = all->r[k][l];
-      u->between[c->first + (size_t)l].s[k] = all->s[k][l];
-    }
-    close_one(u, c->first + (size_t)l, M, G, M_fluid, G_fluid, r, dt);
+      f->P[k] = P[k][l];
+    for (int k = 0; k < 3; k++)
+      f->g[k] = b->g[k][l];
   }
+}
+
+static void close_cluster(bw_ulph *u, size_t number, const owners *o, const sums *fluid,
+                          const sums *all, double dt)
+{
+  const int d = u->config.dimensions;
+  const double c2 = u->config.c0 * u->config.c0, rho0 = u->config.rho0;
+  bw_ulph__between *b = u->between + number;
+  const vec one = (vec){0} + 1;
+  vec L_fluid[9], P[6];
+  /* A cloud without volume has no gradient: then the central form. */
+  const vec_bits lone = bw_ulph__moment(u, all->M, b->Minv);
+  b->lone = vec_where(lone, one);
+  b->surface = vec_where(~bw_ulph__above(d, all->M, SURFACE * u->m2), one);
+  const vec m2 = vec_choose(lone, one * u->m2, (all->M[0] + all->M[3] + all->M[5]) / d);
+  b->div_wall = velocity_gradient(all->G, b->Minv, b->L);
+  b->div_wall -= velocity_gradient(fluid->G, b->Minv, L_fluid);
+  vec_times(b->Minv, all->r, b->g);
+  memcpy(b->s, all->s, sizeof b->s);
+  b->V = o->V;
+  const vec rho = density(o->rho, b->L, dt);
+  b->p = c2 * (rho - rho0);
+  b->p_mean = 0.5 * (c2 * (o->rho - rho0) + b->p);
+  /* The pair forces are made of p M^-1 of either end. */
+  for (int k = 0; k < 6; k++)
+    P[k] = b->p * b->Minv[k];
+  couple_of(P, fluid->M, b->V, b->couple);
+  store(u, u->clusters.of + number, b, rho, m2, P);
 }
 
 void bw_ulph__first(bw_ulph *u, double dt)
@@ -174,6 +171,6 @@ void bw_ulph__first(bw_ulph *u, double dt)
       pairs_2d(u, c, &o, &fluid, &all);
     else
       pairs_3d(u, c, &o, &fluid, &all);
-    close_cluster(u, c, &fluid, &all, dt);
+    close_cluster(u, q, &o, &fluid, &all, dt);
   }
 }

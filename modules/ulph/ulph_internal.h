@@ -39,21 +39,52 @@ typedef struct {
   double P[6]; /* p M^-1: xx xy xz yy yz zz */
   double p;
   double m2; /* tr M/d */
-  double
-      g[3]; /* gradient of the density. Walls: viscosity; 1 where it moves; artificial viscosity */
+  double g[3]; /* gradient of the density. Walls: 1 where it moves */
   double surface; /* 1 at the surface, else 0 */
 } bw_ulph__far;
 
-/* Of an own fluid particle, from the first sweep to the end of the step. */
+enum { BW_ULPH__LINES = 8, BW_ULPH__PUSHES = 5 };
+/* Lines of the book. */
+enum {
+  LINE_WALLS,
+  LINE_VISCOUS,
+  LINE_ARTIFICIAL,
+  LINE_DIFFUSION,
+  LINE_TENSION,
+  LINE_SHIFTING,
+  LINE_GHOSTS,
+  LINE_BODIES
+};
+/* Who pushes. */
+enum { PUSH_GRAVITY, PUSH_WALLS, PUSH_TENSION, PUSH_SHIFTING, PUSH_BODIES };
+
+/* Of the lanes of a cluster of fluid, from the first sweep to the second. */
 typedef struct {
-  double Minv[6], s[3]; /* M^-1; sum w V x */
-  double L[9], g[3];    /* L[3 a + b] = d v_a/d x_b; gradient of the density */
-  double div_wall;      /* part of tr L that is due to walls */
-  double couple[3];     /* torque that its pairs with fluid leave, as those with walls complete M */
-  double V;
-  double p_mean; /* pressure in the middle of the step, to which tr L belongs */
-  double D;      /* density diffusion */
+  vec Minv[6], s[3]; /* M^-1; sum w V x */
+  vec L[9], g[3];    /* L[3 a + b] = d v_a/d x_b; gradient of the density */
+  vec div_wall;      /* part of tr L that is due to walls */
+  vec couple[3];     /* torque that their pairs with fluid leave, as those with walls complete M */
+  vec V, p;
+  vec p_mean; /* pressure in the middle of the step, to which tr L belongs */
+  vec lone, surface; /* 1 or 0: M is singular; of the surface */
+  vec D;             /* density diffusion */
 } bw_ulph__between;
+
+/* What stands in the fluid: all walls, those of them that move, bodies. */
+enum { BW_ULPH__WALLS, BW_ULPH__MOVING, BW_ULPH__BODIES, BW_ULPH__STANDING };
+
+/* Sums of the second sweep, of the lanes of a cluster: over fluid, and over what stands in it. */
+typedef struct {
+  vec A[3], B[3], F[3], D, surface; /* w V P x; w V p x; viscous; diffusion; any surface */
+  struct {
+    vec s[3], A[3], B[3], F[3]; /* w V x; w V P x; w V p x; viscous */
+  } by[BW_ULPH__STANDING];
+} bw_ulph__pairs;
+
+/* The book of the lanes of clusters, in the order of bw_ulph__book. */
+typedef struct {
+  vec line[BW_ULPH__LINES], push[BW_ULPH__PUSHES][3], turn[BW_ULPH__PUSHES][3];
+} bw_ulph__page;
 
 /* Of an own wall particle: sums over the fluid near it. */
 typedef struct {
@@ -98,21 +129,6 @@ typedef struct {
   bool no_slip;
 } bw_ulph__body;
 
-enum { BW_ULPH__LINES = 8, BW_ULPH__PUSHES = 5 };
-/* Lines of the book. */
-enum {
-  LINE_WALLS,
-  LINE_VISCOUS,
-  LINE_ARTIFICIAL,
-  LINE_DIFFUSION,
-  LINE_TENSION,
-  LINE_SHIFTING,
-  LINE_GHOSTS,
-  LINE_BODIES
-};
-/* Who pushes. */
-enum { PUSH_GRAVITY, PUSH_WALLS, PUSH_TENSION, PUSH_SHIFTING, PUSH_BODIES };
-
 /* What terms have given to the fluid, or give per time. */
 typedef struct {
   double line[BW_ULPH__LINES];
@@ -142,7 +158,7 @@ struct bw_ulph {
   size_t slots;
   bw_ulph__near *near;                         /* (slots) */
   bw_ulph__far *far;                           /* (slots) */
-  bw_ulph__between *between;                   /* (fluid.own) */
+  bw_ulph__between *between;                   /* (clusters.n) */
   bw_ulph__shade *shade;                       /* (wall.own + face.own) */
   bw_ulph__front *front;                       /* (slots) of faces */
   bw_ulph__clusters clusters, shading, facing; /* of fluid, walls, faces */
@@ -180,11 +196,10 @@ static inline size_t bw_ulph__body_particle(const bw_ulph__particle *face)
   return (size_t)(face->id & ((INT64_C(1) << 40) - 1)) / 2;
 }
 
-/* ulph_moment.c: M^-1, or where M is singular (then true) that of the central form. */
-bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6]);
-/* Is A - shift the unit matrix positive definite, in d dimensions? Its inverse. */
-bool bw_ulph__above(int d, const double A[6], double shift);
-void bw_ulph__inverse(int d, const double A[6], double out[6]);
+/* ulph_moment.c: M^-1, or where M is singular (of which it tells) that of the central form. */
+vec_bits bw_ulph__moment(const bw_ulph *u, const vec M[6], vec Minv[6]);
+/* Is A - shift the unit matrix positive definite, in d dimensions? */
+vec_bits bw_ulph__above(int d, const vec A[6], double shift);
 /* The same of a half-space, sum w x dx^d, k + 1/2 layers below its surface. */
 double bw_ulph__half_space(int d, double dx, double R, int k);
 /* sum w x^2 dx^d of a whole neighbourhood on a lattice, per direction. */
@@ -225,6 +240,11 @@ void bw_ulph__release_lists(bw_ulph *u);
 /* ulph_first.c, ulph_second.c: the sweeps over pairs. */
 void bw_ulph__first(bw_ulph *u, double dt);
 void bw_ulph__second(bw_ulph *u, double dt);
+
+/* ulph_forces.c: forces of the pairs of a cluster; what they do to its particles, and the book of
+ * it, per time (rate) and of the step (jump). */
+void bw_ulph__forces(bw_ulph *u, size_t cluster, const bw_ulph__pairs *pairs, double dt,
+                     bw_ulph__page *rate, bw_ulph__page *jump);
 
 /* ulph_step.c: all sweeps with the present places; forces of the end of a step dt. Collective. */
 void bw_ulph__evaluate(bw_ulph *u, double dt);

@@ -1,21 +1,23 @@
 /* Moment matrices: definiteness, inverse, and the moment of a lattice. */
 #include "ulph_internal.h"
 
-/* By the leading minors; what is not a number is not definite. */
-bool bw_ulph__above(int d, const double A[6], double shift)
+vec_bits bw_ulph__above(int d, const vec A[6], double shift)
 {
-  const double a = A[0] - shift, b = A[3] - shift, ab = a * b - A[1] * A[1];
-  if (!(a > 0 && ab > 0)) return false;
-  if (d == 2) return true;
-  const double c = A[5] - shift;
-  return ab * c - a * A[4] * A[4] - b * A[2] * A[2] + 2 * A[1] * A[2] * A[4] > 0;
+  /* By the leading minors; what is not a number is not definite. */
+  const vec a = A[0] - shift, b = A[3] - shift, ab = a * b - A[1] * A[1];
+  const vec_bits plane = (a > 0) & (ab > 0);
+  if (d == 2) return plane;
+  const vec c = A[5] - shift;
+  const vec det = ab * c - a * A[4] * A[4] - b * A[2] * A[2] + 2 * A[1] * A[2] * A[4];
+  return plane & (det > 0);
 }
 
-void bw_ulph__inverse(int d, const double A[6], double out[6])
+/* Its inverse. */
+static void invert(int d, const vec A[6], vec out[6])
 {
   memset(out, 0, 6 * sizeof *out);
   if (d == 2) {
-    const double over = 1 / (A[0] * A[3] - A[1] * A[1]);
+    const vec over = 1 / (A[0] * A[3] - A[1] * A[1]);
     out[0] = A[3] * over, out[1] = -A[1] * over, out[3] = A[0] * over;
     return;
   }
@@ -26,7 +28,7 @@ void bw_ulph__inverse(int d, const double A[6], double out[6])
   out[3] = A[0] * A[5] - A[2] * A[2];
   out[4] = A[1] * A[2] - A[0] * A[4];
   out[5] = A[0] * A[3] - A[1] * A[1];
-  const double over = 1 / (A[0] * out[0] + A[1] * out[1] + A[2] * out[2]);
+  const vec over = 1 / (A[0] * out[0] + A[1] * out[1] + A[2] * out[2]);
   for (int k = 0; k < 6; k++)
     out[k] *= over;
 }
@@ -36,16 +38,14 @@ void bw_ulph__inverse(int d, const double A[6], double out[6])
  * stable: a rotating square patch blew up at 0.2. */
 static const double SINGULAR = 0.35;
 
-bool bw_ulph__moment(const bw_ulph *u, const double M[6], double Minv[6])
+vec_bits bw_ulph__moment(const bw_ulph *u, const vec M[6], vec Minv[6])
 {
   const int d = u->config.dimensions;
-  const bool singular = !bw_ulph__above(d, M, SINGULAR * u->m2);
-  if (singular) {
-    memset(Minv, 0, 6 * sizeof *Minv);
-    Minv[0] = Minv[3] = Minv[5] = 1 / u->m2;
-  } else {
-    bw_ulph__inverse(d, M, Minv);
-  }
+  const vec_bits singular = ~bw_ulph__above(d, M, SINGULAR * u->m2);
+  const vec unit = (vec){0} + 1 / u->m2;
+  invert(d, M, Minv);
+  for (int k = 0; k < 6; k++)
+    Minv[k] = vec_choose(singular, k == 0 || k == 3 || k == 5 ? unit : (vec){0}, Minv[k]);
   return singular;
 }
 

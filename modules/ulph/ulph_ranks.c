@@ -233,7 +233,7 @@ static bw_status number_all(bw_ulph *u)
   BW_TRY(BW_ALLOCATE(&u->front, u->slots));
   BW_TRY(BW_ALLOCATE(&u->near, u->slots));
   BW_TRY(BW_ALLOCATE(&u->far, u->slots));
-  BW_TRY(BW_ALLOCATE(&u->between, u->fluid.own));
+  BW_TRY(BW_ALLOCATE(&u->between, (u->fluid.own + BW_ULPH_LANES - 1) / BW_ULPH_LANES));
   return BW_ALLOCATE(&u->shade, u->wall.own + u->face.own);
 }
 

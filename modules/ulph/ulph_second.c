@@ -1,20 +1,5 @@
-/* The second sweep: forces, density diffusion, shifting, and the book. */
+/* The second sweep over pairs: what forces and density diffusion are made of. */
 #include "ulph_internal.h"
-
-/* Of the shifting: the longest shift per step over dx. */
-static const double LONGEST = 0.05;
-
-/* Sums of the lanes of a cluster over fluid, and over what stands in it. */
-typedef struct {
-  vec A[3], B[3], F[3], D, surface; /* w V P x; w V p x; viscous; diffusion; any surface */
-} fluid_sums;
-typedef struct {
-  vec s[3], A[3], B[3]; /* w V x; w V P x; w V p x */
-  vec F[3], Q[3];       /* viscous: physical, artificial */
-} wall_sums;
-
-/* What stands in the fluid: all walls, those of them that move, bodies. */
-enum { WALLS, MOVING, BODIES, STANDING };
 
 typedef struct {
   vec x[3], v[3], g[3], rho, m2;
@@ -56,18 +41,19 @@ BW_ULPH_PIECE vec times(const double P[6], const vec x[3], int a, int d)
   return Px;
 }
 
-BW_ULPH_PIECE void add_fluid(fluid_sums *t, const owners *o, const bw_ulph__near *n,
-                             const bw_ulph__far *f, const double R2[2], int d)
+/* w V p x only where some lane is under tension. */
+BW_ULPH_PIECE void add_fluid(bw_ulph__pairs *t, const owners *o, const bw_ulph__near *n,
+                             const bw_ulph__far *f, const double R2[2], bool tense, int d)
 {
   vec x[3], vx, gx = {0};
   const vec r2 = distance(o, n, x, &vx, d);
   const vec wV = vec_weight(r2, R2[0]) * n->V;
   /* 1/(m2 r^2) by one division; the particle itself has x = 0. */
-  const vec m2 = o->m2 + f->m2, r2_safe = r2 + R2[1], over = wV / (m2 * r2_safe);
+  const vec m2 = o->m2 + f->m2, r2_safe = r2 + R2[1], over = wV * vec_inverse(m2 * r2_safe);
   const vec viscous = over * vx, wVp = wV * f->p;
   for (int a = 0; a < d; a++) {
     t->A[a] += wV * times(f->P, x, a, d);
-    t->B[a] += wVp * x[a];
+    if (tense) t->B[a] += wVp * x[a];
     t->F[a] += viscous * x[a];
     gx += (o->g[a] + f->g[a]) * x[a];
   }
@@ -75,10 +61,10 @@ BW_ULPH_PIECE void add_fluid(fluid_sums *t, const owners *o, const bw_ulph__near
   t->surface += wV * f->surface;
 }
 
-/* Of a face (front, else NULL) the lanes in front of it; of a wall those that move (else NULL). */
-BW_ULPH_PIECE void add_wall(wall_sums *t, wall_sums *moving, const owners *o,
-                            const bw_ulph__near *n, const bw_ulph__far *f,
-                            const bw_ulph__front *front, const double R2[2], int d)
+/* Of a face (front, else NULL) the lanes in front of it; walls that move are summed apart, too. */
+BW_ULPH_PIECE void add_standing(bw_ulph__pairs *t, int who, const owners *o,
+                                const bw_ulph__near *n, const bw_ulph__far *f,
+                                const bw_ulph__front *front, const double R2[2], bool moving, int d)
 {
   vec x[3], vx, before = {0};
   const vec r2 = distance(o, n, x, &vx, d);
@@ -87,217 +73,98 @@ BW_ULPH_PIECE void add_wall(wall_sums *t, wall_sums *moving, const owners *o,
     before -= front->normal[k] * x[k];
   if (front != NULL) wV = vec_where(before > front->least, wV);
   const vec wVp = wV * f->p;
-  const vec over = wV * vx / (2 * o->m2 * (r2 + R2[1]));
-  const double moves = f->g[1];
+  const vec viscous = wV * vx * vec_inverse(2 * o->m2 * (r2 + R2[1]));
+  const double moves = f->g[0];
   for (int a = 0; a < d; a++) {
-    const vec A = wV * times(f->P, x, a, d);
-    t->s[a] += wV * x[a];
-    t->A[a] += A;
-    t->B[a] += wVp * x[a];
-    t->F[a] += f->g[0] * over * x[a];
-    t->Q[a] += f->g[2] * over * x[a];
-    if (moving == NULL) continue;
-    moving->s[a] += moves * wV * x[a];
-    moving->A[a] += moves * A;
-    moving->F[a] += moves * f->g[0] * over * x[a];
-    moving->Q[a] += moves * f->g[2] * over * x[a];
+    const vec s = wV * x[a], A = wV * times(f->P, x, a, d), F = viscous * x[a];
+    t->by[who].s[a] += s;
+    t->by[who].A[a] += A;
+    t->by[who].B[a] += wVp * x[a];
+    t->by[who].F[a] += F;
+    if (!moving) continue;
+    t->by[BW_ULPH__MOVING].s[a] += moves * s;
+    t->by[BW_ULPH__MOVING].A[a] += moves * A;
+    t->by[BW_ULPH__MOVING].F[a] += moves * F;
   }
 }
 
-BW_ULPH_PIECE void pairs(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                         fluid_sums *fluid, wall_sums wall[STANDING], int d)
+/* What a sweep over pairs has to find. */
+typedef struct {
+  int d;
+  bool tense, moving;
+} wanted;
+
+BW_ULPH_PIECE void sum(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
+                       bw_ulph__pairs *pairs, wanted q)
 {
   const double R2[2] = {1 / (u->R * u->R), 1e-6 * u->R * u->R};
-  fluid_sums t = {0};
+  bw_ulph__pairs t;
+  memset(&t, 0, sizeof t);
   for (size_t e = c->begin; e < c->walls; e++)
-    add_fluid(&t, o, u->near + u->list[e], u->far + u->list[e], R2, d);
-  *fluid = t;
+    add_fluid(&t, o, u->near + u->list[e], u->far + u->list[e], R2, q.tense, q.d);
+  *pairs = t;
+  if (c->walls == c->end) return;
   for (size_t e = c->walls; e < c->faces; e++)
-    add_wall(&wall[WALLS], &wall[MOVING], o, u->near + u->list[e], u->far + u->list[e], NULL, R2,
-             d);
+    add_standing(&t, BW_ULPH__WALLS, o, u->near + u->list[e], u->far + u->list[e], NULL, R2,
+                 q.moving, q.d);
   for (size_t e = c->faces; e < c->end; e++)
-    add_wall(&wall[BODIES], NULL, o, u->near + u->list[e], u->far + u->list[e],
-             u->front + u->list[e], R2, d);
+    add_standing(&t, BW_ULPH__BODIES, o, u->near + u->list[e], u->far + u->list[e],
+                 u->front + u->list[e], R2, false, q.d);
+  memcpy(pairs->by, t.by, sizeof t.by);
 }
 
-static void pairs_2d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                     fluid_sums *fluid, wall_sums wall[STANDING])
-{
-  pairs(u, c, o, fluid, wall, 2);
-}
-
-static void pairs_3d(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
-                     fluid_sums *fluid, wall_sums wall[STANDING])
-{
-  pairs(u, c, o, fluid, wall, 3);
-}
-
-/* The sums of one lane, as numbers. */
-typedef struct {
-  double A[3], B[3], F[3], D, surface;
-  struct {
-    double s[3], A[3], B[3], F[3], Q[3];
-  } by[STANDING];
-} lane;
-
-static lane lane_of(const fluid_sums *t, const wall_sums w[STANDING], int l)
-{
-  lane q = {.D = t->D[l], .surface = t->surface[l]};
-  for (int k = 0; k < 3; k++) {
-    q.A[k] = t->A[k][l], q.B[k] = t->B[k][l], q.F[k] = t->F[k][l];
-    for (int m = 0; m < STANDING; m++) {
-      q.by[m].s[k] = w[m].s[k][l], q.by[m].A[k] = w[m].A[k][l], q.by[m].B[k] = w[m].B[k][l];
-      q.by[m].F[k] = w[m].F[k][l], q.by[m].Q[k] = w[m].Q[k][l];
-    }
+/* One loop each, of which what is wanted is a constant. */
+#define SUM(name, d, tense, moving)                                                                \
+  static void name(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,                   \
+                   bw_ulph__pairs *pairs)                                                          \
+  {                                                                                                \
+    sum(u, c, o, pairs, (wanted){d, tense, moving});                                               \
   }
-  return q;
+SUM(plane, 2, false, false)
+SUM(plane_moving, 2, false, true)
+SUM(plane_tense, 2, true, false)
+SUM(plane_tense_moving, 2, true, true)
+SUM(space, 3, false, false)
+SUM(space_moving, 3, false, true)
+SUM(space_tense, 3, true, false)
+SUM(space_tense_moving, 3, true, true)
+
+typedef void sweep(const bw_ulph *u, const bw_ulph__cluster *c, const owners *o,
+                   bw_ulph__pairs *pairs);
+static sweep *const sweeps[2][2][2] = {{{plane, plane_moving}, {plane_tense, plane_tense_moving}},
+                                       {{space, space_moving}, {space_tense, space_tense_moving}}};
+
+/* Is a lane of a cluster under tension, so that the cure may be needed? */
+static bool under_tension(const bw_ulph *u, const bw_ulph__between *b)
+{
+  return u->config.tension_cure && vec_sum(vec_where(b->p < 0, (vec){0} + 1)) > 0;
 }
 
-/* Forces on one particle. */
-typedef struct {
-  double fluid[3], by[STANDING][3];  /* pressure */
-  double physical[3], artificial[3]; /* viscosity, of all */
-  double drag[STANDING][3];          /* the part of it of what stands in the fluid */
-  double cure[3];                    /* difference form less pair form */
-} forces;
-
-/* -V (p M^-1 s + A) */
-static void pair_force(const bw_ulph__between *b, double p, const double s[3], const double A[3],
-                       double F[3])
+static void read_page(const bw_ulph__page *page, bw_ulph__book *to)
 {
-  bw_ulph__times(b->Minv, s, F);
-  for (int k = 0; k < 3; k++)
-    F[k] = -b->V * (p * F[k] + A[k]);
-}
-
-static forces forces_of(const bw_ulph *u, const bw_ulph__particle *p, const bw_ulph__between *b,
-                        const lane *q)
-{
-  const int d = u->config.dimensions;
-  /* Twice, as the sums hold 1/(2 m2). */
-  const double twice = 2 * b->V * 2 * (d + 2);
-  forces f = {0};
-  double rest[3];
-  for (int k = 0; k < 3; k++)
-    rest[k] = b->s[k] - q->by[WALLS].s[k] - q->by[BODIES].s[k];
-  pair_force(b, p->p, rest, q->A, f.fluid);
-  for (int m = 0; m < STANDING; m++)
-    pair_force(b, p->p, q->by[m].s, q->by[m].A, f.by[m]);
-  for (int k = 0; k < 3; k++) {
-    f.physical[k] = twice * (u->config.mu * q->F[k] + q->by[WALLS].F[k] + q->by[BODIES].F[k]);
-    f.artificial[k] =
-        twice * ((u->mu_t - u->config.mu) * q->F[k] + q->by[WALLS].Q[k] + q->by[BODIES].Q[k]);
-    for (int m = 0; m < STANDING; m++)
-      f.drag[m][k] = twice * (q->by[m].F[k] + q->by[m].Q[k]);
-  }
-  /* Under tension away from a surface: the gradient itself, which does not pull neighbours
-   * together. */
-  if (u->config.tension_cure && p->p < 0 && q->surface == 0 && !p->lone) {
-    double sum[3], gradient[3];
-    for (int k = 0; k < 3; k++)
-      sum[k] = q->B[k] + q->by[WALLS].B[k] + q->by[BODIES].B[k] - p->p * b->s[k];
-    bw_ulph__times(b->Minv, sum, gradient);
-    for (int k = 0; k < 3; k++)
-      f.cure[k] = -b->V * gradient[k] - f.fluid[k] - f.by[WALLS][k] - f.by[BODIES][k];
-  }
-  return f;
-}
-
-/* Against clustering: down the gradient of the concentration, as fast as the flow distorts. */
-static void shift_of(const bw_ulph *u, const lane *q, const bw_ulph__between *b, double dt,
-                     bw_ulph__particle *p)
-{
-  double rate = 0, length = 0;
-  memset(p->shift, 0, sizeof p->shift);
-  if (u->config.shifting == 0 || q->surface > 0 || p->lone) return;
-  for (int k = 0; k < 9; k++)
-    rate += b->L[k] * b->L[k];
-  for (int k = 0; k < 3; k++) {
-    p->shift[k] = -u->config.shifting * sqrt(rate) * u->h * u->h * dt * b->s[k] / u->m2;
-    length += p->shift[k] * p->shift[k];
-  }
-  length = sqrt(length);
-  const double most = LONGEST * u->config.dx;
-  for (int k = 0; k < 3 && length > most; k++)
-    p->shift[k] *= most / length;
-}
-
-static void push(bw_ulph *u, int who, const bw_ulph__particle *p, const double F[3])
-{
-  double *to = u->rate.push[who], *turn = u->rate.turn[who];
-  for (int k = 0; k < 3; k++) {
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    to[k] += F[k];
-    turn[k] += p->x[a] * F[b] - p->x[b] * F[a];
-  }
-}
-
-/* Energy and momentum that the forces give per time. They make the last kick of this step and the
- * first of the next: the particle has the velocity between the two. */
-static void book(bw_ulph *u, const bw_ulph__particle *p, const bw_ulph__between *b, const forces *f)
-{
-  double *line = u->rate.line, walls[3], bodies[3], weight[3];
-  for (int k = 0; k < 3; k++) {
-    walls[k] = f->by[WALLS][k] + f->drag[WALLS][k];
-    bodies[k] = f->by[BODIES][k] + f->drag[BODIES][k];
-    weight[k] = p->m * u->config.gravity[k];
-  }
-  /* The work of bodies is booked over the step (ulph_face.c). */
-  const double moved = bw_ulph__dot(f->drag[MOVING], u->wall_v);
-  const double work = bw_ulph__dot(f->by[MOVING], u->wall_v);
-  line[LINE_WALLS] += work + moved;
-  line[LINE_VISCOUS] += bw_ulph__dot(f->physical, p->v);
-  line[LINE_ARTIFICIAL] += bw_ulph__dot(f->artificial, p->v) - moved;
-  line[LINE_TENSION] += bw_ulph__dot(f->cure, p->v);
-  /* A mirror image would take as much from the fluid as its compression returns. */
-  line[LINE_GHOSTS] += bw_ulph__dot(f->by[WALLS], p->v) + bw_ulph__dot(f->by[BODIES], p->v) -
-                       b->V * b->p_mean * b->div_wall - work;
-  push(u, PUSH_GRAVITY, p, weight);
-  push(u, PUSH_WALLS, p, walls);
-  push(u, PUSH_BODIES, p, bodies);
-  for (int k = 0; k < 3; k++)
-    u->rate.turn[PUSH_WALLS][k] += b->couple[k];
-  push(u, PUSH_TENSION, p, f->cure);
-}
-
-/* The second half of the kick. */
-static void kick(bw_ulph *u, bw_ulph__particle *p, const forces *f, double dt)
-{
-  for (int k = 0; k < 3; k++) {
-    p->a[k] = (f->fluid[k] + f->by[WALLS][k] + f->by[BODIES][k] + f->physical[k] +
-               f->artificial[k] + f->cure[k]) /
-              p->m;
-    p->v[k] += 0.5 * dt * (p->a[k] + u->config.gravity[k]);
-    u->wall_force[k] -= f->by[WALLS][k] + f->drag[WALLS][k];
-  }
+  const vec *from = (const vec *)page;
+  double *numbers = (double *)to;
+  for (size_t k = 0; k < sizeof *to / sizeof *numbers; k++)
+    numbers[k] += vec_sum(from[k]);
 }
 
 void bw_ulph__second(bw_ulph *u, double dt)
 {
-  const int d = u->config.dimensions;
-  memset(u->wall_force, 0, sizeof u->wall_force);
-  memset(&u->rate, 0, sizeof u->rate);
+  const bool moving = u->config.motion != NULL;
+  bw_ulph__page rate, jump;
+  memset(&rate, 0, sizeof rate);
+  memset(&jump, 0, sizeof jump);
   for (size_t c = 0; c < u->clusters.n; c++) {
     const bw_ulph__cluster *cluster = u->clusters.of + c;
     const owners o = load(u, cluster);
-    fluid_sums fluid;
-    wall_sums wall[STANDING];
-    memset(wall, 0, sizeof wall);
-    if (d == 2)
-      pairs_2d(u, cluster, &o, &fluid, wall);
-    else
-      pairs_3d(u, cluster, &o, &fluid, wall);
-    for (int l = 0; l < cluster->lanes; l++) {
-      const size_t own = cluster->first + (size_t)l;
-      bw_ulph__particle *p = u->own + own;
-      bw_ulph__between *b = u->between + own;
-      const lane q = lane_of(&fluid, wall, l);
-      const forces f = forces_of(u, p, b, &q);
-      kick(u, p, &f, dt);
-      book(u, p, b, &f);
-      /* Twice, as the sums hold 1/(2 m2). */
-      b->D = (1 - p->surface) * 2 * u->config.delta * u->h * u->config.c0 * q.D;
-      shift_of(u, &q, b, dt, p);
-    }
+    bw_ulph__pairs pairs;
+    const bool tense = under_tension(u, u->between + c);
+    sweeps[u->config.dimensions - 2][tense][moving](u, cluster, &o, &pairs);
+    bw_ulph__forces(u, c, &pairs, dt, &rate, &jump);
   }
+  memset(&u->rate, 0, sizeof u->rate);
+  read_page(&rate, &u->rate);
+  read_page(&jump, &u->jump);
+  for (int k = 0; k < 3; k++)
+    u->wall_force[k] = -u->rate.push[PUSH_WALLS][k];
 }

@@ -214,20 +214,19 @@ void bw_ulph__shade_velocity(bw_ulph *u)
 
 /* Pressure over moment, as of a fluid particle there: pairs across the wall are then those of a
  * mirror image, which leave a free-slip wall no force along it. */
-static void show_pressure(bw_ulph *u, const showing *s, size_t own, const moments *t, int l)
+static void show_pressure(bw_ulph *u, const showing *s, const bw_ulph__cluster *c, const moments *t)
 {
-  bw_ulph__particle *p = u->own + s->kind->first + own;
-  bw_ulph__far *f = u->far + s->kind->slot_own[own];
-  double M[6], Minv[6];
-  for (int k = 0; k < 6; k++)
-    M[k] = t->M[k][l];
-  bw_ulph__moment(u, M, Minv);
-  p->p = f->p = pressure(s->shade[own].weight, t->p[l], s->shade[own].hydrostatic);
-  for (int k = 0; k < 6; k++)
-    f->P[k] = p->p * Minv[k];
-  f->g[0] = u->config.mu;
-  f->g[2] = u->mu_wall;
-  f->g[1] = u->moves[p->wall] ? 1 : 0;
+  vec Minv[6];
+  bw_ulph__moment(u, t->M, Minv);
+  for (int l = 0; l < c->lanes; l++) {
+    const size_t own = c->first + (size_t)l;
+    bw_ulph__particle *p = u->own + s->kind->first + own;
+    bw_ulph__far *f = u->far + s->kind->slot_own[own];
+    p->p = f->p = pressure(s->shade[own].weight, t->p[l], s->shade[own].hydrostatic);
+    for (int k = 0; k < 6; k++)
+      f->P[k] = p->p * Minv[k][l];
+    f->g[0] = u->moves[p->wall] ? 1 : 0;
+  }
 }
 
 void bw_ulph__shade_pressure(bw_ulph *u)
@@ -239,8 +238,7 @@ void bw_ulph__shade_pressure(bw_ulph *u)
       const bw_ulph__cluster *q = s->clusters->of + c;
       const lanes o = load(u, s->kind, q);
       const moments t = b == 0 ? sum_pressure(u, q, &o, false) : sum_pressure(u, q, &o, true);
-      for (int l = 0; l < q->lanes; l++)
-        show_pressure(u, s, q->first + (size_t)l, &t, l);
+      show_pressure(u, s, q, &t);
     }
     bw_ulph__send(s->kind, sizeof *u->far, u->far);
   }

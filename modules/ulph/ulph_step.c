@@ -125,44 +125,6 @@ static bw_status keep_lists(bw_ulph *u)
   return BW_OK;
 }
 
-/* What moves a particle to another place without a force, and its energy. */
-static void shift(bw_ulph *u, bw_ulph__particle *p, const bw_ulph__between *b)
-{
-  double dv[3], energy = 0, drho = 0;
-  double *to = u->jump.push[PUSH_SHIFTING], *turn = u->jump.turn[PUSH_SHIFTING];
-  for (int a = 0; a < 3; a++) {
-    dv[a] = bw_ulph__dot(b->L + 3 * a, p->shift);
-    drho += b->g[a] * p->shift[a];
-    energy += p->m * (dv[a] * (p->v[a] + 0.5 * dv[a]) - u->config.gravity[a] * p->shift[a]);
-    to[a] += p->m * dv[a];
-  }
-  for (int k = 0; k < 3; k++) {
-    const int a = (k + 1) % 3, c = (k + 2) % 3;
-    turn[k] += p->m * ((p->x[a] + p->shift[a]) * (p->v[c] + dv[c]) - p->x[a] * p->v[c] -
-                       (p->x[c] + p->shift[c]) * (p->v[a] + dv[a]) + p->x[c] * p->v[a]);
-  }
-  u->jump.line[LINE_SHIFTING] += energy + p->m * p->p * drho / (p->rho * p->rho);
-  for (int k = 0; k < 3; k++) {
-    p->x[k] += p->shift[k];
-    p->v[k] += dv[k];
-  }
-  p->rho += drho;
-}
-
-/* Density diffusion and shifting close the step. */
-static void settle(bw_ulph *u, double dt)
-{
-  const double c2 = u->config.c0 * u->config.c0;
-  for (size_t i = 0; i < u->fluid.own; i++) {
-    bw_ulph__particle *p = u->own + i;
-    const bw_ulph__between *b = u->between + i;
-    const double drho = dt * b->D;
-    u->jump.line[LINE_DIFFUSION] += p->m * (p->p + 0.5 * c2 * drho) * drho / (p->rho * p->rho);
-    p->rho += drho;
-    if (u->config.shifting > 0) shift(u, p, b);
-  }
-}
-
 double bw_ulph_dt_max(bw_ulph *u)
 {
   const bw_ulph_config *c = &u->config;
@@ -198,7 +160,6 @@ bw_status bw_ulph_step(bw_ulph *u, double dt)
   BW_TRY(keep_lists(u));
   bw_ulph__evaluate(u, dt);
   bw_ulph__book_bodies(u, 0.5 * dt);
-  settle(u, dt);
   /* All of the book is the same on every rank from here on, so that a restart has the same bits. */
   bw_ulph__join_books(u);
   add(&u->book, 0.5 * dt, &u->rate);

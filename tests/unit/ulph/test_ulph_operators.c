@@ -40,7 +40,7 @@ static void gradient_of(int d, int n)
     whole++;
     for (int a = 0; a < d; a++)
       for (int b = 0; b < d; b++)
-        bw_check_near(u->between[i].L[3 * a + b], 0.01 * slope[a][b], 1e-14);
+        bw_check_near(ULPH_BETWEEN(u, i, L[3 * a + b]), 0.01 * slope[a][b], 1e-14);
   }
   /* Corners alone have no gradient. */
   bw_comm_sum_int(bw_check_world(), 1, &whole);
@@ -100,7 +100,6 @@ static sums sum_forces(const bw_ulph *u)
   memset(&s, 0, sizeof s);
   for (size_t i = 0; i < bw_ulph_count(u); i++) {
     const bw_ulph__particle *p = u->own + i;
-    const bw_ulph__between *b = u->between + i;
     for (int k = 0; k < 3; k++) {
       const int a = (k + 1) % 3, c = (k + 2) % 3;
       const double F = p->m * p->a[k];
@@ -108,7 +107,7 @@ static sums sum_forces(const bw_ulph *u)
       s.force[k] += F, s.size[0] += fabs(F);
       s.torque[k] += torque, s.size[1] += fabs(torque);
       s.power += F * p->v[k], s.size[2] += fabs(F * p->v[k]);
-      s.stored += b->V * p->p * b->L[4 * k];
+      s.stored += ULPH_BETWEEN(u, i, V) * p->p * ULPH_BETWEEN(u, i, L[4 * k]);
     }
   }
   bw_comm_sum(bw_check_world(), sizeof s / sizeof(double), (double *)&s);
@@ -180,12 +179,13 @@ START_TEST(diffusion_leaves_linear_density_and_mass)
       for (int k = 0; k < d; k++)
         inside = inside && u->own[i].x[k] > 3.5 &&
                  u->own[i].x[k] < (d == 2 ? 7.5 : 2.5) + (d == 2 ? 0 : 0);
-      if (inside) linear_most = fmax(linear_most, fabs(u->between[i].D));
+      if (inside) linear_most = fmax(linear_most, fabs(ULPH_BETWEEN(u, i, D)));
     }
     bw_check_ok(bw_ulph_start(u, random_state, &d));
     for (size_t i = 0; i < bw_ulph_count(u); i++) {
-      sum[0] += u->between[i].V * u->between[i].D;
-      sum[1] += fabs(u->between[i].V * u->between[i].D);
+      const double D = ULPH_BETWEEN(u, i, V) * ULPH_BETWEEN(u, i, D);
+      sum[0] += D;
+      sum[1] += fabs(D);
     }
     bw_comm_sum(bw_check_world(), 2, sum);
     bw_comm_max(bw_check_world(), 1, &linear_most);
@@ -217,7 +217,10 @@ START_TEST(one_ended_viscosity_loses_momentum)
         r2 += x[k] * x[k];
       }
       if (i == j || r2 >= 9 || vx >= 0) continue;
-      bw_ulph__times(u->between[i].Minv, x, F);
+      double Minv[6];
+      for (int k = 0; k < 6; k++)
+        Minv[k] = ULPH_BETWEEN(u, i, Minv[k]);
+      bw_ulph__times(Minv, x, F);
       for (int k = 0; k < 3; k++) {
         force[k] += F[k] * vx / (r2 + 0.01) * pow(1 - sqrt(r2) / 3, 4);
         size += fabs(F[k] * vx / (r2 + 0.01) * pow(1 - sqrt(r2) / 3, 4));

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* What an evaluation has left of the fluid particle i of this rank. */
+#define ULPH_BETWEEN(u, i, what) ((u)->between[(i) / BW_ULPH_LANES].what[(i) % BW_ULPH_LANES])
+
 /* In [-1, 1), from a number alone (splitmix64, Steele, Lea & Flood 2014). */
 static inline double noise(uint64_t key)
 {

@@ -155,7 +155,7 @@ struct bw_ulph {
   size_t n;       /* own: fluid, walls, faces */
   bw_ulph__particle *own;
   bw_ulph__kind fluid, wall, face;
-  size_t slots;
+  size_t slots, slot_room, between_room, shade_room; /* used, and allocated of what follows */
   bw_ulph__near *near;                         /* (slots) */
   bw_ulph__far *far;                           /* (slots) */
   bw_ulph__between *between;                   /* (clusters.n) */
@@ -219,6 +219,9 @@ void bw_ulph__move_walls(bw_ulph *u, double t);
 void bw_ulph__shade_velocity(bw_ulph *u);
 void bw_ulph__shade_pressure(bw_ulph *u);
 
+/* Before that, with new lists: walls and faces are dry until fluid has been seen. Local. */
+void bw_ulph__dry(bw_ulph *u);
+
 /* ulph_ranks.c. Collective. */
 bw_status bw_ulph__migrate(bw_ulph *u) BW_MUST_CHECK; /* own to the owners of `at` */
 bw_status bw_ulph__slots(bw_ulph *u) BW_MUST_CHECK;   /* copies, slots */
@@ -232,7 +235,7 @@ void bw_ulph__load_faces(bw_ulph *u);
 void bw_ulph__book_bodies(bw_ulph *u, double half);
 
 /* ulph_lists.c */
-uint64_t bw_ulph__key(const bw_ulph *u, const double x[3]); /* cell and part of it */
+uint64_t bw_ulph__key(const bw_ulph *u, const bw_ulph__particle *p); /* cell and part of it */
 bw_status bw_ulph__lists(bw_ulph *u) BW_MUST_CHECK;         /* Local. */
 bw_status bw_ulph__rebuild(bw_ulph *u) BW_MUST_CHECK;       /* all of it. Collective. */
 void bw_ulph__release_lists(bw_ulph *u);

@@ -2,25 +2,63 @@
 #include "bw_memory.h"
 #include "ulph_internal.h"
 
-/* Cells are told apart this far either way of the origin. A key has 18 bits per direction, x the
- * lowest, and behind them 3 bits for the eighth of the cell. */
-enum { FARTHEST = 1 << 17, BITS = 18 };
+/* Cells are told apart this far either way of the origin. A key has 16 bits per direction, x the
+ * lowest, and behind them the layer of walls and the place within the cell, on a curve of Hilbert
+ * through its 8^d parts that begins where the last cell of the row ended: particles that follow
+ * each other are near each other. */
+enum { FARTHEST = 1 << 15, BITS = 16, LEVELS = 3, CURVE = 3 * LEVELS, WITHIN = CURVE + 2 };
 
-/* Halves of cells from the outermost one. */
-static uint64_t half_cell(double x, double edge)
+/* Parts of cells from the outermost one. */
+static uint32_t part_of_cell(double x, double edge)
 {
-  return (uint64_t)fmax(0, fmin(4.0 * FARTHEST - 1, floor(2 * x / edge) + 2.0 * FARTHEST));
+  const double parts = 1 << LEVELS;
+  return (uint32_t)fmax(0, fmin(2 * parts * FARTHEST - 1, floor(parts * (x / edge + FARTHEST))));
 }
 
-uint64_t bw_ulph__key(const bw_ulph *u, const double x[3])
+static uint64_t cell_of(double x, double edge)
 {
-  uint64_t key = 0, part = 0;
+  return part_of_cell(x, edge) >> LEVELS;
+}
+
+/* Place of a part on the curve, from (0, 0, 0) to the last in x (Skilling, AIP Conf. Proc. 707
+ * (2004) 381: bits of the directions exchanged and turned, level by level, then Gray's code). */
+static uint64_t along_curve(int d, const uint32_t part[3])
+{
+  uint32_t X[3] = {part[0], part[1], part[2]}, t = 0;
+  uint64_t place = 0;
+  for (uint32_t q = 1 << (LEVELS - 1); q > 1; q >>= 1)
+    for (int i = 0; i < d; i++)
+      if ((X[i] & q) != 0) {
+        X[0] ^= q - 1;
+      } else {
+        t = (X[0] ^ X[i]) & (q - 1);
+        X[0] ^= t, X[i] ^= t;
+      }
+  for (int i = 1; i < d; i++)
+    X[i] ^= X[i - 1];
+  t = 0;
+  for (uint32_t q = 1 << (LEVELS - 1); q > 1; q >>= 1)
+    if ((X[d - 1] & q) != 0) t ^= q - 1;
+  for (int level = LEVELS - 1; level >= 0; level--)
+    for (int i = 0; i < d; i++)
+      place = place << 1 | ((X[i] ^ t) >> level & 1);
+  return place;
+}
+
+uint64_t bw_ulph__key(const bw_ulph *u, const bw_ulph__particle *p)
+{
+  uint64_t key = 0;
+  uint32_t part[3] = {0};
+  double x[3];
+  bw_ulph__where(u, p, x);
   for (int k = 2; k >= 0; k--) {
-    const uint64_t half = half_cell(x[k], u->R + u->skin);
-    key = key << BITS | half >> 1;
-    part = part << 1 | (half & 1);
+    const uint32_t all = part_of_cell(x[k], u->R + u->skin);
+    key = key << BITS | all >> LEVELS;
+    part[k] = all & ((1 << LEVELS) - 1);
   }
-  return key << 3 | part;
+  const bool layered = p->wall >= 0 && p->wall < u->n_walls;
+  const uint64_t layer = layered ? (uint64_t)fmin(3, floor(p->depth / u->config.dx)) : 0;
+  return key << WITHIN | layer << CURVE | along_curve(u->config.dimensions, part);
 }
 
 /* The first slot of a kind with a key of at least this one. */
@@ -37,15 +75,16 @@ static size_t first_with(const bw_ulph__kind *kind, uint64_t key)
   return below;
 }
 
-/* Where the lanes of a cluster are, and a box around all that they reach. */
+/* Where the lanes of a cluster are, and a box around all that they reach; of walls how far behind
+ * a lane another wall particle counts (ulph_shade.c), and the normals there. */
 typedef struct {
-  vec x[3];
-  double lower[3], upper[3], reach;
+  vec x[3], normal[3];
+  double lower[3], upper[3], reach, behind;
 } ball;
 
 static ball ball_of(const bw_ulph *u, const bw_ulph__kind *kind, size_t first, int lanes)
 {
-  ball b = {.reach = u->R + u->skin};
+  ball b = {.reach = u->R + u->skin, .behind = -0.5 * u->config.dx - u->skin};
   for (int k = 0; k < 3; k++) {
     b.lower[k] = INFINITY, b.upper[k] = -INFINITY;
     for (int l = 0; l < BW_ULPH_LANES; l++) {
@@ -53,6 +92,7 @@ static ball ball_of(const bw_ulph *u, const bw_ulph__kind *kind, size_t first, i
       const size_t own = first + (size_t)(l < lanes ? l : lanes - 1);
       const double x = u->near[kind->slot_own[own]].x[k];
       b.x[k][l] = x;
+      b.normal[k][l] = u->own[kind->first + own].normal[k];
       const double around = k < u->config.dimensions ? b.reach : 0;
       b.lower[k] = fmin(b.lower[k], x - around);
       b.upper[k] = fmax(b.upper[k], x + around);
@@ -74,11 +114,12 @@ static bw_status room_for(bw_ulph *u, size_t used, size_t more)
   return BW_OK;
 }
 
-/* Is a place within reach of any lane? */
-static bool reached(const ball *b, const double x[3])
+/* Is a place within reach of any lane, and before it where `walls`? */
+static bool reached(const ball *b, const double x[3], bool walls)
 {
-  const vec dx = b->x[0] - x[0], dy = b->x[1] - x[1], dz = b->x[2] - x[2];
-  const vec_bits inside = dx * dx + dy * dy + dz * dz < b->reach * b->reach;
+  const vec dx = x[0] - b->x[0], dy = x[1] - b->x[1], dz = x[2] - b->x[2];
+  vec_bits inside = dx * dx + dy * dy + dz * dz < b->reach * b->reach;
+  if (walls) inside &= dx * b->normal[0] + dy * b->normal[1] + dz * b->normal[2] > b->behind;
   int64_t any = 0;
   for (int l = 0; l < BW_ULPH_LANES; l++)
     any |= inside[l];
@@ -86,23 +127,25 @@ static bool reached(const ball *b, const double x[3])
 }
 
 /* Slots of a kind that a cluster reaches are added to the list, in the order of slots. */
-static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, size_t *used)
+static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, bool walls,
+                         size_t *used)
 {
   const double edge = u->R + u->skin;
   uint64_t from[3], to[3];
   for (int k = 0; k < 3; k++) {
-    from[k] = half_cell(b->lower[k], edge) >> 1;
-    to[k] = half_cell(b->upper[k], edge) >> 1;
+    from[k] = cell_of(b->lower[k], edge);
+    to[k] = cell_of(b->upper[k], edge);
   }
   for (uint64_t z = from[2]; z <= to[2]; z++)
     for (uint64_t y = from[1]; y <= to[1]; y++) {
       /* Cells that follow each other in x have keys that do. */
       const uint64_t row = (z << BITS | y) << BITS;
-      const size_t begin = first_with(kind, (row | from[0]) << 3);
-      const size_t end = first_with(kind, ((row | to[0]) + 1) << 3);
+      const size_t begin = first_with(kind, (row | from[0]) << WITHIN);
+      const size_t end = first_with(kind, ((row | to[0]) + 1) << WITHIN);
       BW_TRY(room_for(u, *used, end - begin));
       for (size_t s = begin; s < end; s++)
-        if (reached(b, u->near[kind->base + s].x)) u->list[(*used)++] = (int32_t)(kind->base + s);
+        if (reached(b, u->near[kind->base + s].x, walls))
+          u->list[(*used)++] = (int32_t)(kind->base + s);
     }
   return BW_OK;
 }
@@ -120,13 +163,13 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
     q->lanes = kind->own - q->first < BW_ULPH_LANES ? (int)(kind->own - q->first) : BW_ULPH_LANES;
     const ball b = ball_of(u, kind, q->first, q->lanes);
     q->begin = *used;
-    BW_TRY(collect(u, &u->fluid, &b, used));
+    BW_TRY(collect(u, &u->fluid, &b, false, used));
     q->walls = *used;
     /* A wall without fluid in reach shows nothing. */
     const bool shows = kind == &u->fluid || q->walls > q->begin;
-    if (shows) BW_TRY(collect(u, &u->wall, &b, used));
+    if (shows) BW_TRY(collect(u, &u->wall, &b, kind == &u->wall, used));
     q->faces = *used;
-    if (shows) BW_TRY(collect(u, &u->face, &b, used));
+    if (shows) BW_TRY(collect(u, &u->face, &b, false, used));
     q->end = *used;
   }
   return BW_OK;
@@ -162,6 +205,7 @@ bw_status bw_ulph__rebuild(bw_ulph *u)
   place_slots(u, &u->face);
   BW_TRY(bw_comm_agree(u->comm, bw_ulph__lists(u)));
   bw_ulph__turn_faces(u);
+  bw_ulph__dry(u);
   u->listed = true;
   u->rebuilds++;
   return BW_OK;

@@ -51,40 +51,46 @@ static bw_status divide(bw_ulph *u)
   return st;
 }
 
+/* Rows in the order of their keys; order[i].from is the row that comes to i. */
+static void permute(bw_ulph__particle row[], ordered order[], size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    /* Round a cycle. */
+    const bw_ulph__particle first = row[i];
+    size_t to = i;
+    while ((size_t)order[to].from != i) {
+      const size_t from = (size_t)order[to].from;
+      row[to] = row[from];
+      order[to].from = (int32_t)to;
+      to = from;
+    }
+    row[to] = first;
+    order[to].from = (int32_t)to;
+  }
+}
+
 /* Own particles sorted: fluid, walls, faces, by cell, part of the cell and identity. */
 static bw_status sort_own(bw_ulph *u)
 {
-  /* Keys have 57 bits. */
+  /* Keys have 59 bits. */
   const uint64_t behind = UINT64_C(1) << 60;
   ordered *order = NULL;
-  bw_ulph__particle *sorted = NULL;
-  bw_status st = BW_ALLOCATE(&order, u->n);
-  BW_THEN(st, BW_ALLOCATE(&sorted, u->n));
-  if (st == BW_OK) {
-    u->fluid.own = u->wall.own = 0;
-    for (size_t i = 0; i < u->n; i++) {
-      double x[3];
-      bw_ulph__where(u, u->own + i, x);
-      const bool fluid = u->own[i].wall < 0, face = u->own[i].wall == u->n_walls;
-      u->fluid.own += fluid;
-      u->wall.own += !fluid && !face;
-      order[i] = (ordered){bw_ulph__key(u, x) + (fluid  ? 0
-                                                 : face ? 2 * behind
-                                                        : behind),
-                           u->own[i].id, (int32_t)i};
-    }
-    qsort(order, u->n, sizeof *order, compare);
-    for (size_t i = 0; i < u->n; i++)
-      sorted[i] = u->own[order[i].from];
-    bw_release(&u->own);
-    u->own = sorted, sorted = NULL;
-    u->wall.first = u->fluid.own;
-    u->face.first = u->wall.first + u->wall.own;
-    u->face.own = u->n - u->face.first;
+  BW_TRY(BW_ALLOCATE(&order, u->n));
+  u->fluid.own = u->wall.own = 0;
+  for (size_t i = 0; i < u->n; i++) {
+    const bool fluid = u->own[i].wall < 0, face = u->own[i].wall == u->n_walls;
+    u->fluid.own += fluid;
+    u->wall.own += !fluid && !face;
+    const uint64_t part = fluid ? 0 : face ? 2 * behind : behind;
+    order[i] = (ordered){bw_ulph__key(u, u->own + i) + part, u->own[i].id, (int32_t)i};
   }
+  qsort(order, u->n, sizeof *order, compare);
+  permute(u->own, order, u->n);
+  u->wall.first = u->fluid.own;
+  u->face.first = u->wall.first + u->wall.own;
+  u->face.own = u->n - u->face.first;
   bw_release(&order);
-  bw_release(&sorted);
-  return st;
+  return BW_OK;
 }
 
 static bw_status send_home(bw_ulph *u)
@@ -143,9 +149,7 @@ typedef struct {
 static name name_of(const bw_ulph *u, const bw_ulph__kind *kind, size_t own)
 {
   const bw_ulph__particle *p = u->own + kind->first + own;
-  double x[3];
-  bw_ulph__where(u, p, x);
-  return (name){bw_ulph__key(u, x), p->id};
+  return (name){bw_ulph__key(u, p), p->id};
 }
 
 /* Own particles and copies get their slots. */
@@ -215,6 +219,31 @@ static bw_status offer(bw_ulph *u, bw_ulph__kind *kind)
   return st;
 }
 
+/* Arrays are made anew when they are too small, with some room. */
+static bw_status make_room(bw_ulph *u)
+{
+  const size_t clusters = (u->fluid.own + BW_ULPH_LANES - 1) / BW_ULPH_LANES;
+  const size_t shades = u->wall.own + u->face.own;
+  if (u->slots > u->slot_room) {
+    u->slot_room = u->slots + u->slots / 8;
+    bw_release(&u->near);
+    bw_release(&u->far);
+    bw_release(&u->front);
+    BW_TRY(BW_ALLOCATE(&u->near, u->slot_room));
+    BW_TRY(BW_ALLOCATE(&u->far, u->slot_room));
+    BW_TRY(BW_ALLOCATE(&u->front, u->slot_room));
+  }
+  if (clusters > u->between_room) {
+    u->between_room = clusters + clusters / 8;
+    bw_release(&u->between);
+    BW_TRY(BW_ALLOCATE(&u->between, u->between_room));
+  }
+  if (shades <= u->shade_room) return BW_OK;
+  u->shade_room = shades + shades / 8;
+  bw_release(&u->shade);
+  return BW_ALLOCATE(&u->shade, u->shade_room);
+}
+
 static bw_status number_all(bw_ulph *u)
 {
   u->fluid.base = 0;
@@ -224,17 +253,7 @@ static bw_status number_all(bw_ulph *u)
   u->face.base = u->wall.base + u->wall.n;
   BW_TRY(number_slots(u, &u->face));
   u->slots = u->fluid.n + u->wall.n + u->face.n;
-  /* Arrays of slots and of own particles are as long as there are. */
-  bw_release(&u->near);
-  bw_release(&u->far);
-  bw_release(&u->between);
-  bw_release(&u->shade);
-  bw_release(&u->front);
-  BW_TRY(BW_ALLOCATE(&u->front, u->slots));
-  BW_TRY(BW_ALLOCATE(&u->near, u->slots));
-  BW_TRY(BW_ALLOCATE(&u->far, u->slots));
-  BW_TRY(BW_ALLOCATE(&u->between, (u->fluid.own + BW_ULPH_LANES - 1) / BW_ULPH_LANES));
-  return BW_ALLOCATE(&u->shade, u->wall.own + u->face.own);
+  return make_room(u);
 }
 
 bw_status bw_ulph__slots(bw_ulph *u)

@@ -196,6 +196,14 @@ static void show_velocity(bw_ulph *u, const showing *s, size_t own, const sums *
   n->V = wet(u, p, q->weight, x) * p->m / p->rho;
 }
 
+void bw_ulph__dry(bw_ulph *u)
+{
+  for (size_t i = u->wall.first; i < u->face.first + u->face.own; i++)
+    u->own[i].p = 0;
+  for (size_t s = u->wall.base; s < u->slots; s++)
+    u->near[s].V = 0;
+}
+
 void bw_ulph__shade_velocity(bw_ulph *u)
 {
   const showing both[] = {walls_of(u), faces_of(u)};
@@ -203,6 +211,7 @@ void bw_ulph__shade_velocity(bw_ulph *u)
     const showing *s = both + b;
     for (size_t c = 0; c < s->clusters->n; c++) {
       const bw_ulph__cluster *q = s->clusters->of + c;
+      if (q->begin == q->walls) continue;
       const lanes o = load(u, s->kind, q);
       const sums t = b == 0 ? sum_velocity(u, q, &o, false) : sum_velocity(u, q, &o, true);
       for (int l = 0; l < q->lanes; l++)
@@ -236,6 +245,7 @@ void bw_ulph__shade_pressure(bw_ulph *u)
     const showing *s = both + b;
     for (size_t c = 0; c < s->clusters->n; c++) {
       const bw_ulph__cluster *q = s->clusters->of + c;
+      if (q->begin == q->walls) continue;
       const lanes o = load(u, s->kind, q);
       const moments t = b == 0 ? sum_pressure(u, q, &o, false) : sum_pressure(u, q, &o, true);
       show_pressure(u, s, q, &t);

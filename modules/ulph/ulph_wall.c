@@ -112,7 +112,7 @@ void bw_ulph__move_walls(bw_ulph *u, double t)
 {
   if (u->config.motion != NULL)
     u->config.motion(t, u->config.motion_context, u->wall_x, u->wall_v, u->wall_a);
-  for (size_t i = u->wall.first; i < u->wall.first + u->wall.own; i++) {
+  for (size_t i = u->wall.first; i < u->wall.first + u->wall.own && u->config.motion != NULL; i++) {
     bw_ulph__particle *p = u->own + i;
     bw_ulph__where(u, p, p->x);
   }

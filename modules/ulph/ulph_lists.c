@@ -150,10 +150,37 @@ static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, b
   return BW_OK;
 }
 
+/* A box around the fluid, copies as well. */
+typedef struct {
+  double lower[3], upper[3];
+} box;
+
+static box fluid_box(const bw_ulph *u)
+{
+  box b;
+  for (int k = 0; k < 3; k++)
+    b.lower[k] = INFINITY, b.upper[k] = -INFINITY;
+  for (size_t s = u->fluid.base; s < u->fluid.base + u->fluid.n; s++)
+    for (int k = 0; k < 3; k++) {
+      b.lower[k] = fmin(b.lower[k], u->near[s].x[k]);
+      b.upper[k] = fmax(b.upper[k], u->near[s].x[k]);
+    }
+  return b;
+}
+
+static bool meets(const ball *a, const box *b)
+{
+  bool so = true;
+  for (int k = 0; k < 3; k++)
+    so = so && a->lower[k] <= b->upper[k] && a->upper[k] >= b->lower[k];
+  return so;
+}
+
 /* Clusters of own particles of a kind, with fluid, walls and faces around them. */
 static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__clusters *to,
                           size_t *used)
 {
+  const box fluid = fluid_box(u);
   to->n = (kind->own + BW_ULPH_LANES - 1) / BW_ULPH_LANES;
   bw_release(&to->of);
   BW_TRY(BW_ALLOCATE(&to->of, to->n));
@@ -163,7 +190,7 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
     q->lanes = kind->own - q->first < BW_ULPH_LANES ? (int)(kind->own - q->first) : BW_ULPH_LANES;
     const ball b = ball_of(u, kind, q->first, q->lanes);
     q->begin = *used;
-    BW_TRY(collect(u, &u->fluid, &b, false, used));
+    if (meets(&b, &fluid)) BW_TRY(collect(u, &u->fluid, &b, false, used));
     q->walls = *used;
     /* A wall without fluid in reach shows nothing. */
     const bool shows = kind == &u->fluid || q->walls > q->begin;

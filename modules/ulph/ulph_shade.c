@@ -82,52 +82,66 @@ BW_ULPH_PIECE sums sum_velocity(const bw_ulph *u, const bw_ulph__cluster *c, con
   return t;
 }
 
-/* Sums for the pressure: w p over fluid; moments. */
+/* Sums for the pressure: w p over fluid; w V x x of what lies before the plane through the wall
+ * particle along the wall. */
 typedef struct {
   vec p, M[6];
 } moments;
 
-/* x of a neighbour and its image in the plane through the wall particle along the wall; M of both,
- * as far as the neighbour is before that plane. */
-BW_ULPH_PIECE void add_moment(moments *t, const vec x[3], const vec normal[3], vec wV, double dx)
+BW_ULPH_PIECE void add_moment(moments *t, const vec x[3], const vec normal[3], vec wV, double over)
 {
-  vec image[3];
   const vec nx = vec_dot(normal, x);
-  for (int k = 0; k < 3; k++)
-    image[k] = x[k] - 2 * nx * normal[k];
-  const vec before = vec_above_0(1 - vec_above_0(0.5 - nx / dx)) * wV;
-  for (int a = 0; a < 3; a++)
+  const vec before = vec_above_0(1 - vec_above_0(0.5 - nx * over)) * wV;
+  for (int a = 0; a < 3; a++) {
+    const vec wx = before * x[a];
     for (int b = a; b < 3; b++)
-      t->M[bw_ulph__sym(a, b)] += before * (x[a] * x[b] + image[a] * image[b]);
+      t->M[bw_ulph__sym(a, b)] += wx * x[b];
+  }
 }
 
-/* The moment of a wall particle is that of a fluid particle in its place: what lies deeper in the
- * wall, of which there are too few layers, is the image of what lies before it. */
 BW_ULPH_PIECE moments sum_pressure(const bw_ulph *u, const bw_ulph__cluster *c, const lanes *o,
                                    bool faces)
 {
-  const double inverse_R2 = 1 / (u->R * u->R);
+  const double inverse_R2 = 1 / (u->R * u->R), over = 1 / u->config.dx;
   moments t;
   memset(&t, 0, sizeof t);
-  for (size_t e = c->begin; e < c->end; e++) {
+  for (size_t e = c->begin; e < c->walls; e++) {
     const bw_ulph__near *n = u->near + u->list[e];
     vec x[3];
-    const vec r2 = distance(o, n, x);
-    vec w = vec_weight(r2, inverse_R2);
-    if (e < c->walls) {
-      vec wp = w * u->far[u->list[e]].p;
-      if (faces) wp = vec_where(vec_dot(o->normal, x) > o->least, wp);
-      t.p += wp;
-    } else if (faces && e >= c->faces) {
+    const vec w = vec_weight(distance(o, n, x), inverse_R2);
+    vec wp = w * u->far[u->list[e]].p;
+    if (faces) wp = vec_where(vec_dot(o->normal, x) > o->least, wp);
+    t.p += wp;
+    add_moment(&t, x, o->normal, w * n->V, over);
+  }
+  for (size_t e = c->walls; e < c->end; e++) {
+    const bw_ulph__near *n = u->near + u->list[e];
+    vec x[3], aligned = {0};
+    vec w = vec_weight(distance(o, n, x), inverse_R2);
+    if (faces && e >= c->faces) {
       /* Of the two faces of a particle not that which looks the other way. */
-      vec aligned = {0};
       for (int k = 0; k < 3; k++)
         aligned += u->front[u->list[e]].normal[k] * o->normal[k];
       w = vec_where(aligned > -0.5, w);
     }
-    add_moment(&t, x, o->normal, w * n->V, u->config.dx);
+    add_moment(&t, x, o->normal, w * n->V, over);
   }
   return t;
+}
+
+/* The moment of a wall particle is that of a fluid particle in its place: what lies deeper in the
+ * wall, of which there are too few layers, is the image of what lies before it. M + H M H with the
+ * reflection H = 1 - 2 n n^T. */
+static void add_image(const vec n[3], vec M[6])
+{
+  vec q[3];
+  vec_times(M, n, q);
+  const vec across = vec_dot(n, q);
+  for (int a = 0; a < 3; a++)
+    for (int b = a; b < 3; b++) {
+      vec *m = M + bw_ulph__sym(a, b);
+      *m = 2 * (*m - n[a] * q[b] - q[a] * n[b]) + 4 * n[a] * n[b] * across;
+    }
 }
 
 /* Linear from the fluid's mean through the wall's velocity `still` on the surface. */
@@ -223,9 +237,11 @@ void bw_ulph__shade_velocity(bw_ulph *u)
 
 /* Pressure over moment, as of a fluid particle there: pairs across the wall are then those of a
  * mirror image, which leave a free-slip wall no force along it. */
-static void show_pressure(bw_ulph *u, const showing *s, const bw_ulph__cluster *c, const moments *t)
+static void show_pressure(bw_ulph *u, const showing *s, const bw_ulph__cluster *c, const lanes *o,
+                          moments *t)
 {
   vec Minv[6];
+  add_image(o->normal, t->M);
   bw_ulph__moment(u, t->M, Minv);
   for (int l = 0; l < c->lanes; l++) {
     const size_t own = c->first + (size_t)l;
@@ -247,8 +263,8 @@ void bw_ulph__shade_pressure(bw_ulph *u)
       const bw_ulph__cluster *q = s->clusters->of + c;
       if (q->begin == q->walls) continue;
       const lanes o = load(u, s->kind, q);
-      const moments t = b == 0 ? sum_pressure(u, q, &o, false) : sum_pressure(u, q, &o, true);
-      show_pressure(u, s, q, &t);
+      moments t = b == 0 ? sum_pressure(u, q, &o, false) : sum_pressure(u, q, &o, true);
+      show_pressure(u, s, q, &o, &t);
     }
     bw_ulph__send(s->kind, sizeof *u->far, u->far);
   }

@@ -5,7 +5,7 @@
 
 /* The weight reaches 3 dx; lists reach further by a skin, and particles nearer than this (of dx)
  * overlap. */
-static const double REACH = 3, SKIN = 0.2, OVERLAP = 0.5;
+static const double REACH = 3, SKIN = 0.8, NEAR_SKIN = 0.12, OVERLAP = 0.5;
 /* Length in the terms of viscosity and diffusion, of dx: ULPH's h. */
 static const double SMOOTHING = 1.2;
 
@@ -102,6 +102,7 @@ static void settle_constants(bw_ulph *u)
   const bw_ulph_config *c = &u->config;
   u->R = REACH * c->dx;
   u->skin = SKIN * c->dx;
+  u->near_skin = NEAR_SKIN * c->dx;
   u->h = SMOOTHING * c->dx;
   u->m2 = bw_ulph__lattice_moment(c->dimensions, c->dx, u->R);
   for (int k = 0; k < 4; k++)

@@ -58,8 +58,8 @@ static void cure(const bw_ulph *u, const bw_ulph__between *b, const bw_ulph__pai
     sum[k] = q->B[k] + q->by[WALLS].B[k] + q->by[BODIES].B[k] - b->p * b->s[k];
   vec_times(b->Minv, sum, gradient);
   for (int k = 0; k < 3; k++)
-    f->cure[k] = vec_where(cured, -b->V * gradient[k] - f->fluid[k] - f->by[WALLS][k] -
-                                      f->by[BODIES][k]);
+    f->cure[k] =
+        vec_where(cured, -b->V * gradient[k] - f->fluid[k] - f->by[WALLS][k] - f->by[BODIES][k]);
 }
 
 static void forces_of(const bw_ulph *u, const bw_ulph__between *b, const bw_ulph__pairs *q,
@@ -113,9 +113,8 @@ static void book(const bw_ulph *u, const particles *p, const bw_ulph__between *b
   to->line[LINE_ARTIFICIAL] += p->used * (vec_dot(f->artificial, p->v) - moved);
   to->line[LINE_TENSION] += p->used * vec_dot(f->cure, p->v);
   /* A mirror image would take as much from the fluid as its compression returns. */
-  to->line[LINE_GHOSTS] +=
-      p->used * (vec_dot(f->by[WALLS], p->v) + vec_dot(f->by[BODIES], p->v) -
-                 b->V * b->p_mean * b->div_wall - work);
+  to->line[LINE_GHOSTS] += p->used * (vec_dot(f->by[WALLS], p->v) + vec_dot(f->by[BODIES], p->v) -
+                                      b->V * b->p_mean * b->div_wall - work);
   push(to, PUSH_GRAVITY, p, weight);
   push(to, PUSH_WALLS, p, walls);
   push(to, PUSH_BODIES, p, bodies);
@@ -175,8 +174,7 @@ static void move(const bw_ulph *u, particles *p, const bw_ulph__between *b, cons
     jump->turn[PUSH_SHIFTING][k] +=
         p->used * p->m * (x[a] * v[c] - p->x[a] * p->v[c] - x[c] * v[a] + p->x[c] * p->v[a]);
   }
-  jump->line[LINE_SHIFTING] +=
-      p->used * (energy + p->m * b->p * drho / (p->rho * p->rho));
+  jump->line[LINE_SHIFTING] += p->used * (energy + p->m * b->p * drho / (p->rho * p->rho));
   memcpy(p->x, x, sizeof x);
   memcpy(p->v, v, sizeof v);
   p->rho += drho;

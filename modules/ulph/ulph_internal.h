@@ -38,8 +38,8 @@ typedef struct {
 typedef struct {
   double P[6]; /* p M^-1: xx xy xz yy yz zz */
   double p;
-  double m2; /* tr M/d */
-  double g[3]; /* gradient of the density. Walls: 1 where it moves */
+  double m2;      /* tr M/d */
+  double g[3];    /* gradient of the density. Walls: 1 where it moves */
   double surface; /* 1 at the surface, else 0 */
 } bw_ulph__far;
 
@@ -65,7 +65,7 @@ typedef struct {
   vec div_wall;      /* part of tr L that is due to walls */
   vec couple[3];     /* torque that their pairs with fluid leave, as those with walls complete M */
   vec V, p;
-  vec p_mean; /* pressure in the middle of the step, to which tr L belongs */
+  vec p_mean;        /* pressure in the middle of the step, to which tr L belongs */
   vec lone, surface; /* 1 or 0: M is singular; of the surface */
   vec D;             /* density diffusion */
 } bw_ulph__between;
@@ -107,6 +107,7 @@ typedef struct {
   size_t first;                    /* own particle of lane 0, of its kind */
   int lanes;                       /* that are used */
   size_t begin, walls, faces, end; /* list: fluid from begin to walls, walls from there to faces */
+  size_t wide[4];                  /* the same four of the wide list */
 } bw_ulph__cluster;
 
 /* Clusters of one kind. */
@@ -141,9 +142,11 @@ struct bw_ulph {
   int n_walls;
   bool *no_slip, *moves; /* (n_walls + 1), the last of bodies */
   bw_ulph__body body;
-  double half_space[4];  /* |sum w V x| half a layer below a flat surface, and 1, 2, 3 deeper */
-  double R, skin, h, m2; /* reach, skin of the lists, length of the viscosity; m2 of a lattice */
-  double mu_t, mu_wall;  /* physical and artificial viscosity; artificial one of walls */
+  double half_space[4];   /* |sum w V x| half a layer below a flat surface, and 1, 2, 3 deeper */
+  double R, h, m2;        /* reach, length of the viscosity; m2 of a lattice */
+  double skin, near_skin; /* beyond R: of the wide lists, of those of them that are near */
+  double strayed;         /* no particle has gone farther since the near ones were found */
+  double mu_t, mu_wall;   /* physical and artificial viscosity; artificial one of walls */
   double time, time_built;
   int64_t steps, rebuilds, total;
   bool listed;                            /* lists are there */
@@ -156,16 +159,16 @@ struct bw_ulph {
   bw_ulph__particle *own;
   bw_ulph__kind fluid, wall, face;
   size_t slots, slot_room, between_room, shade_room; /* used, and allocated of what follows */
-  bw_ulph__near *near;                         /* (slots) */
-  bw_ulph__far *far;                           /* (slots) */
-  bw_ulph__between *between;                   /* (clusters.n) */
-  bw_ulph__shade *shade;                       /* (wall.own + face.own) */
-  bw_ulph__front *front;                       /* (slots) of faces */
-  bw_ulph__clusters clusters, shading, facing; /* of fluid, walls, faces */
-  size_t list_room;
-  int32_t *list;       /* slots */
-  double first_energy; /* of all ranks, at the start */
-  bw_ulph__book book;  /* since the start, of all ranks */
+  bw_ulph__near *near;                               /* (slots) */
+  bw_ulph__far *far;                                 /* (slots) */
+  bw_ulph__between *between;                         /* (clusters.n) */
+  bw_ulph__shade *shade;                             /* (wall.own + face.own) */
+  bw_ulph__front *front;                             /* (slots) of faces */
+  bw_ulph__clusters clusters, shading, facing;       /* of fluid, walls, faces */
+  size_t list_room, near_room;
+  int32_t *wide, *list; /* slots: who may come near until lists are made anew; who is near */
+  double first_energy;  /* of all ranks, at the start */
+  bw_ulph__book book;   /* since the start, of all ranks */
   /* By the forces of the last evaluation per time; by what moves without a force in this step. Of
    * this rank until the end of the step, when all are summed. */
   bw_ulph__book rate, jump;
@@ -236,8 +239,9 @@ void bw_ulph__book_bodies(bw_ulph *u, double half);
 
 /* ulph_lists.c */
 uint64_t bw_ulph__key(const bw_ulph *u, const bw_ulph__particle *p); /* cell and part of it */
-bw_status bw_ulph__lists(bw_ulph *u) BW_MUST_CHECK;         /* Local. */
-bw_status bw_ulph__rebuild(bw_ulph *u) BW_MUST_CHECK;       /* all of it. Collective. */
+bw_status bw_ulph__lists(bw_ulph *u) BW_MUST_CHECK;                  /* wide ones. Local. */
+void bw_ulph__keep_near(bw_ulph *u);                  /* lists of who is near by `near`. Local. */
+bw_status bw_ulph__rebuild(bw_ulph *u) BW_MUST_CHECK; /* all of it. Collective. */
 void bw_ulph__release_lists(bw_ulph *u);
 
 /* ulph_first.c, ulph_second.c: the sweeps over pairs. */

@@ -75,16 +75,15 @@ static size_t first_with(const bw_ulph__kind *kind, uint64_t key)
   return below;
 }
 
-/* Where the lanes of a cluster are, and a box around all that they reach; of walls how far behind
- * a lane another wall particle counts (ulph_shade.c), and the normals there. */
+/* Where the lanes of a cluster are, and a box around all that they reach. */
 typedef struct {
-  vec x[3], normal[3];
-  double lower[3], upper[3], reach, behind;
+  vec x[3];
+  double lower[3], upper[3], reach;
 } ball;
 
 static ball ball_of(const bw_ulph *u, const bw_ulph__kind *kind, size_t first, int lanes)
 {
-  ball b = {.reach = u->R + u->skin, .behind = -0.5 * u->config.dx - u->skin};
+  ball b = {.reach = u->R + u->skin};
   for (int k = 0; k < 3; k++) {
     b.lower[k] = INFINITY, b.upper[k] = -INFINITY;
     for (int l = 0; l < BW_ULPH_LANES; l++) {
@@ -92,7 +91,6 @@ static ball ball_of(const bw_ulph *u, const bw_ulph__kind *kind, size_t first, i
       const size_t own = first + (size_t)(l < lanes ? l : lanes - 1);
       const double x = u->near[kind->slot_own[own]].x[k];
       b.x[k][l] = x;
-      b.normal[k][l] = u->own[kind->first + own].normal[k];
       const double around = k < u->config.dimensions ? b.reach : 0;
       b.lower[k] = fmin(b.lower[k], x - around);
       b.upper[k] = fmax(b.upper[k], x + around);
@@ -107,28 +105,22 @@ static bw_status room_for(bw_ulph *u, size_t used, size_t more)
   const size_t room = 2 * (used + more) + 4096;
   int32_t *larger = NULL;
   BW_TRY(BW_ALLOCATE(&larger, room));
-  if (used > 0) memcpy(larger, u->list, used * sizeof *larger);
-  bw_release(&u->list);
-  u->list = larger;
+  if (used > 0) memcpy(larger, u->wide, used * sizeof *larger);
+  bw_release(&u->wide);
+  u->wide = larger;
   u->list_room = room;
   return BW_OK;
 }
 
-/* Is a place within reach of any lane, and before it where `walls`? */
-static bool reached(const ball *b, const double x[3], bool walls)
+/* Is a place within reach of any lane? */
+static bool reached(const ball *b, const double x[3])
 {
   const vec dx = x[0] - b->x[0], dy = x[1] - b->x[1], dz = x[2] - b->x[2];
-  vec_bits inside = dx * dx + dy * dy + dz * dz < b->reach * b->reach;
-  if (walls) inside &= dx * b->normal[0] + dy * b->normal[1] + dz * b->normal[2] > b->behind;
-  int64_t any = 0;
-  for (int l = 0; l < BW_ULPH_LANES; l++)
-    any |= inside[l];
-  return any != 0;
+  return vec_any(dx * dx + dy * dy + dz * dz < b->reach * b->reach);
 }
 
-/* Slots of a kind that a cluster reaches are added to the list, in the order of slots. */
-static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, bool walls,
-                         size_t *used)
+/* Slots of a kind that a cluster reaches are added to the wide list, in the order of slots. */
+static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, size_t *used)
 {
   const double edge = u->R + u->skin;
   uint64_t from[3], to[3];
@@ -144,8 +136,7 @@ static bw_status collect(bw_ulph *u, const bw_ulph__kind *kind, const ball *b, b
       const size_t end = first_with(kind, ((row | to[0]) + 1) << WITHIN);
       BW_TRY(room_for(u, *used, end - begin));
       for (size_t s = begin; s < end; s++)
-        if (reached(b, u->near[kind->base + s].x, walls))
-          u->list[(*used)++] = (int32_t)(kind->base + s);
+        if (reached(b, u->near[kind->base + s].x)) u->wide[(*used)++] = (int32_t)(kind->base + s);
     }
   return BW_OK;
 }
@@ -189,17 +180,26 @@ static bw_status clusters(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__cluste
     q->first = c * BW_ULPH_LANES;
     q->lanes = kind->own - q->first < BW_ULPH_LANES ? (int)(kind->own - q->first) : BW_ULPH_LANES;
     const ball b = ball_of(u, kind, q->first, q->lanes);
-    q->begin = *used;
-    if (meets(&b, &fluid)) BW_TRY(collect(u, &u->fluid, &b, false, used));
-    q->walls = *used;
+    q->wide[0] = *used;
+    if (meets(&b, &fluid)) BW_TRY(collect(u, &u->fluid, &b, used));
+    q->wide[1] = *used;
     /* A wall without fluid in reach shows nothing. */
-    const bool shows = kind == &u->fluid || q->walls > q->begin;
-    if (shows) BW_TRY(collect(u, &u->wall, &b, kind == &u->wall, used));
-    q->faces = *used;
-    if (shows) BW_TRY(collect(u, &u->face, &b, false, used));
-    q->end = *used;
+    const bool shows = kind == &u->fluid || q->wide[1] > q->wide[0];
+    if (shows) BW_TRY(collect(u, &u->wall, &b, used));
+    q->wide[2] = *used;
+    if (shows) BW_TRY(collect(u, &u->face, &b, used));
+    q->wide[3] = *used;
   }
   return BW_OK;
+}
+
+/* Room for all that may be near. */
+static bw_status make_list(bw_ulph *u)
+{
+  if (u->near_room >= u->list_room) return BW_OK;
+  u->near_room = u->list_room;
+  bw_release(&u->list);
+  return BW_ALLOCATE(&u->list, u->near_room);
 }
 
 bw_status bw_ulph__lists(bw_ulph *u)
@@ -207,7 +207,74 @@ bw_status bw_ulph__lists(bw_ulph *u)
   size_t used = 0;
   BW_TRY(clusters(u, &u->fluid, &u->clusters, &used));
   BW_TRY(clusters(u, &u->wall, &u->shading, &used));
-  return clusters(u, &u->face, &u->facing, &used);
+  BW_TRY(clusters(u, &u->face, &u->facing, &used));
+  return make_list(u);
+}
+
+/* ---- what is near now ---- */
+/* The lanes of a cluster: where they are and, of walls, normals. */
+typedef struct {
+  vec x[3], normal[3];
+  double reach2, behind;
+} lanes;
+
+static lanes lanes_of(const bw_ulph *u, const bw_ulph__kind *kind, const bw_ulph__cluster *c)
+{
+  const double reach = u->R + u->near_skin;
+  lanes o = {.reach2 = reach * reach, .behind = -0.5 * u->config.dx - u->near_skin};
+  for (int l = 0; l < BW_ULPH_LANES; l++) {
+    const size_t own = c->first + (size_t)(l < c->lanes ? l : c->lanes - 1);
+    for (int k = 0; k < 3; k++) {
+      o.x[k][l] = u->near[kind->slot_own[own]].x[k];
+      o.normal[k][l] = u->own[kind->first + own].normal[k];
+    }
+  }
+  return o;
+}
+
+/* Entries from..to of the wide list that are near a lane, and (`half`) not behind all of them. */
+BW_ULPH_PIECE size_t keep(bw_ulph *u, const lanes *o, size_t from, size_t to, size_t used,
+                          bool half)
+{
+  for (size_t e = from; e < to; e++) {
+    const double *y = u->near[u->wide[e]].x;
+    const vec dx = y[0] - o->x[0], dy = y[1] - o->x[1], dz = y[2] - o->x[2];
+    vec_bits near = dx * dx + dy * dy + dz * dz < o->reach2;
+    if (half) near &= dx * o->normal[0] + dy * o->normal[1] + dz * o->normal[2] > o->behind;
+    u->list[used] = u->wide[e];
+    used += vec_any(near);
+  }
+  return used;
+}
+
+/* Of walls only what is not behind them counts for each other (ulph_shade.c). */
+static size_t keep_near(bw_ulph *u, const bw_ulph__kind *kind, bw_ulph__clusters *clusters,
+                        size_t used)
+{
+  for (size_t c = 0; c < clusters->n; c++) {
+    bw_ulph__cluster *q = clusters->of + c;
+    q->begin = q->walls = q->faces = q->end = used;
+    if (q->wide[0] == q->wide[3]) continue;
+    const lanes o = lanes_of(u, kind, q);
+    q->walls = keep(u, &o, q->wide[0], q->wide[1], used, false);
+    const bool shows = kind == &u->fluid || q->walls > q->begin;
+    q->faces = q->end = used = q->walls;
+    if (!shows) continue;
+    if (kind == &u->wall)
+      q->faces = keep(u, &o, q->wide[1], q->wide[2], used, true);
+    else
+      q->faces = keep(u, &o, q->wide[1], q->wide[2], used, false);
+    q->end = used = keep(u, &o, q->wide[2], q->wide[3], q->faces, false);
+  }
+  return used;
+}
+
+void bw_ulph__keep_near(bw_ulph *u)
+{
+  size_t used = keep_near(u, &u->fluid, &u->clusters, 0);
+  used = keep_near(u, &u->wall, &u->shading, used);
+  keep_near(u, &u->face, &u->facing, used);
+  u->strayed = 0;
 }
 
 static void place_slots(bw_ulph *u, bw_ulph__kind *kind)
@@ -231,8 +298,11 @@ bw_status bw_ulph__rebuild(bw_ulph *u)
   place_slots(u, &u->wall);
   place_slots(u, &u->face);
   BW_TRY(bw_comm_agree(u->comm, bw_ulph__lists(u)));
+  bw_ulph__keep_near(u);
   bw_ulph__turn_faces(u);
   bw_ulph__dry(u);
+  /* Particles may be elsewhere by now. */
+  u->strayed = INFINITY;
   u->listed = true;
   u->rebuilds++;
   return BW_OK;
@@ -255,6 +325,7 @@ void bw_ulph__release_lists(bw_ulph *u)
   bw_release(&u->clusters.of);
   bw_release(&u->shading.of);
   bw_release(&u->facing.of);
+  bw_release(&u->wide);
   bw_release(&u->list);
-  u->list_room = 0;
+  u->list_room = u->near_room = 0;
 }

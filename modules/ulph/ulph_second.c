@@ -62,9 +62,9 @@ BW_ULPH_PIECE void add_fluid(bw_ulph__pairs *t, const owners *o, const bw_ulph__
 }
 
 /* Of a face (front, else NULL) the lanes in front of it; walls that move are summed apart, too. */
-BW_ULPH_PIECE void add_standing(bw_ulph__pairs *t, int who, const owners *o,
-                                const bw_ulph__near *n, const bw_ulph__far *f,
-                                const bw_ulph__front *front, const double R2[2], bool moving, int d)
+BW_ULPH_PIECE void add_standing(bw_ulph__pairs *t, int who, const owners *o, const bw_ulph__near *n,
+                                const bw_ulph__far *f, const bw_ulph__front *front,
+                                const double R2[2], bool moving, int d)
 {
   vec x[3], vx, before = {0};
   const vec r2 = distance(o, n, x, &vx, d);

@@ -18,9 +18,28 @@ static void fill_near(bw_ulph *u)
   bw_ulph__send(&u->fluid, sizeof *u->near, u->near);
 }
 
+/* Walls and faces as they are now, for lists of who is near. */
+static void fill_standing(bw_ulph *u, bw_ulph__kind *kind)
+{
+  for (size_t i = 0; i < kind->own; i++)
+    memcpy(u->near[kind->slot_own[i]].x, u->own[kind->first + i].x, sizeof u->near->x);
+  bw_ulph__send(kind, sizeof *u->near, u->near);
+}
+
+/* Who is near, as soon as two that were not may have met. */
+static void find_near(bw_ulph *u)
+{
+  if (u->strayed < 0.5 * u->near_skin) return;
+  fill_standing(u, &u->wall);
+  fill_standing(u, &u->face);
+  bw_ulph__keep_near(u);
+  bw_ulph__dry(u);
+}
+
 void bw_ulph__evaluate(bw_ulph *u, double dt)
 {
   fill_near(u);
+  find_near(u);
   /* Walls show their velocities, which the dilation of the fluid needs ... */
   bw_ulph__shade_velocity(u);
   bw_ulph__first(u, dt);
@@ -87,37 +106,51 @@ static double moved(const bw_ulph__particle *p)
   return far;
 }
 
-/* Largest move since the lists were made [L^2]; 1 where something has become no number or faster
+/* Squares of the largest move of fluid and of faces since the lists were made, of the largest
+ * speeds of both and of the largest shift; and 1 where something has become no number or faster
  * than sound. */
-static void look(const bw_ulph *u, double found[2])
+enum { FLUID, FACES, SPEED, SHIFT, WRONG, LOOKS };
+
+static void look(const bw_ulph *u, double found[LOOKS])
 {
   const double c2 = u->config.c0 * u->config.c0;
-  found[0] = found[1] = 0;
+  memset(found, 0, LOOKS * sizeof *found);
   for (size_t i = 0; i < u->fluid.own; i++) {
     const bw_ulph__particle *p = u->own + i;
-    found[0] = fmax(found[0], moved(p));
-    if (!(bw_ulph__dot(p->v, p->v) < c2 && p->rho > 0)) found[1] = 1;
+    const double v2 = bw_ulph__dot(p->v, p->v), far = moved(p);
+    const double shift = bw_ulph__dot(p->shift, p->shift);
+    if (far > found[FLUID]) found[FLUID] = far;
+    if (v2 > found[SPEED]) found[SPEED] = v2;
+    if (shift > found[SHIFT]) found[SHIFT] = shift;
+    if (!(v2 < c2 && p->rho > 0)) found[WRONG] = 1;
   }
-  for (size_t i = u->face.first; i < u->face.first + u->face.own; i++)
-    found[0] = fmax(found[0], moved(u->own + i));
-  bw_comm_max(u->comm, 2, found);
+  for (size_t i = u->face.first; i < u->face.first + u->face.own; i++) {
+    const double *v = u->body.v + 3 * bw_ulph__body_particle(u->own + i);
+    found[FACES] = fmax(found[FACES], moved(u->own + i));
+    found[SPEED] = fmax(found[SPEED], bw_ulph__dot(v, v));
+  }
+  bw_comm_max(u->comm, LOOKS, found);
 }
 
-/* New lists when two that were just out of reach may have met. */
-static bw_status keep_lists(bw_ulph *u)
+/* New lists when two that were just out of reach may have met, or when bodies, whose surface is
+ * found with the lists, have moved a tenth of dx. */
+static bw_status keep_lists(bw_ulph *u, double dt, const double before[3])
 {
-  double found[2], built[3] = {0}, v[3], a[3], walls = 0;
+  double found[LOOKS], built[3] = {0}, v[3], a[3], walls = 0, step = 0;
   look(u, found);
-  BW_REQUIRE(found[1] == 0, BW_EDIVERGED,
+  BW_REQUIRE(found[WRONG] == 0, BW_EDIVERGED,
              "ulph: at t = %g a particle is faster than sound, %g, or its density is not positive: "
              "raise speed (and with it c0), or take shorter steps",
              u->time, u->config.c0);
   if (u->config.motion != NULL)
     u->config.motion(u->time_built, u->config.motion_context, built, v, a);
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 3; k++) {
     walls += (u->wall_x[k] - built[k]) * (u->wall_x[k] - built[k]);
-  const double most = 0.25 * u->skin * u->skin;
-  if (found[0] < most && walls < most) return BW_OK;
+    step += (u->wall_x[k] - before[k]) * (u->wall_x[k] - before[k]);
+  }
+  u->strayed += fmax(dt * sqrt(found[SPEED]) + sqrt(found[SHIFT]), sqrt(step));
+  const double most = 0.25 * u->skin * u->skin, turned = 0.01 * u->config.dx * u->config.dx;
+  if (found[FLUID] < most && walls < most && found[FACES] < fmin(most, turned)) return BW_OK;
   bw_ulph__mark_places(u);
   u->time_built = u->time;
   BW_TRY(bw_ulph__rebuild(u));
@@ -155,9 +188,10 @@ bw_status bw_ulph_step(bw_ulph *u, double dt)
   bw_ulph__book_bodies(u, 0.5 * dt);
   kick_and_drift(u, dt);
   u->time += dt;
+  const double walls[3] = {u->wall_x[0], u->wall_x[1], u->wall_x[2]};
   bw_ulph__move_walls(u, u->time);
   /* Velocities belong to the middle of the step now, places to its end. */
-  BW_TRY(keep_lists(u));
+  BW_TRY(keep_lists(u, dt, walls));
   bw_ulph__evaluate(u, dt);
   bw_ulph__book_bodies(u, 0.5 * dt);
   /* All of the book is the same on every rank from here on, so that a restart has the same bits. */

@@ -1,6 +1,7 @@
 /* ulph_vector.h -- BW_ULPH_LANES numbers at a time. */
 #pragma once
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 #ifdef __AVX__
@@ -29,6 +30,19 @@ BW_ULPH_PIECE vec vec_where(vec_bits so, vec x)
 BW_ULPH_PIECE vec vec_choose(vec_bits so, vec x, vec y)
 {
   return (vec)(((vec_bits)x & so) | ((vec_bits)y & ~so));
+}
+
+/* Does a comparison hold in any lane? */
+BW_ULPH_PIECE bool vec_any(vec_bits so)
+{
+#ifdef __AVX512F__
+  return _mm512_test_epi64_mask((__m512i)so, (__m512i)so) != 0;
+#else
+  int64_t any = 0;
+  for (int l = 0; l < BW_ULPH_LANES; l++)
+    any |= so[l];
+  return any != 0;
+#endif
 }
 
 BW_ULPH_PIECE double vec_sum(vec x)

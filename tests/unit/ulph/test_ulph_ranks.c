@@ -3,7 +3,7 @@
  * TEST ranks=1,2,3 */
 #include "ulph_test.h"
 
-enum { STEPS = 60, BEFORE = 35 };
+enum { STEPS = 90, BEFORE = 50 };
 
 /* By value: zeros that are summed over ranks lose their sign. */
 static void check_equal(const double a[], const double b[], size_t n)
@@ -37,6 +37,26 @@ START_TEST(any_number_of_ranks_gives_the_same_bits)
 {
   same_as_alone(2, 12);
   same_as_alone(3, 6);
+}
+END_TEST
+
+/* Who is near is found anew only when somebody may have come: as if it were in each step. */
+START_TEST(lists_of_who_is_near_miss_nobody)
+{
+  double numbers[2][BW_ULPH_NUMBERS];
+  const bw_comm *comm = bw_check_world();
+  bw_ulph *kept = ulph_dam(comm, 2, 12, 2), *found = ulph_dam(comm, 2, 12, 2);
+  ulph_advance(kept, STEPS);
+  for (int q = 0; q < STEPS; q++) {
+    found->strayed = INFINITY;
+    ulph_advance(found, 1);
+  }
+  double *a = ulph_all(comm, kept, numbers[0]), *b = ulph_all(comm, found, numbers[1]);
+  check_equal(a, b, (size_t)bw_ulph_total(kept));
+  bw_release(&a);
+  bw_release(&b);
+  bw_ulph_destroy(&kept);
+  bw_ulph_destroy(&found);
 }
 END_TEST
 
@@ -117,6 +137,7 @@ END_TEST
 
 static const bw_check_test tests[] = {
     BW_TEST(any_number_of_ranks_gives_the_same_bits),
+    BW_TEST(lists_of_who_is_near_miss_nobody),
     BW_TEST(a_restart_goes_on_to_the_last_bit),
     BW_TEST(the_book_of_momentum_closes),
 };

@@ -111,11 +111,13 @@ static inline bw_status body_flow_step(body_flow *f)
   return BW_OK;
 }
 
-/* Points, normals and volumes of a surface: n on rank 0, none on the others. */
+/* Points, normals and volumes of surfaces: n on rank 0, none on the others. */
 typedef struct {
   size_t n;
   double *X, *N, *V, *dV; /* (n,3) (n,3) (n,3) (n) */
-  double *M;              /* (n,3) of moving markers */
+  double *M;              /* (n,3) memory of the markers */
+  int *closed;            /* (n) which of n_closed surfaces, each around a body, the point is on */
+  int n_closed;           /* on all ranks; 1: all points are on one; 0: sheets without an inside */
 } body_surface;
 
 static inline void body_surface_free(body_surface *s)
@@ -125,24 +127,28 @@ static inline void body_surface_free(body_surface *s)
   bw_release(&s->V);
   bw_release(&s->dV);
   bw_release(&s->M);
+  bw_release(&s->closed);
 }
 
-/* Room for n points on rank 0, zeros. Collective. */
+/* Room for n points of one closed surface on rank 0, zeros. Collective. */
 static inline bw_status body_surface_alloc(const bw_comm *comm, size_t n, body_surface *s)
 {
-  *s = (body_surface){.n = bw_comm_rank(comm) == 0 ? n : 0};
+  *s = (body_surface){.n = bw_comm_rank(comm) == 0 ? n : 0, .n_closed = 1};
   bw_status st = BW_ALLOCATE(&s->X, 3 * s->n);
   BW_THEN(st, BW_ALLOCATE(&s->N, 3 * s->n));
   BW_THEN(st, BW_ALLOCATE(&s->V, 3 * s->n));
   BW_THEN(st, BW_ALLOCATE(&s->dV, s->n));
   BW_THEN(st, BW_ALLOCATE(&s->M, 3 * s->n));
+  BW_THEN(st, BW_ALLOCATE(&s->closed, s->n));
   return bw_comm_agree(comm, st);
 }
 
-/* What stands on the true surface knows its side. Collective. */
+/* What stands on the true surface knows its side; the memory of what encloses a body holds no
+ * pressure inside. Collective. */
 static inline bw_status body_set_sides(body_flow *f, const body_surface *s)
 {
-  return f->nu > 0.0 ? bw_ibm_mdf_set_normals(f->body, s->N, f->nu) : BW_OK;
+  if (f->nu > 0.0) BW_TRY(bw_ibm_mdf_set_normals(f->body, s->N, f->nu));
+  return s->n_closed > 0 ? bw_ibm_mdf_close(f->body, s->n_closed, s->closed, s->N) : BW_OK;
 }
 
 /* Makes the surface the markers of the flow: new ones, without a memory. Collective. */
@@ -158,6 +164,19 @@ static inline bw_status body_move_markers(body_flow *f, const body_surface *s)
   bw_ibm_mdf_memory(f->body, s->M);
   BW_TRY(bw_ibm_mdf_set_markers(f->body, s->n, s->X, s->V, s->dV, s->M));
   return body_set_sides(f, s);
+}
+
+/* The pressure inside that the memory of the markers holds: their mean force along the normals over
+ * that in any direction [-]; 0 without memory. Begins the next step. Collective. */
+static inline double body_pressure_inside(body_flow *f, body_surface *s)
+{
+  double sum[2] = {0.0, 0.0};
+  bw_ibm_mdf_begin_step(f->body);
+  bw_ibm_mdf_memory(f->body, s->M);
+  for (size_t q = 0; q < 3 * s->n; q++)
+    sum[0] += s->M[q] * s->N[q], sum[1] += fabs(s->M[q]);
+  bw_comm_sum(bw_grid_comm(f->grid), 2, sum);
+  return sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
 }
 
 /* Points about h apart around a circle of radius R. */

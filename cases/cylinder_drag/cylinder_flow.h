@@ -41,6 +41,7 @@ typedef struct {
   body_flow flow;
   bw_probe *probe[2]; /* linear and quadratic profile */
   double h;           /* spacing [d] */
+  body_surface markers;
   body_surface wall;  /* points on the nominal surface */
   double *traction;   /* (n,3) there */
   double area;        /* of one point */
@@ -63,6 +64,7 @@ static inline cylinder_config cylinder_config_default(void)
 
 static inline void cylinder_destroy(cylinder_flow *f)
 {
+  body_surface_free(&f->markers);
   body_surface_free(&f->wall);
   bw_release(&f->traction);
   for (int p = 0; p < 2; p++)
@@ -150,11 +152,8 @@ static inline bw_status cylinder_make_body(const bw_comm *comm, cylinder_flow *f
   f->flow.nu = retracted ? 0.0 : 1.0 / f->config.reynolds;
   if (isnan(f->config.retraction))
     f->config.retraction = retracted ? bw_ibm_mdf_retraction(&config) : 0.0;
-  body_surface markers = {0};
-  bw_status st = cylinder_surface(comm, f, 0.5 - f->config.retraction * f->h, &markers);
-  BW_THEN(st, body_set_markers(&f->flow, &markers));
-  body_surface_free(&markers);
-  return st;
+  BW_TRY(cylinder_surface(comm, f, 0.5 - f->config.retraction * f->h, &f->markers));
+  return body_set_markers(&f->flow, &f->markers);
 }
 
 static inline bw_status cylinder_make_probes(const bw_comm *comm, cylinder_flow *f)

@@ -52,6 +52,7 @@ static bw_status make_fluid(const bw_comm *world, scene *s)
 static bw_status hold_body(const bw_comm *world, scene *s)
 {
   static const double rest[3 * POINTS];
+  static const int around[POINTS]; /* all on surface 0, which encloses a body */
   double X[3 * POINTS], N[3 * POINTS], dV[POINTS];
   bw_ibm_mdf_config forcing = bw_ibm_mdf_config_default(); /* Roma's kernel, with memory */
   const double radius = 0.5 - bw_ibm_mdf_retraction(&forcing) * h;
@@ -59,7 +60,8 @@ static bw_status hold_body(const bw_comm *world, scene *s)
   for (size_t q = 0; q < POINTS; q++)
     dV[q] = 2 * pi * radius / POINTS * h * h; /* arc times depth, times the grid spacing */
   BW_TRY(bw_ibm_mdf_create(s->grid, &forcing, &s->body));
-  return bw_ibm_mdf_set_markers(s->body, n, X, rest, dV, NULL);
+  BW_TRY(bw_ibm_mdf_set_markers(s->body, n, X, rest, dV, NULL));
+  return bw_ibm_mdf_close(s->body, 1, around, N); /* the memory holds no pressure inside */
 }
 
 static bw_status step(scene *s, double dt)

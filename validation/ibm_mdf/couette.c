@@ -82,6 +82,9 @@ static bw_status make_walls(const bw_comm *comm, const motion *m, couette *c)
   BW_TRY(body_surface_alloc(comm, inner + outer, &c->markers));
   body_circle(&c->markers, 0, inner, CENTRE, R1 - back, c->h);
   body_circle(&c->markers, inner, outer, CENTRE, R2 + back, c->h);
+  c->markers.n_closed = 2;
+  for (size_t q = inner; q < c->markers.n; q++)
+    c->markers.closed[q] = 1;
   turn(&c->markers, 0, inner, m->W[0]);
   turn(&c->markers, inner, inner + outer, m->W[1]);
   return body_set_markers(&c->flow, &c->markers);

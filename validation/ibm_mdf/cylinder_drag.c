@@ -53,8 +53,9 @@ static bw_status reference(const cylinder_config *c, double *Cd)
   return BW_OK;
 }
 
-/* Steady drag of one configuration. */
-static bw_status steady_drag(const bw_comm *comm, const cylinder_config *c, cylinder_drag *drag)
+/* Steady drag of one configuration, and the pressure inside that its markers remember. */
+static bw_status steady_drag(const bw_comm *comm, const cylinder_config *c, cylinder_drag *drag,
+                             double *inside)
 {
   cylinder_flow f;
   bw_status st = cylinder_create(comm, c, &f);
@@ -67,6 +68,7 @@ static bw_status steady_drag(const bw_comm *comm, const cylinder_config *c, cyli
     steady = fabs(drag->reaction - last) < STEADY * fabs(drag->reaction);
     last = drag->reaction;
   }
+  if (st == BW_OK) *inside = body_pressure_inside(&f.flow, &f.markers);
   cylinder_destroy(&f);
   if (st == BW_OK && !steady)
     st = BW_FAIL(BW_EDIVERGED, "the drag is not steady after %g d/U_b", LATEST);
@@ -84,10 +86,10 @@ typedef struct {
  * reaction and of the linear probes. */
 static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claimed, double error[2])
 {
-  double Cd = NAN;
+  double Cd = NAN, inside = NAN;
   cylinder_drag d = {0};
   BW_TRY(reference(c, &Cd));
-  BW_TRY(steady_drag(bw_validation_comm(v), c, &d));
+  BW_TRY(steady_drag(bw_validation_comm(v), c, &d, &inside));
   const double over = c->probe_length / c->cells_per_diameter * sqrt(c->reynolds);
   const double second = 0.5 * over * over + 0.05, none = INFINITY, cells = c->cells_per_diameter;
   const bool no_slip = c->memory > 0.0 || c->n_iter > 1;
@@ -104,7 +106,9 @@ static bw_status one_case(bw_validation *v, const cylinder_config *c, bool claim
       {"probe_off", d.probe[1] / d.reaction - 1.0, 0.0,
        claimed && no_slip && cells >= 30 ? 0.03 : none, BW_CONSERVATION,
        "three routes to one force: probes against reaction and box"},
-      {"slip", d.slip, 0.0, none, BW_ANALYTIC, "no slip, in U_b"}};
+      {"slip", d.slip, 0.0, none, BW_ANALYTIC, "no slip, in U_b"},
+      {"pressure_inside", inside, 0.0, round_off, BW_CONSERVATION,
+       "what markers remember of a closed surface moves nothing (bw_ibm_mdf_close)"}};
   for (size_t q = 0; q < sizeof rows / sizeof *rows; q++) {
     const char *kernel = bw_kernel_delta_get((bw_kernel_delta_id)c->kernel)->name;
     char claim[128], extra[256];
@@ -200,13 +204,13 @@ static void order_row(bw_validation *v, const char *claim, double coarse, double
 /* Re_d 40 and 50, for which there is no reference: what three grids say of each other. */
 static bw_status refined(bw_validation *v, cylinder_config c)
 {
-  double Cd[3];
+  double Cd[3], inside = NAN;
   char extra[96];
   c.retraction = NAN;
   for (int q = 0; q < 3; q++) {
     cylinder_drag d = {0};
     c.cells_per_diameter = 15 << q;
-    BW_TRY(steady_drag(bw_validation_comm(v), &c, &d));
+    BW_TRY(steady_drag(bw_validation_comm(v), &c, &d, &inside));
     Cd[q] = d.reaction;
   }
   const double order = log2(fabs((Cd[0] - Cd[1]) / (Cd[1] - Cd[2])));

@@ -44,6 +44,7 @@ static bw_status make(const bw_comm *comm, bw_kernel_delta_id kernel, int n_iter
     s.X[3 * q] = 11.3, s.X[3 * q + 1] = ((double)q + 0.37) * spacing, s.X[3 * q + 2] = 0.5;
     s.dV[q] = dV;
   }
+  s.n_closed = 0; /* a sheet */
   const bw_status st = body_set_markers(f, &s);
   body_surface_free(&s);
   return st;

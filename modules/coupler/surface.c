@@ -146,7 +146,23 @@ static ptrdiff_t cell_of(const bw_grid_view *g, const double x[3])
   return bw_at(g, i[0], i[1], i[2]);
 }
 
-/* Mark the cells that hold particles: probes must not end in them. */
+/* Is the centre of the cell that own particle p is in within p's own cube of matter, however that is
+ * turned? Where particles are as large as cells all of their cells are: between them no centre is
+ * missed. */
+static bool fills_cell(const bw_coupler *c, const bw_grid_view *g, size_t p)
+{
+  const double s = bw_solid_spacing(c->solid, p);
+  double far = 0.0, reach = 0.0;
+  for (int d = 0; d < 3; d++) {
+    if (g->n[d] == 1) continue;
+    const double x = c->X[3 * p + (size_t)d] / g->spacing[d];
+    far += pow((x - floor(x) - 0.5) * g->spacing[d], 2);
+    reach += 0.25 * s * s;
+  }
+  return far <= reach * (1.0 + 1e-9);
+}
+
+/* Mark the cells whose centres are in the solid: probes must not end in them. */
 static bw_status mark_inside(bw_coupler *c)
 {
   bw_grid *grid = bw_ns_channel_grid(c->fluid);
@@ -160,11 +176,9 @@ static bw_status mark_inside(bw_coupler *c)
   BW_THEN(st, BW_ALLOCATE(&send, 3 * c->n));
   /* Every particle, not only the surface, to the rank that owns its cell. */
   for (size_t p = 0; st == BW_OK && p < c->n; p++) {
-    const int rank =
-        bw_coupler__within_box(g, c->X + 3 * p) ? bw_grid_owner(grid, c->X + 3 * p) : -1;
-    if (rank < 0) continue;
+    if (!bw_coupler__within_box(g, c->X + 3 * p) || !fills_cell(c, g, p)) continue;
     memcpy(send + 3 * n, c->X + 3 * p, 3 * sizeof *send);
-    owner[n++] = rank;
+    owner[n++] = bw_grid_owner(grid, c->X + 3 * p);
   }
   /* Only now may collective calls follow: an allocation may have failed on one rank. */
   st = bw_comm_agree(bw_grid_comm(grid), st);
@@ -173,8 +187,7 @@ static bw_status mark_inside(bw_coupler *c)
           bw_comm_agree(bw_grid_comm(grid), BW_ALLOCATE(&receive, 3 * bw_exchange_received(plan))));
   if (st == BW_OK) {
     bw_exchange_forward(plan, 3 * sizeof *send, send, receive);
-    /* Cells with a particle in them are what a probe must
-     * not end in; halos too, as tips look there. */
+    /* Halos too, as tips look there. */
     memset(c->inside, 0, g->size * sizeof *c->inside);
     for (size_t q = 0; q < bw_exchange_received(plan); q++)
       c->inside[cell_of(g, receive + 3 * q)] = 1;

@@ -2,7 +2,6 @@
  * turn the normals with the body. */
 #include "bw_memory.h"
 #include "pd_interface_internal.h"
-#include <math.h>
 #include <string.h>
 
 /* Is h, resolved last, surface where these sectors are empty? In a body of one level those that
@@ -159,24 +158,6 @@ void bw_pd_interface__renew(bw_pd_interface *pi, bool reference)
   }
 }
 
-/* How far above each centre the mean of its open sides is (ERRATA 33), by the settled normals. */
-static void tell_heights(bw_pd_interface *pi)
-{
-  const bw_solid_config *c = bw_solid_settings(pi->pd);
-  for (size_t row = 0; row < pi->now.n_list; row++) {
-    const size_t h = (size_t)pi->now.list[row];
-    const double *n = &pi->fit.own_normal[3 * h];
-    double sum = 0.0;
-    for (int d = 0; d < pi->stencil->dims; d++)
-      sum += fabs(c->axes[d][0] * n[0] + c->axes[d][1] * n[1] + c->axes[d][2] * n[2]);
-    /* On ridges and edges there is no plane that the sides are steps of. */
-    pi->now.smooth[row] = bw_pd_interface__is_smooth(pi, h);
-    if (!pi->now.smooth[row]) sum = 1.0;
-    pi->now.bend[row] = pi->now.smooth[row] ? pi->fit.bend[h] : 0.0;
-    pi->now.height[row] = 0.5 * bw_solid_spacing(pi->pd, h) / fmax(sum, 1.0);
-  }
-}
-
 bw_status bw_pd_interface_update(bw_pd_interface *pi)
 {
   if (pi->revision != bw_solid_revision(pi->pd)) BW_TRY(bw_pd_interface__rebuild(pi));
@@ -191,7 +172,7 @@ bw_status bw_pd_interface_update(bw_pd_interface *pi)
     bw_pd_interface__renew(pi, false);
     bw_pd_interface__settle_normals(pi);
     bw_pd_interface__lay_lines(pi, &now);
-    tell_heights(pi);
+    bw_pd_interface__settle_heights(pi);
   }
   /* From here on every update: present places ... */
   for (size_t row = 0; row < pi->now.n_list; row++) {

@@ -71,6 +71,8 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->now.smooth, n));
   BW_THEN(st, BW_ALLOCATE(&pi->now.bend, n));
   BW_THEN(st, BW_ALLOCATE(&pi->fit.bend, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.side, pi->n_extended));
+  BW_THEN(st, BW_ALLOCATE(&pi->fit.lift, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
   BW_THEN(st, BW_ALLOCATE(&pi->fit.own_normal, 3 * n));
   /* Normals of copies too: fits reach across ranks. */
@@ -213,6 +215,8 @@ static void release_all(bw_pd_interface *p)
                     (void **)&p->now.smooth,
                     (void **)&p->now.bend,
                     (void **)&p->fit.bend,
+                    (void **)&p->fit.side,
+                    (void **)&p->fit.lift,
                     (void **)&p->now.list_normal,
                     (void **)&p->seen.link,
                     (void **)&p->seen.state,

@@ -20,8 +20,9 @@
  *   equal: as with POROUS 3.96, the body's area over their number.
  * Heights: a particle is a cube of edge ds, so on a side of the lattice the surface is ds/2 above
  * the centre; on a smooth slanted one, whose sides are steps, their mean is ds/(2 sum_d |n_d|), n_d
- * along the lattice's directions (ERRATA 33): the planes that cut off the particles' own volume. On
- * ridges and edges ds/2.
+ * along the lattice's directions (ERRATA 33): the planes that cut off the particles' own volume;
+ * and, as particles of one terrace are at different depths, the mean of what the particles of its
+ * family on that surface say, weighted by A (1 - (xi/horizon)^2). On ridges and edges ds/2.
  * New crack faces get ds^2 (ERRATA 10; 2D: ds x thickness in all).
  * Several levels: all of this by each particle's own spacing and horizon. Partners that its own
  * horizon does not reach tell nothing, cells of another size weigh as their volume (3.45), and what

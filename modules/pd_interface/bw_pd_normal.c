@@ -83,8 +83,8 @@ typedef struct {
   double ff[3][3], fn[3][3]; /* f_a f_b; f_a n */
 } fit_sums;
 
-/* Normal of a partner, an image's mirrored. */
-static void partner_normal(const bw_pd_interface__near *near, const double all[], double n[3])
+void bw_pd_interface__partner_normal(const bw_pd_interface__near *near, const double all[],
+                                     double n[3])
 {
   for (unsigned d = 0; d < 3; d++) {
     const double value = all[3 * (size_t)near->partner + d];
@@ -104,7 +104,7 @@ static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit
   for (size_t q = 0; q < count; q++) {
     /* A wall without a mirror image has no normal. */
     if (near[q].partner < 0) continue;
-    partner_normal(&near[q], all, other);
+    bw_pd_interface__partner_normal(&near[q], all, other);
     if (!(dot(n, other) > 0.5)) continue; /* 60 degrees; 0 where there is no surface */
     /* Reference places: the fit is a function of the bonds that hold, not of how the body moved. */
     const double *xi = &s->xi[3 * near[q].slot];
@@ -154,9 +154,8 @@ static void put(bw_pd_interface *pi, double rows[], size_t h, const double n[3])
   memcpy(row, n, 3 * sizeof *row);
 }
 
-/* touched: own particles that changed, or have a partner that did. Partners know each other, but
- * for copies and images. Collective. */
-static void spread_change(bw_pd_interface *pi)
+/* Partners know each other, but for copies and images. */
+void bw_pd_interface__spread_change(bw_pd_interface *pi)
 {
   /* Changes on other ranks reach h through its copies. */
   bw_solid_fill_extended(pi->pd, sizeof *pi->fit.changed, pi->fit.changed, pi->fit.changed);
@@ -181,7 +180,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
   const double none[3] = {0.0, 0.0, 0.0};
   /* Normals of copies, and who has to be told anew. */
   bw_solid_fill_extended(pi->pd, 3 * sizeof *from, from, from);
-  spread_change(pi);
+  bw_pd_interface__spread_change(pi);
   for (size_t h = 0; h < pi->n; h++) {
     const bool there = dot(&from[3 * h], &from[3 * h]) > 0.0;
     double n[3];

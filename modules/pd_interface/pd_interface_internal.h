@@ -112,6 +112,8 @@ typedef struct {
                                                 of fits over it */
   bool *changed;                             /* (n_extended) since they were settled last */
   double *bend;                              /* (n) slope of the last fit [1/L]; 0: none */
+  double (*side)[2];      /* (n_extended) height of the surface by each particle alone [L], area */
+  double *lift;           /* (n) how far above that the mean of those about it is [L] */
   bool *touched, *border; /* (n) a partner changed; it has copies or images as partners */
   double *borne;          /* (n_extended,3) scratch: forces that bear moments */
 } bw_pd_interface__fit;
@@ -202,8 +204,17 @@ bool bw_pd_interface__moved_off(const bw_pd_interface *pi, size_t h, const bw_pd
 void bw_pd_interface__tell_normal(bw_pd_interface *pi, size_t h, uint32_t empty);
 /* own_normal of the surface: 3.45, or its fit where that is smooth. Collective. */
 void bw_pd_interface__settle_normals(bw_pd_interface *pi);
+/* Normal of a partner in rows (n_extended,3) of normals, an image's mirrored. Local. */
+void bw_pd_interface__partner_normal(const bw_pd_interface__near *near, const double all[],
+                                     double n[3]);
+/* fit.touched: own particles that changed, or have a partner that did. Collective. */
+void bw_pd_interface__spread_change(bw_pd_interface *pi);
 /* Did the fits find the surface smooth at h? After settle_normals. Local. */
 bool bw_pd_interface__is_smooth(const bw_pd_interface *pi, size_t h);
+
+/* bw_pd_height.c. Heights of the listed surface, and where it is smooth. After settle_normals.
+ * Collective. */
+void bw_pd_interface__settle_heights(bw_pd_interface *pi);
 
 /* bw_pd_lines.c. Of h, resolved last: where its line elements end. */
 void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);

@@ -38,9 +38,9 @@ static void roundness(const body *b, const double centre[3], int dims, double ou
 
 /* Heights: round bodies are, in the mean, as large as their particles' own volume, where ds/2 above
  * each centre would be 0.08 (plane) and 0.13 ds (space) more (ERRATA 33): half of the
- * smaller. bend: 1/R, sqrt(2)/R; a fit over three spacings sees it to (3/R)^2, a tenth. Particles of
- * a staircase are at depths that spread evenly over ds sum|n_i|/(sum n_i^2) ~ ds and so scatter by
- * ds/sqrt(12) each by itself; the mean over a family has less than half of it. */
+ * smaller. bend: 1/R, sqrt(2)/R; a fit over three spacings sees it to (3/R)^2, a tenth. Particles
+ * of a staircase are at depths that spread evenly over about ds, and so scatter by ds/sqrt(12) each
+ * by itself; the mean over a family has less than half of it. */
 START_TEST(surfaces_have_their_heights_and_bends)
 {
   const bw_pd_interface_config ic = bw_pd_interface_config_default();

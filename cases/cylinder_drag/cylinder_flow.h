@@ -42,9 +42,9 @@ typedef struct {
   bw_probe *probe[2]; /* linear and quadratic profile */
   double h;           /* spacing [d] */
   body_surface markers;
-  body_surface wall;  /* points on the nominal surface */
-  double *traction;   /* (n,3) there */
-  double area;        /* of one point */
+  body_surface wall; /* points on the nominal surface */
+  double *traction;  /* (n,3) there */
+  double area;       /* of one point */
 } cylinder_flow;
 
 static inline cylinder_config cylinder_config_default(void)

@@ -57,10 +57,8 @@ static bw_status make_fluid(const bw_comm *comm, const cylinder_config *c, scene
 static bw_status make_solid(const bw_comm *comm, const cylinder_config *c, double ds, scene *s)
 {
   const double height = bw_grid_look(s->grid)->length[1];
-  const bw_shape cylinder = {.kind = BW_SHAPE_CYLINDER,
-                             .centre = {c->upstream, 0.5 * height},
-                             .radius = 0.5,
-                             .axis = 2};
+  const bw_shape cylinder = {
+      .kind = BW_SHAPE_CYLINDER, .centre = {c->upstream, 0.5 * height}, .radius = 0.5, .axis = 2};
   bw_solid_config solid = bw_solid_config_default();
   int64_t n = 0;
   int32_t *site = NULL;
@@ -132,8 +130,8 @@ static bw_status one_spacing(bw_validation *v, const cylinder_config *c, double 
   const double round = Cd_round * pow(wide, 1.5);
   bw_validation_row(v, &(bw_claim){claim[0], "Cd_reaction", Cd[0], round, place,
                                    BW_INDEPENDENT_CODE, fem, extra});
-  bw_validation_row(v, &(bw_claim){claim[1], "Cd_probes", Cd[1], round, probes,
-                                   BW_INDEPENDENT_CODE, fem, extra});
+  bw_validation_row(
+      v, &(bw_claim){claim[1], "Cd_probes", Cd[1], round, probes, BW_INDEPENDENT_CODE, fem, extra});
   bw_validation_row(v, &(bw_claim){claim[2], "Cd_box", Cd[2], Cd[0], 1.0e4 * BW_REAL_EPSILON,
                                    BW_CONSERVATION, "momentum balance of a box", extra});
   return BW_OK;

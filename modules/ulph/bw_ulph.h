@@ -29,7 +29,8 @@
  * to the wall; with no slip the other part goes linearly through the wall's velocity on the
  * surface), their pressure that of the fluid with the weight between (equation 52 with
  * x_sf = x_f - x_s), at least 0, and their M that of a fluid particle in their place: then pairs
- * across a flat free-slip wall leave it no force along it. A wall particle counts only as far as
+ * across a flat free-slip wall leave it no force along it. Where walls meet, the normal is the way
+ * to the nearest place outside of all of them. A wall particle counts only as far as
  * there is fluid in front of it. Pairs of fluid and wall have the artificial viscosity alpha_wall:
  * the image is extrapolated, its operators are the adjoint of each other only where it is exact,
  * and thin sheets on walls would ring.

@@ -44,10 +44,47 @@ static bw_status check_thick(const bw_ulph *u, int number, const bw_ulph_wall *w
                  number, LAYERS, LAYERS * dx, p->x[0], p->x[1], p->x[2], 1.0 / LAYERS);
 }
 
-/* Sites within reach of the surface, but not in a wall that was built before. */
-static bw_status keep_near(bw_ulph *u, int number, const bw_ulph_wall wall[], int64_t n,
-                           const int32_t site[])
+/* All walls, and the one that is built. */
+typedef struct {
+  int n, number;
+  const bw_ulph_wall *of;
+} walls;
+
+/* Where walls meet, the fluid nearest to a particle of one of them is outside of all that move with
+ * it: out of one after the other. An image across one of them alone would be none across the others
+ * and feed the water beside the corner. */
+static void look_out(const walls *all, bool planar, bw_ulph__particle *p)
 {
+  enum { TURNS = 8 };
+  double y[3], way[3], far = 0;
+  memcpy(y, p->x, sizeof y);
+  for (int turn = 0; turn < TURNS; turn++)
+    for (int q = 0; q < all->n; q++) {
+      const bw_ulph_wall *w = all->of + q;
+      const double out = bw_shape_distance(w->count, w->shape, planar, y);
+      double normal[3];
+      if (w->moves != all->of[all->number].moves || out >= 0) continue;
+      bw_shape_normal(w->count, w->shape, planar, y, normal);
+      for (int k = 0; k < 3; k++)
+        y[k] -= out * normal[k];
+    }
+  for (int k = 0; k < 3; k++) {
+    way[k] = y[k] - p->x[k];
+    far += way[k] * way[k];
+  }
+  far = sqrt(far);
+  /* Of a wall alone this is what it was. */
+  if (far < p->depth * (1 + 1e-6)) return;
+  p->depth = far;
+  for (int k = 0; k < 3; k++)
+    p->normal[k] = way[k] / far;
+}
+
+/* Sites within reach of the surface, but not in a wall that was built before. */
+static bw_status keep_near(bw_ulph *u, const walls *all, int64_t n, const int32_t site[])
+{
+  const bw_ulph_wall *wall = all->of;
+  const int number = all->number;
   const bw_ulph_wall *w = wall + number;
   const bool planar = u->config.dimensions == 2;
   const bw_shape_lattice lattice = lattice_of(u, w);
@@ -64,7 +101,8 @@ static bw_status keep_near(bw_ulph *u, int number, const bw_ulph_wall wall[], in
     p.rho = u->config.rho0;
     bw_shape_normal(w->count, w->shape, planar, p.x, p.normal);
     BW_TRY(check_thick(u, number, w, &p));
-    u->own[u->n++] = p;
+    look_out(all, planar, &p);
+    if (p.depth < LAYERS * u->config.dx) u->own[u->n++] = p;
   }
   return BW_OK;
 }
@@ -81,9 +119,10 @@ static bw_status grow_own(bw_ulph *u, size_t more)
 
 /* The particles of one wall. Its parts, joined over ranks, are in the order of the whole: so are
  * the numbers. */
-static bw_status build_one(bw_ulph *u, int number, const bw_ulph_wall wall[])
+static bw_status build_one(bw_ulph *u, const walls *all)
 {
-  const bw_ulph_wall *w = wall + number;
+  const int number = all->number;
+  const bw_ulph_wall *w = all->of + number;
   const bw_shape_lattice lattice = lattice_of(u, w);
   const size_t before = u->n;
   int64_t n = 0;
@@ -91,7 +130,7 @@ static bw_status build_one(bw_ulph *u, int number, const bw_ulph_wall wall[])
   uint8_t *kind = NULL;
   BW_TRY(bw_shape_fill_shared(u->comm, w->count, w->shape, &lattice, &n, &site, &kind, NULL));
   bw_status st = grow_own(u, (size_t)n);
-  BW_THEN(st, keep_near(u, number, wall, n, site));
+  BW_THEN(st, keep_near(u, all, n, site));
   bw_release(&site);
   bw_release(&kind);
   BW_TRY(bw_comm_agree(u->comm, st));
@@ -104,7 +143,7 @@ static bw_status build_one(bw_ulph *u, int number, const bw_ulph_wall wall[])
 bw_status bw_ulph__build_walls(bw_ulph *u, int n_walls, const bw_ulph_wall wall[])
 {
   for (int w = 0; w < n_walls; w++)
-    BW_TRY(build_one(u, w, wall));
+    BW_TRY(build_one(u, &(walls){n_walls, w, wall}));
   return BW_OK;
 }
 

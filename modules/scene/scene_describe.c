@@ -202,7 +202,7 @@ static double first_limit(bw_scene *s)
 {
   if (s->water != NULL) return bw_scene__water_limit(s);
   if (s->grid == NULL) return bw_scene__solid_limit(s);
-  return s->planned ? s->flow_plan.dt_max : bw_ns_channel_dt_max(s->fluid);
+  return bw_scene__fluid_limit(s);
 }
 
 /* Refuses steps of the file that the first step would refuse. What the flow becomes may bear less;

@@ -81,6 +81,33 @@ static void start_velocity(const double x[3], double t, void *context, double u[
   }
 }
 
+static double rate_at(bw_scene *s, double x, double y)
+{
+  double u[3], sum = 0.0;
+  const double at[3] = {x, y, 0.0};
+  start_velocity(at, 0.0, &s->config, u);
+  for (int d = 0; d < (s->planar ? 2 : 3); d++)
+    sum += fabs(u[d]) / bw_grid_look(s->grid)->spacing[d];
+  return sum;
+}
+
+double bw_scene__start_rate(bw_scene *s)
+{
+  enum { ROUND = 64 }; /* places around a vortex: the largest is met to 0.1 % */
+  const bw_scene_start *start = &s->config.fluid.start;
+  const double *length = s->config.domain.length;
+  double most = rate_at(s, 0.5 * length[0], 0.5 * length[1]);
+  for (int q = 0; q < ROUND * start->n_vortices; q++) {
+    const bw_scene_vortex *v = &start->vortices[q / ROUND];
+    const double turn = 2.0 * acos(-1.0) * q / ROUND;
+    const double x = v->centre[0] + v->radius * cos(turn);
+    const double y = v->centre[1] + v->radius * sin(turn);
+    if (x >= 0.0 && x <= length[0] && y >= 0.0 && y <= length[1])
+      most = fmax(most, rate_at(s, x, y));
+  }
+  return most;
+}
+
 /* A key that has no meaning for this kind of side is refused, not ignored. */
 static bw_status check_side(const bw_scene_config *c, const bw_scene_side *q, int d, int s)
 {

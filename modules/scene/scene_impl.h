@@ -281,6 +281,10 @@ bw_status bw_scene__warn_leak(bw_scene *s) BW_MUST_CHECK;
 /* Refuses what no key can tell by itself: steps without end, loads, speeds, damping and viscosity
  * that are out of all proportion. Called when all is made, or planned. Collective. */
 bw_status bw_scene__check_sizes(bw_scene *s) BW_MUST_CHECK;
+/* Of the fluid at the start, whole [T]; where it is only planned, from what the file says. */
+double bw_scene__fluid_limit(bw_scene *s);
+/* Largest sum of |u_d|/dx_d of the velocity at the start, as far as a few places know [1/T]. */
+double bw_scene__start_rate(bw_scene *s);
 double bw_scene__solid_limit(const bw_scene *s); /* of solids and rigid bodies, whole [T] */
 double bw_scene__end(const bw_scene *s);         /* of the scene [T]; NaN: not known */
 

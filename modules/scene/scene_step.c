@@ -92,13 +92,26 @@ static double solid_limit(const bw_scene *s)
   return limit;
 }
 
+/* What the plan of the flow bears at the velocity of the start, which the plan does not know; the
+ * limit of RK3 on the imaginary axis is sqrt(3). Exact where all else is at rest. */
+static double planned_limit(bw_scene *s)
+{
+  const double rate = bw_scene__start_rate(s) / sqrt(3.0), own = 1.0 / s->flow_plan.dt_max;
+  return 1.0 / (s->speed > 0.0 ? fmax(own, rate) : hypot(own, rate));
+}
+
+double bw_scene__fluid_limit(bw_scene *s)
+{
+  return s->planned ? planned_limit(s) : bw_ns_channel_dt_max(s->fluid);
+}
+
 /* Longest step of the fluid: of its field, and of what sides and bodies will bring. */
 static double fluid_limit(bw_scene *s)
 {
   const double h = bw_grid_look(s->grid)->spacing[0];
   const double speed = fmax(s->speed, bw_scene__rigid_speed(s));
   const double coming = speed > 0.0 ? h / speed : INFINITY;
-  return fmin(s->planned ? s->flow_plan.dt_max : bw_ns_channel_dt_max(s->fluid), coming);
+  return fmin(bw_scene__fluid_limit(s), coming);
 }
 
 double bw_scene__solid_limit(const bw_scene *s)

@@ -79,3 +79,24 @@ double bw_shape__distance_pores(const bw_shape *s, int dims, const double y[3], 
   }
   return least;
 }
+
+double bw_shape__beside_pores(const bw_shape *s, int dims, const double centre[3],
+                              const double y[3])
+{
+  const bw_shape__basis *basis = bw_shape__basis_of(s->kind);
+  double least = INFINITY, h[3];
+  const int around[3] = {3, dims > 1 ? 3 : 1, dims > 2 ? 3 : 1};
+  for (int q = 0; q < basis->count; q++)
+    for (int n = 0; n < around[0] * around[1] * around[2]; n++) {
+      const int step[3] = {n % 3 - 1, dims > 1 ? n / 3 % 3 - 1 : 0, dims > 2 ? n / 9 - 1 : 0};
+      double z[3] = {0.0, 0.0, 0.0}, apart = 0.0;
+      for (int d = 0; d < dims; d++) {
+        const double from = s->centre[d] + s->pitch * basis->at[q][d];
+        const double c = from + s->pitch * (round((y[d] - from) / s->pitch) + step[d]);
+        z[d] = y[d] - c;
+        apart = fmax(apart, fabs(c - centre[d]));
+      }
+      if (apart > 1e-6 * s->pitch) least = fmin(least, round_distance(z, dims, -1, s->radius, h));
+    }
+  return least;
+}

@@ -58,6 +58,9 @@ double bw_shape__distance_box(const bw_shape *s, int dims, const double x[3], do
 double bw_shape__distance_sphere(const bw_shape *s, int dims, const double x[3], double g[3]);
 double bw_shape__distance_cylinder(const bw_shape *s, int dims, const double x[3], double g[3]);
 double bw_shape__distance_pores(const bw_shape *s, int dims, const double x[3], double g[3]);
+/* Of y, in the shape's own frame, from the nearest pore but that at `centre`; negative inside. */
+double bw_shape__beside_pores(const bw_shape *s, int dims, const double centre[3],
+                              const double y[3]);
 double bw_shape__distance_mask(const bw_shape *s, int dims, const double x[3], double g[3]);
 bw_status bw_shape__charts_box(const bw_shape *s, int dims, const bw_shape__extent *e,
                                double spacing, bw_shape__take take, void *to) BW_MUST_CHECK;

@@ -18,6 +18,7 @@ typedef struct {
 
 typedef struct {
   double x[3], normal[3]; /* in space; out of the body */
+  double beside;          /* from the pores beside the own one [L]; INFINITY: there are none */
 } place;
 
 /* ---- which part of a shape's surface is the body's ---- */
@@ -30,6 +31,9 @@ static place place_of(const surface *s, const bw_shape__chart *c, double u, doub
   double y[3], m[3];
   place p;
   c->map(c, u, v, y, m);
+  p.beside = bw_shape__basis_of(own->kind) != NULL
+                 ? bw_shape__beside_pores(own, s->dims, c->centre, y)
+                 : INFINITY;
   for (int d = 0; d < 3; d++) {
     p.x[d] = f == NULL ? y[d] : f->about[d];
     p.normal[d] = f == NULL ? sign * m[d] : 0.0;
@@ -48,7 +52,8 @@ static void shifted(const surface *s, const place *p, double by, double x[3])
 }
 
 /* Positive where the body's surface is that of the shape `own`: it adds to what is empty or removes
- * from what is solid, and no later shape changes anything there. No point on the surface is nearer
+ * from what is solid, no pore of its own opens into another there, and no later shape changes
+ * anything. No point on the surface is nearer
  * to where this changes sign than its magnitude. Of faces that lie in each other the later one
  * counts where both look the same way, neither where they look at each other. */
 static double shown(const surface *s, const place *p)
@@ -59,6 +64,7 @@ static double shown(const surface *s, const place *p)
   shifted(s, p, -1.0, x[1]);
   double f = own->remove ? -bw_shape__composed(s->own, s->shape, s->dims, x[1], g)
                          : bw_shape__composed(s->own, s->shape, s->dims, x[0], g);
+  f = fmin(f, p->beside);
   for (int q = s->own + 1; q < s->count; q++)
     for (int side = 0; side < 2; side++)
       f = fmin(f, bw_shape__distance(&s->shape[q], s->dims, x[side], g));

@@ -41,7 +41,7 @@ static double cap_volume(double h)
   return pi * h * h * (3 * R - h) / 3;
 }
 
-enum { BODIES = 15 };
+enum { BODIES = 16 };
 static void make_bodies(body b[BODIES])
 {
   const body all[BODIES] = {
@@ -124,6 +124,15 @@ static void make_bodies(body b[BODIES])
        0,
        8 - 16 * 4 * pi * 0.027 / 3,
        false},
+      {"pores that open into each other",
+       2,
+       {BOX(.upper = {2, 2, 2}),
+        {.kind = BW_SHAPE_PORES_SC, .remove = true, .radius = 0.6, .pitch = 1}},
+       /* eight cells of balls less the six caps of each; faces lose overlapping discs, see below */
+       false,
+       0,
+       8 - 8 * (4 * pi * 0.216 / 3 - 6 * pi * 0.01 * (1.8 - 0.1) / 3),
+       false},
       {"ring in the plane",
        2,
        {TUBE(.radius = 1, .axis = 2), TUBE(.radius = 0.5, .axis = 2, .remove = true)},
@@ -134,6 +143,9 @@ static void make_bodies(body b[BODIES])
   memcpy(b, all, sizeof all);
   /* Faces lose a disc at each centre on them: 4 quarters, 4 halves and 1 whole are 4 discs. */
   b[13].area = 24 - 6 * 4 * pi * 0.09 + 16 * 4 * pi * 0.09;
+  /* Discs of 0.6 on the points of a square lattice of 1: two lenses overlap in each square. */
+  const double lens = 0.72 * acos(1 / 1.2) - 0.5 * sqrt(0.44);
+  b[14].area = 8 * (4 * pi * 0.36 - 6 * 2 * pi * 0.06) + 24 * (1 - pi * 0.36 + 2 * lens);
 }
 
 typedef struct {

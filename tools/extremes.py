@@ -213,7 +213,7 @@ def main():
     parser.add_argument("--program", default="build/bin/breakwater")
     parser.add_argument("--list", action="store_true")
     args = parser.parse_args()
-    rows = extremes_rows.ROWS
+    rows, extremes_rows.PROGRAM = extremes_rows.ROWS, args.program
     if args.list:
         for row in rows:
             print(f"{row.name:34} {row.inside:10.4g} to {row.outside:10.4g}   {row.what}")

@@ -15,6 +15,7 @@ from typing import Callable, Optional
 import yaml
 
 HERE = "bench/extremes/"
+PROGRAM = "build/bin/breakwater"  # whose keys have units
 
 
 @dataclass
@@ -204,7 +205,7 @@ def powers(unit):
 
 def units_of_keys():
     """Key of the scene file -> unit, from the program's own help."""
-    text = subprocess.run(["build/bin/breakwater", "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
     return {m[1]: m[2] for m in re.finditer(r"^  (\S+) .*\[([LMT0-9 /()]+)\]\)", text, re.M)}
 
 

@@ -11,6 +11,8 @@
 static const double MOST_SPACINGS = 1e3, MOST_DAMPING = 1e6, MOST_CELL_REYNOLDS = 1e12,
                     LONGEST_RAMP = 1e6, LEAST_DENSITY = 1e-6, MOST_DENSITY = 1e9,
                     LEAST_SOUND = 1e-6;
+/* The drag of a cylinder of 5 cells is a third of what is measured from 90 on. */
+static const double BODY_CELL_REYNOLDS = 50.0;
 
 static double length_of(const double v[3])
 {
@@ -44,6 +46,13 @@ static bw_status check_fluid(const bw_scene *s)
       "fluid.viscosity = %g: with the speed %g that the file names, the cell Reynolds number "
       "is %.3g; at most %g, beyond which rounding hides the viscosity; check its unit",
       nu, s->speed, s->speed * h / nu, MOST_CELL_REYNOLDS);
+  if (s->config.n_bodies > 0 && s->speed * h / nu > BODY_CELL_REYNOLDS)
+    bw_log_warn(s->log,
+                "the cell Reynolds number is %.3g with the speed %g that the file names: above %g "
+                "layers around bodies are thinner than cells, and forces come out too low; take "
+                "%.1f times as many cells in each direction, or a larger viscosity",
+                s->speed * h / nu, s->speed, BODY_CELL_REYNOLDS,
+                s->speed * h / nu / BODY_CELL_REYNOLDS);
   return BW_OK;
 }
 

@@ -18,6 +18,7 @@ import extremes_rows
 build = Path(sys.argv[1])
 program, folder = str(build / "bin" / "breakwater"), build / "test_extremes"
 folder.mkdir(exist_ok=True)
+extremes_rows.PROGRAM = program
 rows = {row.name: row for row in extremes_rows.ROWS}
 assert len(rows) == len(extremes_rows.ROWS), "two rows have the same name"
 for row in rows.values():

@@ -92,8 +92,9 @@ static double solid_limit(const bw_scene *s)
   return limit;
 }
 
-/* What the plan of the flow bears at the velocity of the start, which the plan does not know: the
- * formula of bw_ns_channel_dt_max for even cells, where the plan's own limits are not shorter. */
+/* What the plan of the flow bears at the velocity of the start, which the plan does not know, by the
+ * formula of bw_ns_channel_dt_max: with what the plan has of viscosity and a gradient where nothing
+ * moves in it yet, else, for even cells, with viscosity. */
 static double planned_limit(bw_scene *s)
 {
   static const double imaginary = 1.7320508075688772;
@@ -104,7 +105,8 @@ static double planned_limit(bw_scene *s)
   for (int d = 0; d < (s->planar ? 2 : 3) && viscous != BW_VISCOUS_IMPLICIT; d++)
     if (d != 1 || viscous == BW_VISCOUS_EXPLICIT)
       v += 4.0 * s->config.fluid.viscosity / (h[d] * h[d]) / real;
-  return fmin(s->flow_plan.dt_max, c > 0.0 ? 1.0 / hypot(c, v) : INFINITY);
+  const double own = 1.0 / s->flow_plan.dt_max;
+  return 1.0 / (s->speed > 0.0 ? fmax(own, hypot(c, v)) : hypot(c, own));
 }
 
 double bw_scene__fluid_limit(bw_scene *s)

@@ -75,6 +75,12 @@ typedef struct {
   double count; /* of all ranks */
 } bw_scene__aim;
 
+/* What the energies of the solids came to at the first look, and the largest that they were. */
+typedef struct {
+  bool known, told;
+  double start, most; /* [M L^2/T^2] */
+} bw_scene__energies;
+
 struct bw_scene {
   bw_scene_config config;
   const bw_comm *comm; /* borrowed */
@@ -131,6 +137,15 @@ struct bw_scene {
   double settled_energy; /* of the fluid at the last look; NaN: none */
   bool watched;
 
+  /* scene_sound.c: is it still physics? */
+  struct {
+    double
+        ripple; /* energy in the wave of two cells at the last look [L^2/T^2, a sum over cells] */
+    bw_scene__energies energies;
+    bool close; /* particles in contact came too near, and it was said */
+    int doubts; /* warnings so far */
+  } sound;
+
   /* gauges */
   int n_columns;
   bw_scene__column *column;
@@ -155,6 +170,9 @@ bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
                                 const bw_solid_config *config, double *n) BW_MUST_CHECK;
 /* Lines of memory and pores; refuses steps beyond a limit. Collective. */
 bw_status bw_scene__plan_describe(bw_scene *s, bw_log *log) BW_MUST_CHECK;
+
+/* scene_sound.c: after a step; BW_EDIVERGED where it is no physics any more. Collective. */
+bw_status bw_scene__look(bw_scene *s) BW_MUST_CHECK;
 
 /* scene_solids.c */
 bw_status bw_scene__solids_create(bw_scene *s) BW_MUST_CHECK;

@@ -264,5 +264,6 @@ bw_status bw_scene_step(bw_scene *s, double until)
   if (s->water != NULL) bw_ulph_set_time(s->water->fluid, s->time);
   s->steps++;
   s->phase_steps++;
+  BW_TRY(bw_scene__look(s));
   return turn_phase(s);
 }

@@ -2,8 +2,8 @@
  * finite, or too fast for its step, ends in the step where it happens.
  *
  * - The flow is free of divergence.
- * - Velocities do not change their sign from cell to cell and grow: of what a second difference sees,
- *   D = u[i-1] - 2 u[i] + u[i+1], the wave of two cells has D^2/16 = u^2 and noise 3/8 of it.
+ * - Velocities do not change their sign from cell to cell and grow: of what a second difference
+ *   sees, D = u[i-1] - 2 u[i] + u[i+1], the wave of two cells has D^2/16 = u^2, noise 3/8 of it.
  * - Energies of all solids add up (bw_solid_ledger), to the order of their integrator.
  * - Particles in contact do not come so near that they may pass through. */
 #include "scene_impl.h"
@@ -72,7 +72,7 @@ static bw_status look_at_fluid(bw_scene *s)
   return BW_OK;
 }
 
-/* What the energies of all solids, which pass some to each other, come to, and how large they are. */
+/* What the energies of all solids, which pass some to each other, come to; how large they are. */
 static bw_status look_at_energy(bw_scene *s, double held, double spent, double external)
 {
   bw_scene__energies *e = &s->sound.energies;

@@ -92,9 +92,9 @@ static double solid_limit(const bw_scene *s)
   return limit;
 }
 
-/* What the plan of the flow bears at the velocity of the start, which the plan does not know, by the
- * formula of bw_ns_channel_dt_max: with what the plan has of viscosity and a gradient where nothing
- * moves in it yet, else, for even cells, with viscosity. */
+/* What the plan of the flow bears at the velocity of the start, which the plan does not know, by
+ * the formula of bw_ns_channel_dt_max: with what the plan has of viscosity and a gradient where
+ * nothing moves in it yet, else, for even cells, with viscosity. */
 static double planned_limit(bw_scene *s)
 {
   static const double imaginary = 1.7320508075688772;

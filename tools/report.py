@@ -1,11 +1,15 @@
 #!/usr/bin/python3
 """What the validation programs found, on one page.
 
-usage: report.py FOLDER      (FOLDER: build/verification)
+usage: report.py FOLDER [--keep]      (FOLDER: build/verification)
 Reads FOLDER/MODULE.CLAIM.json of every validation/MODULE/CLAIM.c, and how each program ended from
 FOLDER/runs.tsv (written by ./run validate). Writes FOLDER/verification.json and FOLDER/report.html.
 Curves: a program may leave MODULE.CLAIM*.csv there, x first; a column NAME_reference is drawn
-beside the column NAME. Exit code 0 only when every claim passed and every program ran.
+beside the column NAME. What accuracy costs, where scenes stop to hold and what steps cost come from
+what ./run trade, extremes and bench left beside FOLDER, else from what docs/verification keeps; the page
+also has the systems of the four documents (docs/systems.csv) and what has moved since the report that is
+kept (docs/verification/report; --keep keeps this one). It needs no other file and no script.
+Exit code 0 only when every claim passed and every program ran.
 """
 import csv
 import datetime
@@ -17,6 +21,10 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+
+import report_parts as parts
+from report_charts import chart, finite
+from report_parts import show
 
 SOURCE = Path(__file__).resolve().parent.parent
 KNOWN = {"claim", "quantity", "measured", "reference", "error", "tolerance", "kind", "source", "pass"}
@@ -94,81 +102,7 @@ def provenance():
             "time": datetime.datetime.now().astimezone().isoformat(timespec="seconds")}
 
 
-# ---- charts, as SVG -----------------------------------------------------------------------------
-
-W, H, LEFT, TOP, RIGHT, BOTTOM = 460, 284, 62, 40, 12, 40
-COLOURS = ["#1f5fa8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910", "#16a085"]
-
-
-def finite(x):
-    return isinstance(x, (int, float)) and not isinstance(x, bool) and math.isfinite(x)
-
-
-class Axis:
-    """Values to pixels; logarithmic when asked for."""
-
-    def __init__(self, values, low, high, log=False):
-        self.log = log
-        v = [math.log10(x) if log else x for x in values]
-        # A margin on both sides; a single value gets an axis of some width.
-        self.a, self.b = min(v), max(v)
-        pad = 0.06 * (self.b - self.a) or 0.1 * abs(self.a) or 1.0
-        self.a, self.b, self.low, self.high = self.a - pad, self.b + pad, low, high
-
-    def __call__(self, x):
-        v = math.log10(x) if self.log else x
-        return self.low + (v - self.a) / (self.b - self.a) * (self.high - self.low)
-
-    def ticks(self):
-        # Decades, thinned out when there are many, filled with 2 and 5 when there are few.
-        if self.log:
-            decades = range(math.floor(self.a), math.ceil(self.b) + 1)
-            thin = max(1, len(decades) // 6)
-            factors = (1, 2, 5) if self.b - self.a < 2 else (1,)
-            every = [m * 10.0 ** d for d in decades if d % thin == 0 for m in factors]
-            return [t for t in every if self.a <= math.log10(t) <= self.b]
-        # Steps of 1, 2 or 5 times a power of ten, about five of them.
-        raw = (self.b - self.a) / 5
-        step = 10 ** math.floor(math.log10(raw))
-        step *= next(m for m in (1, 2, 5, 10) if m * step >= raw)
-        return [i * step for i in range(math.ceil(self.a / step),
-                                        math.floor(self.b / step) + 1)]
-
-
-def chart(title, x_label, curves, log_x=False, log_y=False):
-    """curves: [(name, [(x, y)], dashed)]. Nothing when nothing can be drawn."""
-    # What a logarithm cannot take is left out, as is what is not finite.
-    curves = [(n, [(x, y) for x, y in p if finite(x) and finite(y) and (x > 0 or not log_x)
-                   and (y > 0 or not log_y)], d) for n, p, d in curves]
-    every = [q for _, p, _ in curves for q in p]
-    if len(every) < 2:
-        return ""
-    ax = Axis([x for x, _ in every], LEFT, W - RIGHT, log_x)
-    ay = Axis([y for _, y in every], H - BOTTOM, TOP, log_y)
-    out = [f'<svg width="{W}" height="{H}" viewBox="0 0 {W} {H}"><text x="{LEFT}" y="16" '
-           f'class="t">{html.escape(title)}</text>']
-    for t in ax.ticks():
-        out.append(f'<line x1="{ax(t):.1f}" x2="{ax(t):.1f}" y1="{TOP}" y2="{H - BOTTOM}" class="g"/>'
-                   f'<text x="{ax(t):.1f}" y="{H - BOTTOM + 14}" text-anchor="middle">{t:g}</text>')
-    for t in ay.ticks():
-        out.append(f'<line y1="{ay(t):.1f}" y2="{ay(t):.1f}" x1="{LEFT}" x2="{W - RIGHT}" class="g"/>'
-                   f'<text y="{ay(t) + 4:.1f}" x="{LEFT - 5}" text-anchor="end">{t:g}</text>')
-    # References are dashed and grey; few points are marked one by one.
-    for q, (name, points, dashed) in enumerate(curves):
-        colour = "#333333" if dashed else COLOURS[q % len(COLOURS)]
-        path = " ".join(f"{ax(x):.1f},{ay(y):.1f}" for x, y in points)
-        style = ' stroke-dasharray="5 4"' if dashed else ""
-        out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" '
-                   f'stroke-width="1.8"{style}/>')
-        if len(points) <= 40:
-            out += [f'<circle cx="{ax(x):.1f}" cy="{ay(y):.1f}" r="3" fill="{colour}"/>'
-                    for x, y in points]
-        out.append(f'<text x="{LEFT + 110 * q}" y="{TOP - 9}" style="fill:{colour}">'
-                   f'{"- - " if dashed else "&#8212; "}{html.escape(name)}</text>')
-    out.append(f'<text x="{(LEFT + W - RIGHT) / 2}" y="{H - 6}" text-anchor="middle">'
-               f'{html.escape(x_label)}</text></svg>')
-    return "".join(out)
-
+# ---- charts of a program ------------------------------------------------------------------------
 
 def parameter_of(rows):
     """The extra member that differs from row to row, a number: what a quantity is drawn against."""
@@ -225,16 +159,17 @@ def curves_of(path):
 
 # ---- the page -----------------------------------------------------------------------------------
 
-STYLE = """body{font:14px/1.45 sans-serif;margin:2em auto;max-width:1150px;color:#222}
-table{border-collapse:collapse;width:100%}td,th{padding:3px 8px;border-bottom:1px solid #ddd;
-text-align:left;vertical-align:top}td.n{text-align:right;font-family:monospace;white-space:nowrap}
-.passed{color:#1e7d34}.failed{color:#b3202a;font-weight:bold}.not{color:#8a6d00;font-weight:bold}
-svg{margin:8px 14px 8px 0}svg text{font:11px sans-serif;fill:#333}svg .t{font-weight:bold}
-svg .g{stroke:#e4e4e4}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}"""
-
-
-def show(x):
-    return "" if x is None else f"{x:.6g}" if finite(x) else html.escape(str(x))
+STYLE = """body{font:14px/1.45 sans-serif;margin:2em auto;padding:0 1em;max-width:1150px;color:#222}
+table{border-collapse:collapse;width:100%;margin:1em 0}caption{text-align:left;font-weight:bold;padding:4px 0}
+td,th{padding:3px 8px;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}th[scope=row]{font-weight:normal}
+td.n{text-align:right;font-family:monospace;white-space:nowrap}
+.passed{color:#1e7d34}.failed{color:#b3202a;font-weight:bold}.not,.no{color:#765a00;font-weight:bold}
+svg{margin:8px 14px 8px 0;max-width:100%}svg text{font:11px sans-serif;fill:#333}svg .t{font-weight:bold}
+svg .g{stroke:#e4e4e4}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}h3{margin-top:1.6em}
+pre{white-space:pre-wrap;background:#f6f6f6;padding:.6em}.skip{position:absolute;left:-999em}.skip:focus{left:0}
+nav li{display:inline-block;margin-right:1.2em}nav ul{padding:0}
+@media print{body{margin:0;max-width:none;font-size:10px}nav,.skip{display:none}svg,tr,pre{break-inside:avoid}
+details>*{display:block}a{color:inherit;text-decoration:none}}"""
 
 
 def row_html(r):
@@ -244,8 +179,8 @@ def row_html(r):
         verdict = '<td>reported only</td>'
     else:
         verdict = f'<td class="{state}">{"yes" if r["pass"] else "NO"}</td>'
-    return (f'<tr><td>{html.escape(r["claim"])}<br><small>{html.escape(r["quantity"])}'
-            f'{"; " + html.escape(extra) if extra else ""}</small></td>'
+    return (f'<tr><th scope="row">{html.escape(r["claim"])}<br><small>{html.escape(r["quantity"])}'
+            f'{"; " + html.escape(extra) if extra else ""}</small></th>'
             f'<td class="n">{show(r["reference"])}</td><td class="n">{show(r["measured"])}</td>'
             f'<td class="n">{show(r["error"])}</td><td class="n">{show(r["tolerance"])}</td>'
             f'{verdict}<td>{html.escape(r["kind"])}: {html.escape(r["source"])}</td></tr>')
@@ -257,27 +192,90 @@ def how(item):
     return html.escape("; ".join(t for t in (text, item["why"]) if t))
 
 
+def head_of(program):
+    """What the program's first comment says: claim, reference, how it is measured, why this tolerance."""
+    module, claim = program.split(".", 1)
+    text = (SOURCE / "validation" / module / f"{claim}.c").read_text().partition("*/")[0]
+    lines = [line.removeprefix("/*").removeprefix(" *").removeprefix(" ") for line in text.splitlines()]
+    return "\n".join(line for line in lines if not line.startswith(("BUILD", "TEST"))).strip()
+
+
 def section(item, folder):
     rows = "".join(row_html(r) for r in item["rows"])
-    table = ("<table><tr><th>claim<th>expected<th>measured<th>error<th>tolerance<th>holds"
-             f"<th>reference</tr>{rows}</table>") if rows else ""
-    return (f'<h2 id="{item["program"]}">{item["program"]}: <span class="{item["state"].split()[0]}">'
-            f'{item["state"]}</span></h2><p>{how(item)}</p>{charts_of(item, folder)}{table}')
+    table = ("<table><caption>Claims</caption><thead><tr><th scope=\"col\">claim<th scope=\"col\">expected"
+             "<th scope=\"col\">found<th scope=\"col\">error<th scope=\"col\">tolerance<th scope=\"col\">holds"
+             f"<th scope=\"col\">reference</tr></thead><tbody>{rows}</tbody></table>") if rows else ""
+    return (f'<h3 id="{item["program"]}">{item["program"]}: <span class="{item["state"].split()[0]}">'
+            f'{item["state"]}</span></h3><p>{how(item)}</p><details><summary>what is claimed, against what, and why '
+            f'to this tolerance</summary><pre>{html.escape(head_of(item["program"]))}</pre></details>'
+            f'{charts_of(item, folder)}{table}')
+
+
+def module_title(name):
+    """The first line of the module's README: what it solves."""
+    path = SOURCE / "modules" / name / "README.md"
+    return path.read_text().partition("\n")[0].lstrip("# ") if path.is_file() else name
 
 
 def overview(found):
     lines = []
     for item in found:
         hold = sum(r["pass"] for r in item["rows"])
-        lines.append(f'<tr><td><a href="#{item["program"]}">{item["program"]}</a></td>'
-                     f'<td class="{item["state"].split()[0]}">{item["state"]}</td>'
-                     f'<td>{hold} of {len(item["rows"])}</td><td>{how(item)}</td></tr>')
-    return ("<table><tr><th>program<th>state<th>claims that hold<th>run</tr>"
-            f"{''.join(lines)}</table>")
+        lines.append([f'<a href="#{item["program"]}">{item["program"]}</a>',
+                      f'<span class="{item["state"].split()[0]}">{item["state"]}</span>',
+                      f'{hold} of {len(item["rows"])}', how(item)])
+    return parts.table("All programs", ["program", "state", "claims that hold", "run"], lines)
+
+
+def trouble(found):
+    """What failed and what was not run, first."""
+    rows = [[f'<a href="#{i["program"]}">{i["program"]}</a>', i["state"], how(i),
+             "; ".join(html.escape(r["quantity"]) for r in i["rows"] if not r["pass"])]
+            for i in found if i["state"] != "passed"]
+    return parts.table("Failed, or not run", ["program", "state", "why", "claims that fail"], rows) if rows else \
+        "<p>Every program ran, and every claim holds.</p>"
+
+
+def orders(found):
+    """Orders of convergence of all programs in one table."""
+    rows = [[f'<a href="#{i["program"]}">{i["program"]}</a>', html.escape(r["claim"]), show(r["reference"]),
+             show(r["measured"]), "yes" if r["pass"] else "NO"]
+            for i in found for r in i["rows"] if r["kind"] == "order"]
+    return parts.table("Orders of convergence", ["program", "claim", "expected", "found", "holds"], rows)
+
+
+def by_module(found, folder):
+    out = []
+    for module in sorted({i["program"].split(".")[0] for i in found}):
+        of = [section(i, folder) for i in found if i["program"].split(".")[0] == module]
+        out.append(f'<section aria-labelledby="m-{module}"><h2 id="m-{module}">{html.escape(module_title(module))}'
+                   f'</h2>{"".join(of)}</section>')
+    return "".join(out)
+
+
+def page_of(found, about, summary, folder):
+    build = folder.resolve().parent
+    named = [("failed", "Failed and not run", trouble(found)),
+             ("moved", "Since the kept report", parts.compared(found)),
+             ("systems", "Systems of the four documents", parts.systems(found)),
+             ("overview", "All programs", overview(found)), ("orders", "Orders", orders(found)),
+             ("fronts", "What accuracy costs", parts.fronts(build)),
+             ("extremes", "Where it stops to hold", parts.extremes(build)),
+             ("cost", "What a step costs", parts.cost(build))]
+    links = "".join(f'<li><a href="#{name}">{title}</a></li>' for name, title, _ in named)
+    links += "".join(f'<li><a href="#m-{m}">{m}</a></li>' for m in sorted({i["program"].split(".")[0] for i in found}))
+    body = "".join(f'<section aria-labelledby="{name}"><h2 id="{name}">{title}</h2>{text}</section>'
+                   for name, title, text in named)
+    return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Breakwater: verification</title>'
+            f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style></head><body>'
+            f'<a class="skip" href="#main">to the report</a><header><h1>Breakwater: verification</h1><p>{summary}</p>'
+            f'<p>commit {html.escape(about["commit"])}<br>{html.escape(about["machine"])}<br>{about["time"]}</p>'
+            f'</header><nav aria-label="Parts of the report"><ul>{links}</ul></nav><main id="main">{body}'
+            f'{by_module(found, folder)}</main><footer><p>Written by tools/report.py.</p></footer></body></html>\n')
 
 
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--keep"]):
         sys.exit(__doc__)
     folder = Path(sys.argv[1])
     found, about = collect(folder), provenance()
@@ -287,11 +285,9 @@ def main():
     result = dict(about, passed=by_state["passed"], failed=by_state["failed"],
                   not_run=by_state["not run"], programs=found)
     (folder / "verification.json").write_text(json.dumps(result, indent=1) + "\n")
-    page = (f'<!doctype html><meta charset="utf-8"><title>Breakwater: verification</title>'
-            f'<style>{STYLE}</style><h1>Breakwater: verification</h1><p>{summary}</p>'
-            f'<p>commit {html.escape(about["commit"])}<br>{html.escape(about["machine"])}<br>'
-            f'{about["time"]}</p>{overview(found)}{"".join(section(i, folder) for i in found)}')
-    (folder / "report.html").write_text(page)
+    (folder / "report.html").write_text(page_of(found, about, summary, folder))
+    if sys.argv[2:]:
+        parts.keep(found, about)
     print(f"verification: {summary}; see {folder}/report.html")
     for item in found:
         if item["state"] != "passed":
@@ -300,4 +296,5 @@ def main():
     return 0 if not by_state["failed"] and not by_state["not run"] else 1
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

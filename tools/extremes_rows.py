@@ -350,7 +350,7 @@ ROWS = [
         lambda x: [f"fluid.start.vortices.0.swirl={x!r}"], 0.2, 100.0, goes_out, 0.01,
         "kinetic energy does not grow, and as much goes out as comes in"),
     Row("width of a slit", "cells", HERE + "slit.yaml", slit_of, 16.0, 0.02, slit, 0.25,
-        "velocity in the middle (cubic law)"),
+        "velocity in the middle (cubic law)", values=[16.0, 12.0, 8.0, 7.0, 6.5, 6.0, 5.5, 5.0, 4.5, 4.0, 3.0, 2.0, 1.0, 0.4, 0.02]),
     Row("blockage of a channel", "cells beside the plug", HERE + "plug.yaml", plug_of, 8.0, 0.02, plug, 0.35,
         "pressure drop (lubrication theory)"),
     Row("thickness of a beam", "particles across it", "bench/trade/cantilever.yaml", layers, 16.0, 1.0, beam_tip, 0.1,

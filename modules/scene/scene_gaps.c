@@ -8,8 +8,9 @@
 
 /* Cells that are looked at, at most; larger grids are looked at through larger ones. */
 static const double LOOKED_AT = 2e5;
-/* Narrower than this, in cells, a gap is not resolved: probes and the layers at both sides. */
-static const double NARROW = 3.0;
+/* Narrower than this, in cells, a gap is not resolved: markers take some 0.3 cells at each side,
+ * and a slit 4 to 4.5 cells wide lets through a third too little (docs/extremes.md). */
+static const double NARROW = 5.0;
 
 /* All bodies, where each has a true surface. */
 typedef struct {

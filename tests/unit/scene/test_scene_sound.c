@@ -72,8 +72,8 @@ static void ripples(bw_scene *s, int q)
   bw_ns_channel_refresh(s->fluid);
 }
 
-/* Velocities of a solid times a factor, and one of them as given. */
-static void change(bw_scene *s, double factor, double one)
+/* A solid moved along x by `way`, velocities times a factor, and one of them as given. */
+static void change(bw_scene *s, double way, double factor, double one)
 {
   bw_solid *solid = s->solid[0].solid;
   const size_t n = s->solid[0].n;
@@ -82,8 +82,10 @@ static void change(bw_scene *s, double factor, double one)
   bw_check_ok(BW_ALLOCATE(&V, 3 * n + 3));
   bw_solid_get_position(solid, X);
   bw_solid_get_velocity(solid, V);
-  for (size_t i = 0; i < 3 * n; i++)
+  for (size_t i = 0; i < 3 * n; i++) {
+    X[i] += i % 3 == 0 ? way : 0.0;
     V[i] *= factor;
+  }
   if (one != 0.0 && n > 0) V[0] = one;
   bw_solid_set_state(solid, X, V);
   bw_release(&X);
@@ -92,41 +94,30 @@ static void change(bw_scene *s, double factor, double one)
 
 static void a_particle_is_lost(bw_scene *s, int q)
 {
-  change(s, 1.0, q == 0 ? NAN : 0.0);
+  change(s, 0.0, 1.0, q == 0 ? NAN : 0.0);
 }
 
 static void a_particle_is_shot(bw_scene *s, int q)
 {
-  change(s, 1.0, q == 0 ? 1e4 : 0.0);
+  change(s, 0.0, 1.0, q == 0 ? 1e4 : 0.0);
 }
 
 static void energy_from_nowhere(bw_scene *s, int q)
 {
   (void)q;
-  change(s, 1.005, 0.0);
+  change(s, 0.0, 1.005, 0.0);
 }
 
 static void energy_is_gone(bw_scene *s, int q)
 {
   (void)q;
-  change(s, 0.99, 0.0);
+  change(s, 0.0, 0.99, 0.0);
 }
 
 /* One block is put half a spacing into the other. */
 static void passed_through(bw_scene *s, int q)
 {
-  bw_solid *solid = s->solid[0].solid;
-  const size_t n = s->solid[0].n;
-  double *X = NULL, *V = NULL;
-  bw_check_ok(BW_ALLOCATE(&X, 3 * n + 3));
-  bw_check_ok(BW_ALLOCATE(&V, 3 * n + 3));
-  bw_solid_get_position(solid, X);
-  bw_solid_get_velocity(solid, V);
-  for (size_t i = 0; i < n; i++)
-    X[3 * i] += q == 0 ? 0.05 : 0.0;
-  bw_solid_set_state(solid, X, V);
-  bw_release(&X);
-  bw_release(&V);
+  change(s, q == 0 ? 0.05 : 0.0, 1.0, 0.0);
 }
 
 /* All of the load at once on a body lighter than the fluid that it carries along. */

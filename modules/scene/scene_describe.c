@@ -85,6 +85,7 @@ static void describe_fluid(bw_scene *s, bw_log *log)
   if (s->inner.n > 0 || s->markers != NULL || (s->planned && s->n_solids == 0 && !s->rigid)) {
     int64_t n[2] = {(int64_t)s->inner.n, (int64_t)s->wall.n};
     bw_comm_sum_int(s->comm, 2, n);
+    s->n_markers = n[0];
     bw_log_info(log, "surfaces   %lld markers, %lld probes on the true surfaces", (long long)n[0],
                 (long long)n[1]);
   }
@@ -223,6 +224,18 @@ static bw_status check_step(bw_scene *s)
   return BW_OK;
 }
 
+/* Of the whole run where its end is known, else of a thousand steps. Steps end where a row of the
+ * history is written, in equal parts of the time between two. */
+static void tell_cost(const bw_scene *s, double dt, double end, bw_log *log)
+{
+  const double asked = s->config.output.sample_every, row = isnan(asked) ? end / 200.0 : asked;
+  const double each = row > 0.0 ? row / ceil(row / dt * (1.0 - 1e-12)) : dt;
+  const double steps = isnan(end) ? 1000.0 : fmax(1.0, end / each);
+  bw_scene__cost c = bw_scene__cost_of_step(s, isnan(end) ? dt : each);
+  c.cells *= steps, c.markers *= steps, c.particles *= steps;
+  bw_scene__cost_tell(s, &c, isnan(end) ? "of a thousand steps about " : "about ", log);
+}
+
 bw_status bw_scene_describe(bw_scene *s, bw_log *log)
 {
   char *text = NULL;
@@ -257,6 +270,7 @@ bw_status bw_scene_describe(bw_scene *s, bw_log *log)
   bw_log_info(log, "time step  %.3g now%s%.3g", limit,
               isnan(end) ? "; end by " : ", steps in all about ",
               isnan(end) ? (double)s->config.n_phases : end / limit);
+  tell_cost(s, limit, end, log);
   bw_scene__warn(s, log);
   warn_of_slip(s, log);
   warn_of_walls(s, log);

@@ -81,6 +81,11 @@ typedef struct {
   double start, most; /* [M L^2/T^2] */
 } bw_scene__energies;
 
+/* Updates of a run so far, or of a step, of all ranks (scene_updates.c). */
+typedef struct {
+  double cells, markers, particles;
+} bw_scene__cost;
+
 struct bw_scene {
   bw_scene_config config;
   const bw_comm *comm; /* borrowed */
@@ -136,6 +141,8 @@ struct bw_scene {
   int phase;
   double settled_energy; /* of the fluid at the last look; NaN: none */
   bool watched;
+  bw_scene__cost cost; /* of this run so far */
+  int64_t n_markers;   /* on what does not deform, of all ranks; known when it is described */
 
   /* scene_sound.c: is it still physics? */
   struct {
@@ -171,6 +178,11 @@ bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,
 /* Lines of memory and pores; refuses steps beyond a limit. Collective. */
 bw_status bw_scene__plan_describe(bw_scene *s, bw_log *log) BW_MUST_CHECK;
 
+/* scene_updates.c: what a step of dt [T] costs; of iterated steps one try. Local. */
+bw_scene__cost bw_scene__cost_of_step(const bw_scene *s, double dt);
+void bw_scene__cost_add(bw_scene *s, double dt);
+/* One line of the log. */
+void bw_scene__cost_tell(const bw_scene *s, const bw_scene__cost *c, const char *how, bw_log *log);
 /* scene_sound.c: after a step; BW_EDIVERGED where it is no physics any more. Collective. */
 bw_status bw_scene__look(bw_scene *s) BW_MUST_CHECK;
 

@@ -240,6 +240,7 @@ static bw_status run_scene(driver *r, const bw_scene_config *config)
   if (r->stopped) return bw_case_unfinished(r->run, "checkpoint-last.h5");
   BW_TRY(bw_scene_picture(s, r->run));
   BW_TRY(bw_scene__warn_leak(s));
+  bw_scene__cost_tell(s, &s->cost, "", log);
   return bw_scene__watch_report(s, r->run, log);
 }
 

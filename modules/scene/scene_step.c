@@ -264,6 +264,7 @@ bw_status bw_scene_step(bw_scene *s, double until)
   if (s->water != NULL) bw_ulph_set_time(s->water->fluid, s->time);
   s->steps++;
   s->phase_steps++;
+  bw_scene__cost_add(s, dt);
   BW_TRY(bw_scene__look(s));
   return turn_phase(s);
 }

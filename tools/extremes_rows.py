@@ -145,7 +145,7 @@ def medium_bears(v, x, b):
 
 
 def drag_of_order(v, x, b):
-    """Decades from a drag of 3 density U^2 d, U the mean velocity: finite elements have 5.4 at Re 20, a
+    """Decades from a drag of 3 density U^2 d, U the mean velocity: finite elements have 2.7 at Re 20, a
     cylinder in the middle of this stream, 1.5 U and a quarter blocked, 2 to 3 up to Re 2e5."""
     return math.log10(max(v.last("drag.reaction.x") / 0.2, 1e-9) / 3.0)
 

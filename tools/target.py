@@ -24,7 +24,7 @@ import estimate
 SOURCE = Path(__file__).resolve().parent.parent
 # What --check says that was measured on scenes of a kind: the scenes of tools/trade.py, and how many cells
 # or particles they have across what is thin (of particles: over the depth of the water), the most of them.
-KINDS = {"the drag of a cylinder at Re 20": (["cylinder"], 15.0),
+KINDS = {"drags of a cylinder at Re 20 and of an array in slow flow": (["cylinder", "array"], 15.0),
          "the tip of a plate bent by a stream": (["plate"], 8.0),
          "deflection and frequency of clamped beams": (["cantilever", "swing"], 20.0),
          "the front of a dam break of 20 particles' depth": (["dam break"], 20.0)}

@@ -49,7 +49,17 @@ def fronts(build):
         curves = [(scene, sorted((p["core_seconds"], abs(p["error"])) for p in points.values()
                                  if p.get("error")), False) for scene, points in scenes.items()]
         out.append(chart(knob, "core-seconds", [c for c in curves if c[1]], log_x=True, log_y=True))
-    return "".join(out)
+    return held_out(build) + "".join(out)
+
+
+def held_out(build):
+    """Scenes that no promise of --check was set by."""
+    found, word = newest(build / "trade" / "held_out.json", SOURCE / "docs/verification/trade/held_out.json")
+    rows = [[html.escape(name), html.escape(p["source"]), f"{100 * p['promise']:.2g} %", f"{100 * p.get('error', math.nan):+.2g} %",
+             '<span class="passed">yes</span>' if p["holds"] else '<span class="failed">NO</span>']
+            for name, p in (found or {}).items()]
+    return table(f"What --check promises, on scenes that it was not set by ({word})",
+                 ["scene", "reference", "promised", "error", "holds"], rows)
 
 
 # ---- extremes -----------------------------------------------------------------------------------

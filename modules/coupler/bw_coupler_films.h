@@ -11,9 +11,17 @@
  * Between faces of solids of particles, and between these and walls (bw_coupler.h): crack faces,
  * fragments, bodies. Markers stay, so that no face leaks that was tight. A network of facing
  * particles has the film (bw_film_net.h), with the pressure that probes read at its edges. Below
- * two thirds of the limit its forces stand in the place of the grid's, from there to the limit
+ * five sixths of the limit its forces stand in the place of the grid's, from there to the limit
  * more and more of the grid's: of the load of two faces the half of the difference, so that
- * momentum stays. It is implicit in each sub-step of the solid. */
+ * momentum stays. It is implicit in each sub-step of the solid.
+ *
+ * flux: what flows in these leaves the grid and enters it at the edges, by the cubic law: along a
+ * film the grid's velocity is braked, the film's volume is taken out and put in, and markers keep
+ * their memory where bonds have broken, so that faces are tight (solid_films_grid.c). Without it
+ * the grid lets through a slit what its markers do. The film answers the pressure at once, which a
+ * fluid does within h^2/(12 nu): it has to be some steps at most, or the pressure that the flow
+ * makes and the flow that the pressure makes feed each other. So a step dt is refused where
+ * h^3/(12 nu dt) is above twenty cells. */
 #pragma once
 #include <stdbool.h>
 
@@ -25,4 +33,5 @@ typedef struct {
   double roughness; /* least gap of a film [L]            required where on, at most a cell */
   double least;     /* pressure below which a film between particles cavitates, at most 0
                        [M/(L T^2)]                            default -INFINITY: it bears any */
+  bool flux;        /* what flows in a film between particles is the grid's   default false */
 } bw_coupler_films;

@@ -36,7 +36,7 @@ typedef struct {
   uint8_t *bits;                                               /* (n, bits_bytes) */
   double *V_before, *F, *M;                                    /* (n,3) */
   double *bodies;                                              /* joined.c; NULL: none */
-  double *edge; /* (n) pressure at the edges of films; NULL: no films */
+  double *edge, *carried; /* (n) of films: pressure at edges, volume brought; NULL: no films */
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the

@@ -92,6 +92,7 @@ bw_status bw_coupler__solid_films_create(bw_coupler *c)
     find_walls(c, &net);
     find_spread(c, c->films->spread);
     st = bw_film_net_create(&net, &c->films->net);
+    BW_THEN(st, bw_coupler__solid_films_grid_create(c));
   }
   BW_TRY(bw_comm_agree(bw_solid_comm(c->solid), st));
   return make_interface(c, &c->films->interface);
@@ -99,12 +100,15 @@ bw_status bw_coupler__solid_films_create(bw_coupler *c)
 
 static void release_points(bw_coupler__solid_films *f)
 {
-  double **const all[] = {&f->X,    &f->N,       &f->H,       &f->A,       &f->mobility,
-                          &f->V,    &f->L,       &f->F,       &f->T,       &f->p_mid,
-                          &f->edge, &f->probe_X, &f->probe_N, &f->probe_A, &f->traction};
+  double **const all[] = {&f->X,    &f->N,       &f->H,       &f->A,          &f->mobility,
+                          &f->V,    &f->L,       &f->F,       &f->T,          &f->p_mid,
+                          &f->edge, &f->probe_X, &f->probe_N, &f->probe_A,    &f->traction,
+                          &f->told, &f->brake,   &f->moved,   &f->source_rate};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&f->probe_of);
+  bw_release(&f->point_node);
+  bw_release(&f->source_cell);
   bw_release(&f->flag);
   f->room = 0;
 }
@@ -113,15 +117,18 @@ static bw_status make_points(bw_coupler__solid_films *f, size_t n)
 {
   if (n <= f->room) return BW_OK;
   const size_t room = n + n / 8;
-  double **const all[] = {&f->X, &f->N,       &f->V,       &f->L,       &f->F,
-                          &f->T, &f->probe_X, &f->probe_N, &f->probe_A, &f->traction};
-  double **const scalar[] = {&f->H, &f->A, &f->mobility, &f->edge, &f->p_mid};
+  double **const all[] = {&f->X,       &f->N,       &f->V,       &f->L,        &f->F,    &f->T,
+                          &f->probe_X, &f->probe_N, &f->probe_A, &f->traction, &f->told, &f->brake};
+  double **const scalar[] = {&f->H, &f->A, &f->mobility, &f->edge, &f->p_mid, &f->moved};
   release_points(f);
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     BW_TRY(BW_ALLOCATE(all[q], 3 * room));
   for (size_t q = 0; q < sizeof scalar / sizeof *scalar; q++)
     BW_TRY(BW_ALLOCATE(scalar[q], room));
   BW_TRY(BW_ALLOCATE(&f->probe_of, room));
+  BW_TRY(BW_ALLOCATE(&f->point_node, room));
+  BW_TRY(BW_ALLOCATE(&f->source_cell, 8 * room));
+  BW_TRY(BW_ALLOCATE(&f->source_rate, 8 * room));
   BW_TRY(BW_ALLOCATE(&f->flag, room));
   f->room = room;
   return BW_OK;
@@ -129,11 +136,11 @@ static bw_status make_points(bw_coupler__solid_films *f, size_t n)
 
 static void release_rows(bw_coupler__solid_films *f)
 {
-  double **const all[] = {&f->base, &f->density, &f->before, &f->v, &f->a, &f->edge_p};
+  double **const all[] = {&f->base, &f->density, &f->before, &f->v, &f->a, &f->edge_p, &f->carried};
   for (size_t q = 0; q < sizeof all / sizeof *all; q++)
     bw_release(all[q]);
   bw_release(&f->row);
-  bw_release(&f->keeps);
+  bw_release(&f->node_of);
 }
 
 void bw_coupler__solid_films_destroy(bw_coupler__solid_films **films)
@@ -142,6 +149,7 @@ void bw_coupler__solid_films_destroy(bw_coupler__solid_films **films)
   if (f == NULL) return;
   release_points(f);
   release_rows(f);
+  bw_coupler__solid_films_grid_release(f);
   bw_release(&f->list);
   bw_film_net_destroy(&f->net);
   bw_pd_interface_destroy(&f->interface);
@@ -158,10 +166,11 @@ bw_status bw_coupler__solid_films_rows(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&f->v, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&f->a, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&f->edge_p, c->n));
+  BW_TRY(BW_ALLOCATE(&f->carried, c->n));
   BW_TRY(BW_ALLOCATE(&f->row, c->n));
-  BW_TRY(BW_ALLOCATE(&f->keeps, c->n));
+  BW_TRY(BW_ALLOCATE(&f->node_of, c->n));
   for (size_t i = 0; i < c->n; i++)
-    f->edge_p[i] = NAN, f->keeps[i] = 1.0;
+    f->edge_p[i] = NAN, f->node_of[i] = -1;
   return BW_OK;
 }
 
@@ -170,9 +179,39 @@ bool bw_coupler__solid_films_any(const bw_coupler *c)
   return c->films != NULL && c->films->n_nodes > 0;
 }
 
+bool bw_coupler__solid_films_flow(const bw_coupler *c)
+{
+  return c->config.films.flux && bw_coupler__solid_films_any(c);
+}
+
+/* From none where a gap is a cell, on to all where it is two. */
+static double apart(const bw_coupler *c, size_t p)
+{
+  const int32_t a = c->films->node_of[p];
+  return a < 0 ? 1.0 : fmin(1.0, fmax(0.0, c->films->node[a].gap / c->h - 1.0));
+}
+
 double bw_coupler__solid_films_keep(const bw_coupler *c, size_t p)
 {
-  return c->films == NULL ? 1.0 : c->films->keeps[p];
+  const bool tight = c->films != NULL && c->config.films.flux;
+  if (c->broken[p] > 0 && !tight) return NAN;
+  return c->films == NULL || tight ? 1.0 : apart(c, p);
+}
+
+bw_status bw_coupler__solid_films_aim(bw_coupler *c)
+{
+  const bw_coupler__solid_films *f = c->films;
+  double *V = c->marker_V;
+  if (!bw_coupler__solid_films_flow(c)) return BW_OK;
+  for (size_t q = 0; q < c->n_surface; q++) {
+    const int32_t a = f->node_of[c->particle[q]];
+    const double own = apart(c, (size_t)c->particle[q]);
+    if (a < 0) continue;
+    for (size_t d = 0; d < 3; d++)
+      V[3 * q + d] += (1.0 - own) * (f->told[3 * (size_t)a + d] - V[3 * q + d]);
+  }
+  /* Blocks know the mean of their members. */
+  return c->block > 1 ? bw_coupler__blocks_follow(c) : BW_OK;
 }
 
 double *bw_coupler__solid_films_edge(const bw_coupler *c)
@@ -256,11 +295,10 @@ bw_status bw_coupler__solid_films_find(bw_coupler *c)
   f->n_used = bw_film_net_used(f->net, &f->used);
   f->n_edges = bw_film_net_edges(f->net, &f->edge_point);
   for (size_t i = 0; i < c->n; i++)
-    f->keeps[i] = 1.0;
+    f->node_of[i] = -1;
   for (size_t a = 0; a < f->n_nodes; a++)
     if (bw_coupler__film_own(f, f->node[a].point))
-      f->keeps[f->list[f->node[a].point].particle] =
-          fmin(1.0, fmax(0.0, f->node[a].gap / c->h - 1.0));
+      f->node_of[f->list[f->node[a].point].particle] = (int32_t)a;
   for (size_t i = 0; i < c->n; i++)
     f->row[i] = -1;
   for (size_t q = 0; q < c->n_surface; q++)

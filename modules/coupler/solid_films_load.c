@@ -69,6 +69,11 @@ static void tell_used(bw_coupler *c, const double value[], const int32_t row[], 
     memcpy(out + 3 * (ptrdiff_t)f->used[u], packed + 3 * u, 3 * sizeof *out);
 }
 
+void bw_coupler__solid_films_tell(bw_coupler *c, const double value[])
+{
+  tell_used(c, value, NULL, c->films->V);
+}
+
 /* F of the used points to nothing. */
 static void clear_used(bw_coupler__solid_films *f)
 {
@@ -148,6 +153,7 @@ bw_status bw_coupler__solid_films_replace(bw_coupler *c, double dt, double relax
     for (ptrdiff_t d = 0; d < 3; d++)
       c->load[3 * f->list[s].particle + d] += f->F[3 * s + d];
   }
+  if (c->config.films.flux && c->config.load == BW_LOAD_REACTION) bw_coupler__solid_films_bear(c);
   return BW_OK;
 }
 
@@ -157,6 +163,8 @@ void bw_coupler__solid_films_base(bw_coupler *c, const double F[])
 {
   bw_coupler__solid_films *f = c->films;
   memcpy(f->base, F, 3 * c->n * sizeof *f->base);
+  /* What the last step has brought is on the grid now. */
+  memset(f->carried, 0, c->n * sizeof *f->carried);
   /* From now on the solid's force is that, without films. */
   memset(f->density, 0, 3 * c->n * sizeof *f->density);
 }
@@ -178,6 +186,7 @@ bw_status bw_coupler__solid_films_press(bw_coupler *c, double dt)
   }
   tell_used(c, ahead, NULL, f->V);
   BW_TRY(bw_film_net_press(f->net, dt, f->V, f->edge, drive));
+  if (c->config.films.flux) bw_coupler__solid_films_bring(c, dt);
   clear_used(f);
   bw_film_net_force(f->net, f->F);
   memset(f->density, 0, 3 * c->n * sizeof *f->density);

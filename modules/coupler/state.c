@@ -12,6 +12,7 @@ enum { N_FIELDS = 4 };
 static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "solid/body";
 static const char more_work_name[] = "solid/work_of_load";
 static const char film_name[] = "solid/film_edge", film_work_name[] = "solid/work_of_films";
+static const char brought_name[] = "solid/film_brought";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
@@ -26,6 +27,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->M);
   bw_release(&s->bodies);
   bw_release(&s->edge);
+  bw_release(&s->carried);
   s->filled = false;
 }
 
@@ -49,7 +51,10 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
   BW_TRY(bw_coupler__joined_room(c, &s->bodies));
-  if (c->films != NULL) BW_TRY(BW_ALLOCATE(&s->edge, c->n));
+  if (c->films != NULL) {
+    BW_TRY(BW_ALLOCATE(&s->edge, c->n));
+    BW_TRY(BW_ALLOCATE(&s->carried, c->n));
+  }
   return BW_ALLOCATE(&s->M, 3 * c->n);
 }
 
@@ -77,7 +82,10 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
   bw_coupler__joined_capture(c, s->bodies);
-  if (c->films != NULL) memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
+  if (c->films != NULL) {
+    memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
+    memcpy(s->carried, bw_coupler__solid_films_carried(c), c->n * sizeof *s->carried);
+  }
   s->filled = true;
 }
 
@@ -143,6 +151,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   if (c->films != NULL) {
     BW_TRY(bw_checkpoint_put_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
+    BW_TRY(bw_checkpoint_put_table(ck, brought_name, total, c->n, id, 1, BW_CK_DOUBLE, s->carried));
     BW_TRY(bw_checkpoint_put_numbers(ck, film_work_name, 1, s->work + 4));
   }
   return bw_checkpoint_put_table(ck, "solid/bonds", total, c->n, id,
@@ -181,11 +190,16 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
     BW_TRY(bw_checkpoint_get_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   /* Films that begin with the restart know no pressure yet. */
   for (size_t i = 0; c->films != NULL && i < c->n; i++)
-    s->edge[i] = NAN;
+    s->edge[i] = NAN, s->carried[i] = 0.0;
+  /* Particles that lost a bond had no memory, where what flows in films was not the grid's. */
+  for (size_t i = 0; c->config.films.flux && i < 3 * c->n; i++)
+    if (isnan(s->M[i])) s->M[i] = 0.0;
   if (c->films != NULL && bw_checkpoint_has(ck, film_name)) {
     BW_TRY(bw_checkpoint_get_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
     BW_TRY(bw_checkpoint_get_numbers(ck, film_work_name, 1, s->work + 4));
   }
+  if (c->films != NULL && bw_checkpoint_has(ck, brought_name))
+    BW_TRY(bw_checkpoint_get_table(ck, brought_name, total, c->n, id, 1, BW_CK_DOUBLE, s->carried));
   return bw_checkpoint_get_table(ck, "solid/bonds", total, c->n, id,
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
@@ -209,7 +223,10 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
-  if (c->films != NULL) memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
+  if (c->films != NULL) {
+    memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
+    memcpy(bw_coupler__solid_films_carried(c), s->carried, c->n * sizeof *s->carried);
+  }
   return bw_coupler__joined_restore(c, s->fluid_numbers[0], s->bodies);
 }
 

@@ -78,7 +78,10 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
 {
   bw_real *const *u = bw_ns_channel_velocity(c->fluid);
   c->stepped = true;
-  if (c->films != NULL) BW_TRY(bw_coupler__solid_films_find(c));
+  if (c->films != NULL) {
+    BW_TRY(bw_coupler__solid_films_find(c));
+    if (c->config.films.flux) BW_TRY(bw_coupler__solid_films_open(c, dt));
+  }
   bw_timer_start(c->timer, BW_PART_FORCING);
   /* Markers of the surface at t, with its velocity; their force of the step begins at zero. */
   bw_status st = bw_coupler__place_markers(c);
@@ -91,8 +94,12 @@ bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt)
     bw_ns_channel_predict(c->fluid, r, dt); /* u*: convection, diffusion, old pressure */
     bw_timer_stop(c->timer, BW_PART_MOMENTUM);
     bw_timer_start(c->timer, BW_PART_FORCING);
+    /* Slits are closed to the grid: before the markers, which are not to remember what is not
+     * theirs, and after them. */
+    if (c->films != NULL) bw_coupler__solid_films_brake(c, dt, false);
     bw_ibm_mdf_force(c->ibm, u, dt); /* u^: no slip on the moving surface */
     if (c->floats != NULL) bw_coupler_rigid_force(c->floats, dt);
+    if (c->films != NULL) bw_coupler__solid_films_brake(c, dt, true);
     bw_timer_stop(c->timer, BW_PART_FORCING);
     bw_timer_start(c->timer, BW_PART_MOMENTUM);
     const double before = bw_ns_channel_cost(c->fluid).poisson;

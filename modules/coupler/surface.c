@@ -120,32 +120,31 @@ bw_status bw_coupler__follow_surface(bw_coupler *c)
   /* Markers, roots, velocities of those inside the box. */
   place(c);
   if (c->block > 1) BW_TRY(bw_coupler__blocks_follow(c));
-  /* They are handed over at the next step's beginning:
-   * until then the old forces can be asked for. */
+  /* Handed over when the next step begins: until then the old forces can be asked for. */
   c->markers_moved = true;
   if (c->films != NULL) BW_TRY(bw_coupler__solid_films_follow(c));
   bw_timer_work(c->timer, BW_PART_SURFACE, (double)c->n);
   return BW_OK;
 }
 
-/* The memory of the surface points: that of their particles, none where a bond has broken, less and
- * less where a film stands for the grid. */
+/* The memory of the surface points: that of their particles, or a part of it, or none. */
 static void place_memory(bw_coupler *c)
 {
   for (size_t q = 0; q < c->n_surface; q++) {
     const size_t p = (size_t)c->particle[q];
     const double keeps = bw_coupler__solid_films_keep(c, p);
     for (size_t d = 0; d < 3; d++)
-      c->marker_M[3 * q + d] = c->broken[p] > 0 ? NAN : keeps * c->M[3 * p + d];
+      c->marker_M[3 * q + d] = keeps * c->M[3 * p + d];
   }
 }
 
 bw_status bw_coupler__place_markers(bw_coupler *c)
 {
   if (!c->markers_moved) return BW_OK;
-  c->markers_moved = false;
   const bw_coupler__blocks *b = &c->blocks;
+  c->markers_moved = false;
   place_memory(c);
+  if (c->films != NULL) BW_TRY(bw_coupler__solid_films_aim(c));
   c->handed = c->block > 1 ? b->n : c->n_surface;
   if (c->block > 1) {
     bw_coupler__blocks_gather_memory(c);

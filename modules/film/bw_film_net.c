@@ -222,6 +222,44 @@ static double flow(const bw_film_net *w, const film_net_link *link)
   return link->k * (w->p[link->from] - far + film_net__dot(link->way, w->f));
 }
 
+void bw_film_net_bring(const bw_film_net *w, double dt, double moved[])
+{
+  for (size_t l = 0; l < w->n_links; l++) {
+    const film_net_link *link = w->link + l;
+    const bw_film_node *from = w->node + link->from, *to = link->to < 0 ? from : w->node + link->to;
+    const double volume = 0.5 * (from->share + to->share) * dt * flow(w, link);
+    moved[from->point] -= volume;
+    moved[link->to < 0 ? w->edge[-1 - link->to] : to->point] += volume;
+  }
+  for (size_t a = 0; a < w->n_nodes; a++) {
+    if (!(w->join[a] > 0.0)) continue;
+    const double volume = w->node[a].share * dt * w->join[a] * bw_film_net__jump(w, w->p, a);
+    moved[w->node[a].point] -= volume;
+    for (size_t q = w->foot_at[a]; q < w->foot_at[a + 1]; q++)
+      moved[w->foot[q].point] += w->foot[q].weight * volume;
+  }
+}
+
+void bw_film_net_give(const bw_film_net *w, const double f[], double F[])
+{
+  for (size_t a = 0; a < w->n_nodes; a++)
+    for (size_t d = 0; d < 3; d++) {
+      F[3 * (size_t)w->node[a].point + d] += 0.5 * f[3 * a + d];
+      for (size_t q = w->foot_at[a]; q < w->foot_at[a + 1]; q++)
+        F[3 * (size_t)w->foot[q].point + d] += 0.5 * w->foot[q].weight * f[3 * a + d];
+    }
+}
+
+void bw_film_net_mean(const bw_film_net *w, const double V[], double mean[])
+{
+  for (size_t a = 0; a < w->n_nodes; a++)
+    for (size_t d = 0; d < 3; d++) {
+      mean[3 * a + d] = 0.5 * V[3 * (size_t)w->node[a].point + d];
+      for (size_t q = w->foot_at[a]; q < w->foot_at[a + 1]; q++)
+        mean[3 * a + d] += 0.5 * w->foot[q].weight * V[3 * (size_t)w->foot[q].point + d];
+    }
+}
+
 double bw_film_net_flux(const bw_film_net *w, const double x[3], const double n[3])
 {
   double sum = 0.0, from[3], inside[3];

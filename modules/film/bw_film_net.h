@@ -121,6 +121,15 @@ void bw_film_net_between(const bw_film_net *net, const double L[], double T[]);
 /* F (n,3) -= the forces of T (nodes,3) between the faces in the share of the film, which stands for
  * them. */
 void bw_film_net_replace(const bw_film_net *net, const double T[], double F[]);
+/* moved (n) += dt times the volume per time that the film of the last press brings to each point:
+ * to nodes what their gap gains, to edges what comes out there; of each way its share. All of it
+ * adds up to nothing. */
+void bw_film_net_bring(const bw_film_net *net, double dt, double moved[]);
+/* F (n,3) += f (nodes,3), half on the node's point, half under its foot; in front of a wall the
+ * wall bears the other half. */
+void bw_film_net_give(const bw_film_net *net, const double f[], double F[]);
+/* mean (nodes,3): of V (n,3) at both faces, 0 at a wall. */
+void bw_film_net_mean(const bw_film_net *net, const double V[], double mean[]);
 /* What flows in the film of the last press through the plane through x with the normal n
  * [L^3/T]. */
 double bw_film_net_flux(const bw_film_net *net, const double x[3], const double n[3]);

@@ -143,6 +143,7 @@ void bw_ns_channel_destroy(bw_ns_channel **pointer)
   bw_poisson_destroy(&ns->poisson);
   bw_ns__planes_destroy(ns);
   bw_ns__eddy_destroy(ns);
+  bw_ns__sources_destroy(ns);
   for (int c = 0; c < 3; c++) {
     bw_release(&ns->u[c]);
     bw_release(&ns->R[c]);

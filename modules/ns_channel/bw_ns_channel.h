@@ -149,6 +149,12 @@ void bw_ns_channel_predict(bw_ns_channel *ns, int r, double dt);
 /* Ghosts beyond the sides from the velocity inside and in the halos, which are valid: for who has
  * changed u* next to a side and reads beyond it before project. Local. */
 void bw_ns_channel_ghosts(bw_ns_channel *ns);
+/* Volume that enters in n cells (bw_at, of this rank; one may come more than once): rate (n) per
+ * volume and time [1/T], below 0 where it leaves. Copied; div u is that from the next projection
+ * on, until other sources are given, 0 in all other cells. Over all cells and ranks it has to add
+ * up to nothing, rate times volume, as nothing else lets it out. BW_EMEM. Local. */
+bw_status bw_ns_channel_set_sources(bw_ns_channel *ns, size_t n, const ptrdiff_t cell[],
+                                    const double rate[]) BW_MUST_CHECK;
 /* The second half: updates halos itself, makes u free of divergence; r = 2 advances the time. A
  * constant flow rate is met exactly after every project, whatever the body took: predict applies
  * the gradient of the sub-step before, project the rest. Collective. */
@@ -176,7 +182,8 @@ void bw_ns_channel_set_time(bw_ns_channel *ns, double t);
 /* After fields were overwritten through the views (restart): boundaries, halos. Collective. */
 void bw_ns_channel_refresh(bw_ns_channel *ns);
 
-/* Largest |div u| over the cells times dx over the largest |u| [-]; 0 at rest. Collective. */
+/* Largest |div u| over the cells, less the sources, times dx over the largest |u| [-]; 0 at rest.
+ * Collective. */
 double bw_ns_channel_divergence(bw_ns_channel *ns);
 
 /* What a line of a history wants to know of the present field. */

@@ -70,6 +70,13 @@ typedef struct {
   double rate;            /* this rank's largest 4 nu_t sum 1/dx_i^2 [1/T] */
 } bw_ns_eddies;
 
+/* Volume that enters in some cells of this rank, in any order (ns_source.c). */
+typedef struct {
+  size_t n, room;
+  ptrdiff_t *cell; /* (room) */
+  double *rate;    /* (room) [1/T] */
+} bw_ns_sources;
+
 struct bw_ns_channel {
   bw_grid *grid; /* borrowed */
   const bw_grid_view *g;
@@ -92,6 +99,7 @@ struct bw_ns_channel {
   double applying; /* the same of the step in progress */
   bool impulsive;  /* velocity was just set: its bulk need not be the wanted one */
   bw_ns_eddies eddy;
+  bw_ns_sources sources;
   double courant;     /* this rank's largest rate of convection [1/T]; NaN when not finite */
   bool courant_known; /* courant_all is that of the present field */
   double courant_all, eddy_all; /* of all ranks */
@@ -127,6 +135,10 @@ double bw_ns__divergence(const bw_grid_view *g, const bw_ns_metrics *m, bw_real 
 double bw_ns__correct(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3],
                       bw_real *p, const bw_real *phi, double scale, double shift, bool courant);
 double bw_ns__courant(const bw_grid_view *g, const bw_ns_metrics *m, bw_real *const u[3]);
+
+/* ns_source.c. f -= scale times the rate of the sources. Local. */
+void bw_ns__sources_take(const bw_ns_channel *ns, double scale, bw_real *f);
+void bw_ns__sources_destroy(bw_ns_channel *ns);
 
 /* ns_limit.c: what is known of the step before there is a field. Collective. */
 void bw_ns__limits_create(bw_ns_channel *ns);

@@ -169,6 +169,8 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
    * velocity. */
   const double sum =
       bw_ns__divergence(ns->g, &ns->metrics, ns->u, 1.0 / gamma_dt, flow_rate && along_x, ns->phi);
+  /* What enters the box inside is what div u ends with. */
+  bw_ns__sources_take(ns, 1.0 / gamma_dt, ns->phi);
   /* The change that the flow rate still needs is uniform, hence without divergence. */
   if (flow_rate) {
     shift = flow_rate_shift(ns, along_x ? sum : sum_along(ns));
@@ -188,7 +190,8 @@ static void project(bw_ns_channel *ns, int r, double dt, bool fresh)
   lap(&mark, &ns->cost.halo);
   /* The watched box books p^ and the shift before they are spent. */
   bw_ns__box_projection(ns, gamma_dt, shift);
-  /* u <- u* - gamma_r dt grad p^, p <- p + p^ (POROUS 3.72, 3.73): from here on div u = 0. */
+  /* u <- u* - gamma_r dt grad p^, p <- p + p^ (POROUS 3.72, 3.73): from here on div u = 0, or
+   * what the sources give. */
   ns->courant = bw_ns__correct(ns->g, &ns->metrics, ns->u, ns->p, ns->phi, gamma_dt,
                                along_x ? shift : 0.0, r == BW_NS_STAGES - 1);
   ns->courant_known = false;

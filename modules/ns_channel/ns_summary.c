@@ -2,16 +2,20 @@
 #include "ns_channel_internal.h"
 
 #include <math.h>
+#include <string.h>
 
-/* Largest |div u| and largest |u| of this rank. */
-static void extremes(const bw_ns_channel *ns, double most[2])
+/* Largest |div u| but for sources, and largest |u| of this rank. */
+static void extremes(bw_ns_channel *ns, double most[2])
 {
   const bw_grid_view *g = ns->g;
+  /* phi is free between the sub-steps. */
+  memset(ns->phi, 0, g->size * sizeof *ns->phi);
+  bw_ns__sources_take(ns, 1.0, ns->phi);
   most[0] = most[1] = 0.0;
   for (int k = 1; k <= g->m[2]; k++)
     for (int j = 1; j <= g->m[1]; j++)
       for (int i = 1; i <= g->m[0]; i++) {
-        double div = 0.0;
+        double div = (double)ns->phi[bw_at(g, i, j, k)];
         /* Both faces of a cell are looked at, so that the lowest ones count as well. */
         for (int c = 0; c < ns->components; c++) {
           const ptrdiff_t at = bw_at(g, i, j, k);

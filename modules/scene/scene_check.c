@@ -75,6 +75,9 @@ static bw_status check_films(const bw_scene_config *c)
   BW_REQUIRE(isnan(limit) || !isnan(roughness), BW_EINPUT,
              "fluid.film_limit = %g: films have a fluid.film_roughness; give it, or leave both out",
              limit);
+  BW_REQUIRE(c->fluid.film_flux == 0 || (!isnan(roughness) && bw_scene__any_deforms(c)), BW_EINPUT,
+             "fluid.film_flux: it is that of films (fluid.film_roughness) between bodies that "
+             "deform; leave it out");
   if (isnan(roughness)) return BW_OK;
   BW_REQUIRE(bw_scene__any_rigid(c) || bw_scene__any_deforms(c), BW_EINPUT,
              "fluid.film_roughness = %g: films brake bodies that are rigid or deform, and there is "

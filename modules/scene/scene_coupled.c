@@ -48,6 +48,7 @@ bw_status bw_scene__coupled_create(bw_scene *s)
     c.gravity[d] = s->config.gravity[d];
   find_leaning(s, &c);
   c.films.on = !isnan(s->config.fluid.film_roughness);
+  c.films.flux = s->config.fluid.film_flux != 0;
   c.films.limit = s->config.fluid.film_limit, c.films.roughness = s->config.fluid.film_roughness;
   if (!isnan(s->config.fluid.film_least)) c.films.least = s->config.fluid.film_least;
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid[0].solid, &s->coupler));

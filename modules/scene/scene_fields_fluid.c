@@ -3,6 +3,7 @@
 #include "bw_ns_words.h"
 #include "scene_internal.h"
 
+static const bw_config_word flux_words[] = {{"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 #define V BW_CONFIG_VALUE
 static const bw_config_word model_words[] = {
     {"incompressible", BW_SCENE_INCOMPRESSIBLE, "a flow on a grid"},
@@ -84,5 +85,10 @@ const bw_config_field bw_scene__fluid_fields[] = {
     V(bw_scene_fluid, film_least, BW_OPTIONAL, BW_ANY, "M/(L T2)",
       "pressure, 0 or less, below which a film between bodies that deform cavitates; left out: it "
       "bears any"),
+    BW_CONFIG_WORD(
+        bw_scene_fluid, film_flux, BW_OPTIONAL, flux_words,
+        "what flows in a film between bodies that deform leaves the grid and enters it "
+        "at the film's edges, by the cubic law; for films that answer within some steps; "
+        "left out: no"),
     BW_CONFIG_END};
 #undef V

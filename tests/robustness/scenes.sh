@@ -44,6 +44,7 @@ refused $flow gauges.wake.every=1e-9 "gauges.wake.every = 1e-09: 2e+10 times to 
 refused $beam bodies.beam.motion=rigid "a rigid one has rigid.held"
 refused falling_sphere fluid.film_roughness=0.1 "fluid.film_roughness = 0.1: must be at most a cell"
 refused falling_sphere fluid.film_limit=0.01 "films have a fluid.film_roughness"
+refused falling_sphere fluid.film_flux=true "films (fluid.film_roughness) between bodies that deform"
 refused flow_past_cylinder fluid.film_roughness=1e-5 "films brake bodies that are rigid or deform"
 refused flap_behind_cylinder fluid.film_least=-1 "films have a fluid.film_roughness"
 refused falling_sphere gravity="[0, -1e45, 0]" "gravity: by 1e+45, ball falls"

@@ -1,6 +1,6 @@
 /* Claim: with films the faces of a solid of particles are braked rightly by each other and by a
  * wall, from a tenth of a cell to three, without a step, also those of a crack; what flows along a
- * slit is that of the cubic law; what films take is booked.
+ * slit is that of the cubic law, in the fluid around it too; what films take is booked.
  *
  * Reference  lubrication theory in the plane. Plates of length L at the gap h: mu V L^3/h^3 per
  *            depth. A plate that sinks under the weight F: 1/h^2 grows by 2 F/(mu L^3) per time. A
@@ -13,11 +13,17 @@
  *            a block, that open from a third of a cell to 3.4 and close again; the largest change
  *            of F h^3 from one step to the next, over the largest of it. The sinking plate is
  *            free, elastic, 32 cells long, over a wall; its gap after it has come from 0.9 to 0.35
- *            cells. The slit: two blocks, 40 cells long, close a channel of 64 that a gradient
- *            drives but for a gap of half a cell; the fluid beside them is at rest, so that all of
- *            the gradient's drop falls off along the slit.
+ *            cells. The slit: two blocks, 40 cells long, of particles of half a cell, close a
+ *            channel of 64 that a gradient drives but for a gap; the fluid beside them is at rest,
+ *            so that all of the gradient's drop falls off along the slit. Measured: what flows in
+ *            the film, and what flows through the channel in front of the blocks, which is that
+ *            and what the grid lets through.
  * Tolerance  10 % and 2 %, the goals set for the method. Of it: a plate's ends, 1.4 h longer than
- *            the plate on either side together. Opposite forces: round-off.
+ *            the plate on either side together. Opposite forces: round-off. Reported alone: the
+ *            channel's flow between 2.5 and 3 cells, where the grid takes the film over, which lets
+ *            through a third too little there, and what that does to the force, which has not
+ *            settled after 200 steps; and where the body itself leaks more than that (a tenth of a
+ *            cell; particles that do not stand alike in the cells).
  * BUILD modules=coupler,shape,ns_channel
  * TEST  ranks=2 timeout=1200 */
 #include "bw_coupler.h"
@@ -35,8 +41,10 @@ typedef struct {
   double middle;         /* height of the gap over the floor */
   double gap, speed, dt; /* speed of approach, half of it of either block */
   bw_coupler_load_kind load;
+  bool flux;               /* what flows in films is the grid's */
   bool crack, alone, slit; /* cut out of one block; the upper one, free over a wall; see above */
   double drive, weight;    /* gradient along x over rho; gravity */
+  double spacing;          /* of the particles; 0: one cell */
 } set_up;
 
 typedef struct {
@@ -123,7 +131,7 @@ static bw_status make_solid(const bw_comm *comm, const set_up *u, scene *s)
   bw_solid_config c = bw_solid_config_default();
   const double x = 0.5 * u->cells[0], y = u->middle;
   c.geometry = BW_PD_PLANE_STRAIN;
-  c.ds = c.thickness = 1.0;
+  c.thickness = 1.0, c.ds = u->spacing > 0.0 ? u->spacing : 1.0;
   c.rho = 4.0, c.E = u->alone ? 2e6 : 1e3;
   c.damping.mean = u->alone ? 4e2 : 0.0;
   c.origin[0] = x, c.origin[1] = y, c.origin[2] = 0.5;
@@ -149,7 +157,7 @@ static bw_status make(const bw_comm *comm, const set_up *u, scene *s)
   c.load = u->load;
   c.gravity[1] = -u->weight;
   c.walled[1][0] = c.walled[1][1] = u->slit;
-  c.films.on = true, c.films.roughness = 1e-3;
+  c.films.on = true, c.films.flux = u->flux, c.films.roughness = 1e-3;
   BW_TRY(bw_coupler_create(&c, s->fluid, s->solid, &s->coupler));
   bw_coupler_hold_solid(s->coupler, false);
   return BW_OK;
@@ -171,13 +179,13 @@ static void sum_load(const bw_comm *comm, const set_up *u, scene *s, double out[
 static const set_up plates = {
     .cells = {192, 48}, .length = 128.0, .height = 8.0, .middle = 24.0, .speed = 1e-5, .dt = 0.15};
 
-static bw_status force_at(bw_validation *v, bw_coupler_load_kind load, double gap)
+static bw_status force_at(bw_validation *v, bw_coupler_load_kind load, double gap, bool flux)
 {
   set_up u = plates;
   scene s;
   double F[2] = {NAN, NAN};
   char extra[64];
-  u.gap = gap, u.load = load;
+  u.gap = gap, u.load = load, u.flux = flux;
   bw_status st = make(bw_validation_comm(v), &u, &s);
   for (int q = 0; st == BW_OK && q < 200; q++)
     st = bw_coupler_step(s.coupler, u.dt);
@@ -185,12 +193,14 @@ static bw_status force_at(bw_validation *v, bw_coupler_load_kind load, double ga
   destroy(&s);
   BW_TRY(st);
   /* The film is that of the last step's beginning. */
-  const double now = gap - u.speed * 199 * u.dt, expected = u.speed * pow(u.length / now, 3);
-  snprintf(extra, sizeof extra, "\"gap_in_cells\": %g", gap);
+  const double now = gap - u.speed * 199 * u.dt;
+  const double expected = u.speed * pow(u.length / now, 3);
+  snprintf(extra, sizeof extra, "\"gap_in_cells\": %g, \"flux\": %d", gap, flux);
   bw_validation_row(v,
                     &(bw_claim){"a face of particles is braked by another one",
                                 load == BW_LOAD_PROBES ? "plates_by_probes" : "plates_by_reaction",
-                                F[0], expected, 0.10, BW_ANALYTIC, "lubrication theory", extra});
+                                F[0], expected, flux && gap > 2.5 ? INFINITY : 0.10, BW_ANALYTIC,
+                                "lubrication theory", extra});
   return BW_OK;
 }
 
@@ -217,7 +227,7 @@ static bw_status travel(const bw_comm *comm, set_up *u, scene *s, double to, dou
   return BW_OK;
 }
 
-static bw_status no_step(bw_validation *v, bool crack, bw_coupler_load_kind load)
+static bw_status no_step(bw_validation *v, bool crack, bw_coupler_load_kind load, bool flux)
 {
   const bw_comm *comm = bw_validation_comm(v);
   set_up u = plates;
@@ -225,7 +235,10 @@ static bw_status no_step(bw_validation *v, bool crack, bw_coupler_load_kind load
   double most[2] = {0.0, 0.0};
   /* By probes the film begins at four cells. */
   const double far = load == BW_LOAD_PROBES ? 4.5 : 3.5;
-  u.speed = 0.02, u.gap = far, u.load = load;
+  char extra[64];
+  snprintf(extra, sizeof extra, "\"load\": \"%s\", \"flux\": %d",
+           load == BW_LOAD_PROBES ? "probes" : "reaction", flux);
+  u.speed = 0.02, u.gap = far, u.load = load, u.flux = flux;
   if (crack) {
     u.cells[0] = 80, u.cells[1] = 40, u.length = 48.0, u.height = 6.0, u.middle = 20.0;
     u.crack = true, u.gap = 0.3, u.speed = -0.02;
@@ -238,11 +251,10 @@ static bw_status no_step(bw_validation *v, bool crack, bw_coupler_load_kind load
   if (crack) BW_THEN(st, travel(comm, &u, &s, 0.33, most));
   destroy(&s);
   BW_TRY(st);
-  bw_validation_row(
-      v, &(bw_claim){"the force has no step",
-                     crack ? "crack_that_opens_and_closes" : "plates_that_close", most[0] / most[1],
-                     0.0, 0.02, BW_CONSERVATION, "a force is continuous in the gap",
-                     load == BW_LOAD_PROBES ? "\"load\": \"probes\"" : "\"load\": \"reaction\""});
+  bw_validation_row(v, &(bw_claim){"the force has no step",
+                                   crack ? "crack_that_opens_and_closes" : "plates_that_close",
+                                   most[0] / most[1], 0.0, 0.02, BW_CONSERVATION,
+                                   "a force is continuous in the gap", extra});
   return BW_OK;
 }
 
@@ -299,39 +311,66 @@ static bw_status sink(bw_validation *v)
   return BW_OK;
 }
 
-static bw_status slit(bw_validation *v, bw_coupler_load_kind load)
+/* What flows along x through the cells in front of the blocks. */
+static double flow_in_front(const scene *s)
+{
+  const bw_grid_view *g = bw_grid_look(s->grid);
+  const bw_real *u = bw_ns_channel_velocity(s->fluid)[0];
+  double sum = 0.0;
+  for (int j = 1; j <= g->m[1]; j++)
+    sum += (double)u[bw_at(g, 2, j, 1)];
+  bw_comm_sum(bw_grid_comm(s->grid), 1, &sum);
+  return sum;
+}
+
+/* A slit of that gap, its middle so high. */
+static bw_status slit(bw_validation *v, bw_coupler_load_kind load, double gap, double middle)
 {
   const double G = 1e-3;
   const set_up u = {.cells = {64, 32},
                     .length = 40.0,
                     .height = 16.0,
-                    .middle = 16.0,
-                    .gap = 0.5,
+                    .middle = middle,
+                    .gap = gap,
                     .dt = 0.15,
                     .load = load,
                     .crack = true,
                     .slit = true,
+                    .flux = true,
+                    .spacing = 0.5,
                     .drive = G};
   scene s;
-  double flux = NAN, bulk = NAN;
+  double flux = NAN, front = NAN;
+  char extra[120];
   bw_status st = make(bw_validation_comm(v), &u, &s);
-  for (int q = 0; st == BW_OK && q < 200; q++)
+  for (int q = 0; st == BW_OK && q < 400; q++)
     st = bw_coupler_step(s.coupler, u.dt);
   if (st == BW_OK) {
     flux =
-        bw_coupler_film_flux(s.coupler, (double[3]){32.3, 16.0, 0.5}, (double[3]){1.0, 0.0, 0.0});
-    bulk = bw_ns_channel_summary(s.fluid).bulk_velocity * u.cells[1];
+        bw_coupler_film_flux(s.coupler, (double[3]){32.3, middle, 0.5}, (double[3]){1.0, 0.0, 0.0});
+    front = flow_in_front(&s);
   }
   destroy(&s);
   BW_TRY(st);
-  const double expected = pow(u.gap, 3) / 12.0 * G * u.cells[0] / u.length;
-  const char *extra = load == BW_LOAD_PROBES ? "\"load\": \"probes\"" : "\"load\": \"reaction\"";
+  const double expected = pow(gap, 3) / 12.0 * G * u.cells[0] / u.length;
+  const bool tight = gap > 0.4 && gap < 2.5 && middle == 16.0;
+  snprintf(extra, sizeof extra, "\"load\": \"%s\", \"gap_in_cells\": %g, \"middle\": %g",
+           load == BW_LOAD_PROBES ? "probes" : "reaction", gap, middle);
   bw_validation_row(v, &(bw_claim){"a film flows by the cubic law", "flux_along_a_slit", flux,
                                    expected, 0.10, BW_ANALYTIC, "plane Poiseuille flow", extra});
-  bw_validation_row(v, &(bw_claim){"... what the grid lets through beside it", "flux_of_the_grid",
-                                   bulk, expected, INFINITY, BW_ANALYTIC, "plane Poiseuille flow",
-                                   extra});
+  bw_validation_row(v, &(bw_claim){"... and comes out on the grid", "flux_of_the_channel", front,
+                                   expected, tight ? 0.10 : INFINITY, BW_ANALYTIC,
+                                   "plane Poiseuille flow", extra});
   return BW_OK;
+}
+
+static bw_status slits(bw_validation *v, bw_coupler_load_kind load)
+{
+  static const double gaps[] = {0.5, 0.1, 1.0, 1.5, 2.0, 2.45, 2.7, 2.9};
+  const bool full = bw_validation_full(v);
+  for (int q = 0; q < (full ? 8 : 1); q++)
+    BW_TRY(slit(v, load, gaps[q], 16.0));
+  return full ? slit(v, load, 0.5, 16.25) : BW_OK;
 }
 
 static bw_status run(bw_validation *v)
@@ -342,10 +381,12 @@ static bw_status run(bw_validation *v)
     const bw_coupler_load_kind kind = load == 0 ? BW_LOAD_REACTION : BW_LOAD_PROBES;
     if (!full && kind == BW_LOAD_PROBES) continue;
     for (int q = 0; q < (full ? 11 : 2); q++)
-      BW_TRY(force_at(v, kind, gaps[q]));
-    for (int crack = 0; full && crack < 2; crack++)
-      BW_TRY(no_step(v, crack == 1, kind));
-    BW_TRY(slit(v, kind));
+      BW_TRY(force_at(v, kind, gaps[q], false));
+    for (int q = 0; q < (full ? 11 : 1); q++)
+      BW_TRY(force_at(v, kind, gaps[q], true));
+    for (int which = 0; full && which < 4; which++)
+      BW_TRY(no_step(v, which % 2 == 1, kind, which > 1));
+    BW_TRY(slits(v, kind));
   }
   return sink(v);
 }

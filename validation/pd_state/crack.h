@@ -10,7 +10,8 @@ static const double CRACK_STRAIN = 1e-5; /* of the states whose energy is taken 
 typedef struct {
   bw_solid *pd;
   body_rows r;
-  double *U; /* (n,3) rows of prescribed particles are the load of 1 */
+  double *U;   /* (n,3) rows of prescribed particles are the load of 1 */
+  double left; /* uniform strain that a load of 1 makes beside that, which limits leave out: 0 */
 } crack_body;
 
 /* Which cell of a box is what: kind, or a negative number where there is none; and its group. */
@@ -95,7 +96,9 @@ static inline bw_status crack_energy(crack_body *b, double small, double *energy
 static inline bw_status crack_beyond(crack_body *b, double load, bool breaks, bool *found)
 {
   bw_pd_body *pd = bw_solid_body(b->pd);
-  crack_load(b, load);
+  for (size_t k = 0; k < 3 * bw_solid_count(b->pd); k++)
+    b->r.X[k] = b->r.X0[k] + load * (b->U[k] - b->left * b->r.X0[k]);
+  bw_solid_set_state(b->pd, b->r.X, b->r.V);
   BW_TRY(bw_solid_evaluate(b->pd));
   bw_pd_body_internal_force(pd, true, false);
   *found = pd->bonds.n_hit > 0;

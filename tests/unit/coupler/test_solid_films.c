@@ -23,7 +23,7 @@ static bodies_set_up pile(void)
       .block = {{4, 1, 12, 5}, {6, 9, 11, 13}},
       .lower = {0.0, 3.5},
       .load = BW_LOAD_REACTION,
-      .films = {.on = true, .limit = NAN, .roughness = 1e-4, .least = -INFINITY}};
+      .films = {.on = true, .limit = NAN, .roughness = 1e-4, .least = -INFINITY, .flux = true}};
 }
 
 /* The same on all ranks together and on each alone. */

@@ -188,6 +188,38 @@ START_TEST(flow_along_a_slit)
 }
 END_TEST
 
+/* What a film brings: out of one end of a slit, in at the other, nothing in between and in all. */
+START_TEST(what_a_film_brings)
+{
+  const double h = 0.02, drop = 3.0, L = 40 * DS, dt = 0.3, still[3] = {0.0};
+  static cloud c;
+  static double F[3 * MOST], moved[MOST];
+  bw_film_net *w = make(true);
+  c.n = 0;
+  add_block(&c, 40, 0.0, -0.5 * h, false, 0.0, 0.0, still);
+  add_block(&c, 40, 0.0, 0.5 * h, true, 0.0, 0.0, still);
+  find(w, &c);
+  press(w, &c, 1.0, drop, 0.0, F);
+  memset(moved, 0, sizeof moved);
+  bw_film_net_bring(w, dt, moved);
+  const double theory = dt * DEPTH * pow(h, 3) / (12.0 * MU) * drop / L;
+  double left = 0.0, right = 0.0, within = 0.0;
+  for (size_t s = 0; s < c.n; s++) {
+    const double x = c.X[3 * s];
+    if (fabs(x) < 0.4 * L)
+      within = fmax(within, fabs(moved[s]));
+    else if (x < 0.0)
+      left += moved[s];
+    else
+      right += moved[s];
+  }
+  bw_check_near(left / theory, -1.0, 0.03);
+  bw_check_near(left + right, 0.0, 1e-6 * theory);
+  bw_check_near(within, 0.0, 1e-6 * theory);
+  bw_film_net_destroy(&w);
+}
+END_TEST
+
 /* One plate is free, rigid, and pushed: whatever the step, it takes the speed at which the film
  * bears the push. What holds it together is known from the step before, as a solid's forces are. */
 START_TEST(a_stiff_film_is_stable)
@@ -331,8 +363,13 @@ START_TEST(bad_input_is_refused)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(plates_are_squeezed),      BW_TEST(square_plates),       BW_TEST(flow_along_a_slit),
-    BW_TEST(a_stiff_film_is_stable),   BW_TEST(a_film_cavitates),    BW_TEST(shares),
-    BW_TEST(another_load_is_replaced), BW_TEST(bad_input_is_refused)};
+static const bw_check_test tests[] = {BW_TEST(plates_are_squeezed),
+                                      BW_TEST(square_plates),
+                                      BW_TEST(flow_along_a_slit),
+                                      BW_TEST(what_a_film_brings),
+                                      BW_TEST(a_stiff_film_is_stable),
+                                      BW_TEST(a_film_cavitates),
+                                      BW_TEST(shares),
+                                      BW_TEST(another_load_is_replaced),
+                                      BW_TEST(bad_input_is_refused)};
 BW_CHECK_MAIN("film_net", tests)

@@ -226,6 +226,39 @@ START_TEST(flow_rate_is_exact_with_a_body)
 END_TEST
 
 /* Stokes decay at the viscous limit stays bounded, over it grows; the message names the limit. */
+START_TEST(sources_give_what_they_say)
+{
+  static const bool sides[3] = {false, false, true};
+  const int n[3] = {12, 10, 4};
+  const double length[3] = {1.2, 1.0, 0.4};
+  bw_ns_channel_config c = ns_config(sides, 0.05);
+  bw_grid *grid = ns_grid(bw_check_world(), n, length, sides, 0, 2);
+  bw_ns_channel *ns = ns_solver(grid, &c);
+  const bw_grid_view *g = bw_grid_look(grid);
+  const double rate = 0.3;
+  ptrdiff_t cell[2];
+  double rates[2], through = 0.0;
+  size_t k = 0;
+  /* In at one place, out at another, each whole on the rank that has it. */
+  for (int q = 0; q < 2; q++) {
+    const int i = 3 + 6 * q, j = 5 - g->lo[1], z = 2 - g->lo[2];
+    if (j < 1 || j > g->m[1] || z < 1 || z > g->m[2]) continue;
+    cell[k] = bw_at(g, i, j, z), rates[k++] = q == 0 ? rate : -rate;
+  }
+  bw_check_ok(bw_ns_channel_set_sources(ns, k, cell, rates));
+  for (int step = 0; step < 5; step++)
+    bw_check_ok(bw_ns_channel_step(ns, 2e-3));
+  bw_check_near(bw_ns_channel_divergence(ns), 0.0, NS_TOLERANCE(1e-12));
+  /* All of it flows through a plane between them. */
+  for (int z = 1; z <= g->m[2]; z++)
+    for (int j = 1; j <= g->m[1]; j++)
+      through += (double)bw_ns_channel_velocity(ns)[0][bw_at(g, 6, j, z)];
+  bw_comm_sum(bw_check_world(), 1, &through);
+  bw_check_near(through, rate * 0.1, NS_TOLERANCE(1e-12));
+  ns_free(&ns);
+}
+END_TEST
+
 START_TEST(limits_are_checked)
 {
   flow f = flow_of(0);
@@ -344,9 +377,13 @@ START_TEST(inflows_that_balance_are_taken)
 }
 END_TEST
 
-static const bw_check_test tests[] = {
-    BW_TEST(ranks_do_not_show),          BW_TEST(two_dimensions_are_three_without_z),
-    BW_TEST(restart_is_exact),           BW_TEST(flow_rate_is_exact_with_a_body),
-    BW_TEST(limits_are_checked),         BW_TEST(what_is_not_finite_is_found),
-    BW_TEST(contradictions_are_refused), BW_TEST(inflows_that_balance_are_taken)};
+static const bw_check_test tests[] = {BW_TEST(ranks_do_not_show),
+                                      BW_TEST(two_dimensions_are_three_without_z),
+                                      BW_TEST(restart_is_exact),
+                                      BW_TEST(flow_rate_is_exact_with_a_body),
+                                      BW_TEST(sources_give_what_they_say),
+                                      BW_TEST(limits_are_checked),
+                                      BW_TEST(what_is_not_finite_is_found),
+                                      BW_TEST(contradictions_are_refused),
+                                      BW_TEST(inflows_that_balance_are_taken)};
 BW_CHECK_MAIN("ns_channel.step", tests)

@@ -21,7 +21,7 @@
  * the grid lets through a slit what its markers do. The film answers the pressure at once, which a
  * fluid does within h^2/(12 nu): it has to be some steps at most, or the pressure that the flow
  * makes and the flow that the pressure makes feed each other. So a step dt is refused where
- * h^3/(12 nu dt) is above twenty cells. */
+ * h^3/(12 nu dt) is above 25 cells. */
 #pragma once
 #include <stdbool.h>
 

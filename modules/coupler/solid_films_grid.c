@@ -278,10 +278,11 @@ static bw_status set_sources(bw_coupler *c, double dt)
 /* Films that answer faster than a fluid does: see bw_coupler_films.h. */
 static bw_status check_step(const bw_coupler *c, double dt)
 {
-  static const double MOST = 20.0; /* cells; 28 hold, 44 do not, in slits of 4 and 40 cells */
+  static const double MOST = 25.0; /* cells; 28 hold, 44 do not, in slits of 4 and 40 cells */
   const bw_coupler__solid_films *f = c->films;
   for (size_t a = 0; a < f->n_nodes; a++) {
-    const double h = f->node[a].gap, cells = h * h * h / (12.0 * c->config.nu * dt * c->h);
+    const double h = f->node[a].gap;
+    const double cells = f->node[a].share * h * h * h / (12.0 * c->config.nu * dt * c->h);
     BW_REQUIRE(
         cells <= MOST, BW_EINPUT,
         "films: what flows in a gap of %g takes %g to answer the pressure, %.3g steps of %g, "

@@ -1,4 +1,5 @@
 /* The keys of channel_turbulence.yaml and their defaults. */
+#include "bw_ns_words.h"
 #include "channel_case.h"
 
 #include <string.h>
@@ -18,10 +19,6 @@ static const bw_config_word viscous_words[] = {
     {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "implicit in y: thin cells at the walls cost no steps"},
     {"implicit", BW_VISCOUS_IMPLICIT, "implicit in all directions"},
     {0}};
-static const bw_config_word eddy_words[] = {
-    {"none", BW_EDDY_NONE, "direct numerical simulation"},
-    {"wale", BW_EDDY_WALE, "WALE, C = 0.325, for cells too coarse for the eddies"},
-    {0}};
 static const bw_config_field fluid_fields[] = {
     V(channel_fluid, reynolds, BW_REQUIRED, BW_ABOVE_TO(0, 1e9), "",
       "Reynolds number Re_b = U_b h/nu on the full height"),
@@ -29,7 +26,7 @@ static const bw_config_field fluid_fields[] = {
       "size of the rolls, waves and noise on the laminar profile at the start"),
     BW_CONFIG_WORD(channel_fluid, viscous, BW_OPTIONAL, viscous_words,
                    "how the viscous term advances in time"),
-    BW_CONFIG_WORD(channel_fluid, eddy, BW_OPTIONAL, eddy_words,
+    BW_CONFIG_WORD(channel_fluid, eddy, BW_OPTIONAL, bw_ns_eddy_words,
                    "model of the eddies that no cell resolves"),
     BW_CONFIG_END};
 static const bw_config_field time_fields[] = {

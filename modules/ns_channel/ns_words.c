@@ -28,3 +28,8 @@ const bw_config_word bw_ns_viscous_words[] = {
     {"implicit_y", BW_VISCOUS_IMPLICIT_Y, "for cells that are thin in y"},
     {"implicit", BW_VISCOUS_IMPLICIT, "no limit by the viscosity"},
     {NULL, 0, NULL}};
+
+const bw_config_word bw_ns_eddy_words[] = {
+    {"none", BW_EDDY_NONE, "direct numerical simulation"},
+    {"wale", BW_EDDY_WALE, "WALE, C = 0.325, for cells too coarse for the eddies"},
+    {NULL, 0, NULL}};

@@ -144,6 +144,7 @@ typedef struct {
   bool has_forcing;         /* is it given? */
   bw_scene_forcing forcing; /* what drives the flow */
   double film_roughness;    /* of films between bodies, faces of cracks, walls [L]; NaN: none */
+  int eddy;                 /* bw_ns_eddy */
   int film_flux;            /* is what flows in films between particles the grid's? */
   double film_limit;        /* gap from which the grid carries them [L]; NaN: three cells */
   double film_least;        /* pressure below which they cavitate [M/(L T^2)]; NaN: never */

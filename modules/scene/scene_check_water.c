@@ -1,4 +1,5 @@
 /* What a run would refuse of a fluid of particles. */
+#include "bw_ns_channel.h"
 #include "scene_check.h"
 
 #include <limits.h>
@@ -38,6 +39,8 @@ static bw_status check_no_grid(const bw_scene_config *c)
               {"fluid.film_roughness", "its particles fill the gaps", !isnan(f->film_roughness)},
               {"fluid.film_limit", "its particles fill the gaps", !isnan(f->film_limit)},
               {"fluid.film_least", "its particles fill the gaps", !isnan(f->film_least)},
+              {"fluid.film_flux", "its particles fill the gaps", f->film_flux != 0},
+              {"fluid.eddy", "it has a viscosity of its own", f->eddy != BW_EDDY_NONE},
               {"fluid.start.developed", "there is no inflow", f->start.developed},
               {"fluid.start.vortices", "it starts from velocity", f->start.n_vortices > 0},
               {"fluid.start.file", "it starts from velocity", f->start.file[0] != '\0'},

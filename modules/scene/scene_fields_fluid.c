@@ -78,6 +78,8 @@ const bw_config_field bw_scene__fluid_fields[] = {
       "of particles: largest speed that is expected; left out: 2 sqrt(gravity depth)"),
     BW_CONFIG_WORD(bw_scene_fluid, walls, BW_OPTIONAL, walls_words,
                    "of particles: what walls and bodies are to it; left out: slip"),
+    BW_CONFIG_WORD(bw_scene_fluid, eddy, BW_OPTIONAL, bw_ns_eddy_words,
+                   "model of the eddies that no cell resolves, in space; left out: none"),
     V(bw_scene_fluid, film_roughness, BW_OPTIONAL, BW_ABOVE(0), "L",
       "films where bodies, faces of cracks and walls are too near for the grid: their least gap"),
     V(bw_scene_fluid, film_limit, BW_OPTIONAL, BW_ABOVE(0), "L",

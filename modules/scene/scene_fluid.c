@@ -207,6 +207,7 @@ static bw_status configure(bw_scene *s, bw_grid_config *grid, bw_ns_channel_conf
   /* Markers and probes reach two cells; values between cells one. */
   grid->halo = c->n_bodies > 0 ? 2 : 1;
   fluid->nu = f->viscosity;
+  fluid->eddy = (bw_ns_eddy)f->eddy;
   fluid->viscous = (bw_ns_viscous)c->numerics.viscous;
   if (f->has_forcing) {
     fluid->forcing = (bw_ns_forcing)f->forcing.kind;

@@ -102,8 +102,10 @@ bool bw_scene__force_holds(const bw_scene_config *c, const bw_scene_gauge_config
   if (route == BW_SCENE__BY_REACTION) return true;
   if (bw_scene__has_particles(c) || bw_scene__of_rigid(c, g, force)) return false;
   if (route == BW_SCENE__BY_PROBES) return true;
-  /* The implicit viscous term keeps no fluxes of which a box could make a balance. */
-  return c->numerics.viscous != BW_VISCOUS_IMPLICIT && bw_scene__names_all(c, g);
+  /* The implicit viscous term and an eddy viscosity keep no fluxes of which a box could make a
+   * balance. */
+  return c->numerics.viscous != BW_VISCOUS_IMPLICIT && c->fluid.eddy == BW_EDDY_NONE &&
+         bw_scene__names_all(c, g);
 }
 
 bool bw_scene__of_rigid(const bw_scene_config *c, const bw_scene_gauge_config *g,

@@ -71,7 +71,7 @@ static bw_status check_levels(const bw_pd_body_config *c, const bw_pd_law *law)
 {
   BW_REQUIRE(bw_pd_body_finest(c) == 0 || law->levels, BW_EINPUT,
              "solid: levels with law = %s: bonds between two spacings are known to law = bond "
-             "alone; take that law or leave levels out",
+             "and ordinary alone; take one of these or leave levels out",
              law->name);
   return BW_OK;
 }

@@ -5,6 +5,7 @@
  * one reciprocal root holds the length and the correction. In a cloud it is
  *   2 c0 Gamma dV/rho (r/r0 - 1)/(r S) = K Gamma q (q r^2 S/r0 - 1), with 1/r0 another root. */
 #include "pd_bond.h"
+#include "pd_jump.h"
 #include "pd_sweep.h"
 
 /* The sweeps are compiled once per geometry, correction, check, damping, and for lattices and
@@ -240,20 +241,6 @@ static uint8_t unbreakable(const bw_pd_body *pd, const bw_pd_block *block, const
   return out;
 }
 
-/* Cracks live on the finest level alone: then no broken bond ever lies between levels, where what a
- * crack costs depends on how it runs. */
-static bool above_finest(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_slot *slot)
-{
-  return block->level < pd->finest ||
-         slot->direction >= bw_pd_body_level_of(pd, block)->stencil.same;
-}
-
-static void note_astray(bw_pd_body *pd, const bw_pd_block *block, uint8_t over)
-{
-  pd->bonds.astray += __builtin_popcount(over);
-  pd->bonds.astray_id = pd->points.id[bw_pd_body_owner(block, __builtin_ctz(over))];
-}
-
 /* The sweep that follows a break would give the same but for the rounding of the sum. */
 bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
 {
@@ -276,8 +263,8 @@ bool bw_pd_bond__breaks(bw_pd_body *pd, bw_pd_block *block)
     uint8_t over = slot->mask & (uint8_t)~block->gone & lanes_bits(vec_above(x.r2, limit));
     if (over == 0) continue;
     over &= (uint8_t)~unbreakable(pd, block, slot, over);
-    if (over != 0 && above_finest(pd, block, slot)) {
-      note_astray(pd, block, over);
+    if (over != 0 && bw_pd_body_above_finest(pd, block, slot)) {
+      bw_pd_body_note_astray(pd, block, over);
       continue;
     }
     /* What these bonds pull with now is no longer part of the acceleration. */

@@ -28,33 +28,10 @@ typedef struct {
   double *lambda, *r, *p, *v, *sp;
 } vectors;
 
-/* Sum of x.y over all rows of all ranks, to the same bits however they are divided: terms as whole
- * numbers of 2^-k of the largest one, and what that leaves once more. Collective. */
+/* Sum of x.y over all rows. Collective. */
 static double dot(const bw_pd_bond_zone *z, const double x[], const double y[])
 {
-  const size_t n = (size_t)z->cubics;
-  double most = 0;
-  int64_t sum[2] = {0, 0};
-  for (size_t i = 0; i < z->rows; i++) {
-    double t = 0;
-    for (size_t k = 0; k < n; k++)
-      t += x[i * n + k] * y[i * n + k];
-    most = fmax(most, fabs(t));
-  }
-  bw_comm_max(z->pd->comm, 1, &most);
-  if (!(most > 0) || !isfinite(most)) return most;
-  const int bits = 60 - (int)ceil(log2((double)z->all + 1));
-  const double scale = ldexp(1, bits) / most;
-  for (size_t i = 0; i < z->rows; i++) {
-    double t = 0;
-    for (size_t k = 0; k < n; k++)
-      t += x[i * n + k] * y[i * n + k];
-    const double whole = rint(t * scale);
-    sum[0] += (int64_t)whole;
-    sum[1] += (int64_t)rint(ldexp(t * scale - whole, bits));
-  }
-  bw_comm_sum_int(z->pd->comm, 2, sum);
-  return ((double)sum[0] + ldexp((double)sum[1], -bits)) / scale;
+  return bw_pd_body_dot(&(bw_pd_body_rows_of){z->pd->comm, z->rows, z->cubics, z->all}, x, y);
 }
 
 /* mu = white^T x, also of copies. Collective. */

@@ -1,6 +1,7 @@
 /* pd_bond_levels.h -- the factors of bonds near a jump between levels: what is solved for. */
 #pragma once
 #include "pd_bond.h"
+#include "pd_jump.h"
 #include "pd_sweep.h"
 
 /* The particles near a jump and their conditions. A row is one of these particles of this rank. */

@@ -58,32 +58,13 @@ static bw_status tables(bw_pd_bond_zone *z)
   return BW_OK;
 }
 
-/* near of the own particles with a bond across a jump; or to one that is marked in before. */
-static void mark(const bw_pd_bond_zone *z, const bw_real *before, bw_real *near)
-{
-  const bw_pd_body *pd = z->pd;
-  for (size_t b = 0; b < pd->bonds.n_block; b++) {
-    const bw_pd_block *block = &pd->bonds.block[b];
-    const int same = bw_pd_body_level_of(pd, block)->stencil.same;
-    for (uint32_t q = block->slot; q < block[1].slot; q++) {
-      const bw_pd_slot *slot = &pd->bonds.slot[q];
-      for (int lane = 0; lane < BW_PD_LANES; lane++)
-        if ((slot->family >> lane & 1) &&
-            (before == NULL ? slot->direction >= same : before[slot->base + lane] > 0))
-          near[block->first + lane] = 1;
-    }
-  }
-}
-
 /* Who has a bond across a jump has all that is needed among its bonds to others of these; a wider
  * zone makes the factors no better (validation/pd_bond/levels_patch.c, levels_reflection.c). */
 static bw_status find(bw_pd_bond_zone *z)
 {
   const bw_pd_body *pd = z->pd;
   BW_TRY(bw_comm_agree(pd->comm, bw_pd_body_storage_array(pd->points.n_storage, &z->near)));
-  mark(z, NULL, z->near);
-  /* Copies follow their owners, so that all ranks find the same. */
-  bw_pd_body_fill_places(pd, z->near);
+  bw_pd_body_near_jumps(pd, z->near);
   return BW_OK;
 }
 
@@ -107,28 +88,12 @@ static bw_status list_rows(bw_pd_bond_zone *z, const bw_pd_bond_change *change)
   return BW_OK;
 }
 
-static bool touches(const bw_pd_bond_zone *z, const bw_pd_block *block)
-{
-  for (int lane = 0; lane < BW_PD_LANES; lane++)
-    if ((block->mask >> lane & 1) && z->near[block->first + lane] > 0) return true;
-  return false;
-}
-
 /* Room for the factors of the blocks near a jump. */
 static bw_status room(bw_pd_bond_zone *z)
 {
   bw_pd_bonds *bonds = &z->pd->bonds;
   bw_release(&bonds->exact);
-  bonds->n_exact = 0;
-  for (size_t b = 0; b < bonds->n_block; b++) {
-    bw_pd_block *block = &bonds->block[b];
-    block->exact = -1;
-    if (!touches(z, block)) continue;
-    BW_REQUIRE(bonds->n_exact + (block[1].slot - block->slot) < INT32_MAX / BW_PD_LANES, BW_EINPUT,
-               "solid: too many bonds near jumps between levels on one rank; use more ranks");
-    block->exact = (int32_t)bonds->n_exact;
-    bonds->n_exact += block[1].slot - block->slot;
-  }
+  BW_TRY(bw_pd_body_jump_room(z->pd, z->near));
   BW_TRY(BW_ALLOCATE(&bonds->exact, bonds->n_exact * BW_PD_LANES));
   return BW_ALLOCATE(&z->free, bonds->n_exact);
 }
@@ -155,56 +120,6 @@ void bw_pd_bond__zone_begin(bw_pd_bond_zone *z)
   }
 }
 
-/* Cells of a family's own lattice, by offsets from the owner. */
-typedef struct {
-  int reach, side;
-  bool *covered; /* (side^3) */
-} cover;
-
-static void put(cover *c, int dimension, const int cell[3])
-{
-  for (int k = 0; k < dimension; k++)
-    if (cell[k] < -c->reach || cell[k] > c->reach) return;
-  const int r = c->reach;
-  c->covered[(cell[0] + r) + c->side * ((cell[1] + r) + c->side * (cell[2] + r))] = true;
-}
-
-/* The cells of the owner's lattice that a partner's cell lies in or consists of. */
-static void put_partner(const bw_pd_body *pd, const bw_pd_level *level, int direction, cover *c)
-{
-  const bw_pd_stencil *s = &level->stencil;
-  const int l = (int)(level - pd->level), step = 1 << (pd->finest - l + 1);
-  const int32_t *o = s->offset + 3 * direction;
-  const int parts = s->other[direction] < l ? 1 << pd->dimension : 1;
-  for (int part = 0; part < parts; part++) {
-    int cell[3] = {0};
-    for (int k = 0; k < pd->dimension; k++) {
-      /* A coarser cell's parts are half a cell either way; a finer one lies within one. */
-      const int x = 2 * o[k] + (parts == 1 ? 0 : part >> k & 1 ? step : -step);
-      cell[k] = (int)floor((double)x / (2 * step) + 0.5);
-    }
-    put(c, pd->dimension, cell);
-  }
-}
-
-/* Whether no cell of the own lattice's family is missing. */
-static bool is_whole(const bw_pd_body *pd, const bw_pd_block *block, int lane, cover *c)
-{
-  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
-  const bw_pd_stencil *s = &level->stencil;
-  const int l = (int)(level - pd->level), step = 1 << (pd->finest - l + 1);
-  memset(c->covered, 0, (size_t)(c->side * c->side * c->side) * sizeof *c->covered);
-  for (uint32_t q = block->slot; q < block[1].slot; q++)
-    if (pd->bonds.slot[q].family >> lane & 1)
-      put_partner(pd, level, pd->bonds.slot[q].direction, c);
-  for (int q = 0; q < s->same; q++) {
-    const int32_t *o = s->offset + 3 * q;
-    const int r = c->reach, x = o[0] / step + r, y = o[1] / step + r, z = o[2] / step + r;
-    if (!c->covered[x + c->side * (y + c->side * z)]) return false;
-  }
-  return true;
-}
-
 /* cut of the neighbours of those that are cut, too. Collective. */
 static bw_status widen(bw_pd_bond_zone *z)
 {
@@ -212,49 +127,10 @@ static bw_status widen(bw_pd_bond_zone *z)
   bw_real *before = NULL;
   BW_TRY(bw_comm_agree(pd->comm, bw_pd_body_storage_array(pd->points.n_storage, &before)));
   memcpy(before, z->cut, pd->points.n_storage * sizeof *before);
-  mark(z, before, z->cut);
+  bw_pd_body_mark_near(pd, before, z->cut);
   bw_pd_body_fill_places(pd, z->cut);
   bw_pd_body_release_storage_array(&before);
   return BW_OK;
-}
-
-/* cut of the near particles: cells of the own family are missing; or, of one with bonds to coarser
- * particles, half of these by weight miss some, as it is as near to a face as they. Collective. */
-static bw_status find_cut(bw_pd_bond_zone *z)
-{
-  const bw_pd_body *pd = z->pd;
-  bw_real *cut = z->cut;
-  const bw_pd_level *finest = pd->level + pd->finest;
-  cover c = {.reach = (int)ceil(finest->horizon / finest->ds + 0.5)};
-  c.side = 2 * c.reach + 1;
-  const bw_status st =
-      bw_comm_agree(pd->comm, BW_ALLOCATE(&c.covered, (size_t)(c.side * c.side * c.side)));
-  if (st != BW_OK) return st;
-  for (size_t b = 0; b < pd->bonds.n_block; b++)
-    for (int lane = 0; lane < BW_PD_LANES; lane++)
-      if (pd->bonds.block[b].mask >> lane & 1)
-        cut[pd->bonds.block[b].first + lane] = !is_whole(pd, &pd->bonds.block[b], lane, &c);
-  bw_release(&c.covered);
-  bw_pd_body_fill_places(pd, cut);
-  /* Level by level downwards, so that each asks the final word of the coarser one. */
-  for (int l = 1; l <= pd->finest; l++) {
-    for (size_t b = 0; b < pd->bonds.n_block; b++) {
-      const bw_pd_block *block = &pd->bonds.block[b];
-      double sum[BW_PD_LANES] = {0};
-      if (block->level != l || block->exact < 0) continue;
-      for (uint32_t q = block->slot; q < block[1].slot; q++) {
-        const bw_pd_slot *slot = &pd->bonds.slot[q];
-        const bw_pd_stencil *s = &pd->level[l].stencil;
-        for (int lane = 0; lane < BW_PD_LANES; lane++)
-          if ((slot->family >> lane & 1) && s->other[slot->direction] < l)
-            sum[lane] += s->fraction[slot->direction] * (cut[slot->base + lane] > 0 ? 1.0 : -1.0);
-      }
-      for (int lane = 0; lane < BW_PD_LANES; lane++)
-        if (sum[lane] > 0) cut[block->first + lane] = 1;
-    }
-    bw_pd_body_fill_places(pd, cut);
-  }
-  return pd->bonds.factor != NULL ? widen(z) : BW_OK;
 }
 
 /* Harmonics of degree 3 as sums of monomials; returns how many. */
@@ -366,7 +242,8 @@ bw_status bw_pd_bond__zone(bw_pd_body *pd, const bw_pd_bond_change *change, bw_p
   bw_pd_bond__zone_begin(z);
   z->all = (int64_t)z->rows;
   bw_comm_sum_int(pd->comm, 1, &z->all);
-  return find_cut(z);
+  BW_TRY(bw_pd_body_cut_families(pd, z->cut));
+  return pd->bonds.factor != NULL ? widen(z) : BW_OK;
 }
 
 void bw_pd_bond__zone_release(bw_pd_bond_zone *z)

@@ -41,7 +41,7 @@ bw_status bw_pd_state__full_sums(const bw_pd_body *pd, const bw_pd_level *level,
     return BW_OK;
   }
   const bw_pd_stencil *s = &level->stencil;
-  for (int q = 0; q < s->n; q++) {
+  for (int q = 0; q < s->same; q++) {
     const double w = s->fraction[q] * dv, along = ds * s->offset[3 * q];
     *moment += w * s->r0[q];
     *crossing += along > 0 ? w * along : 0;

@@ -1,6 +1,6 @@
 /* The largest frequency of a body, by Lanczos' method on its tangent stiffness.
  *
- * With A = rho^(-1/2) K rho^(-1/2) and a start q_1,
+ * With A = (rho V)^(-1/2) V K (rho V)^(-1/2), V volumes, and a start q_1,
  *   beta_(j+1) q_(j+1) = A q_j - alpha_j q_j - beta_j q_(j-1),  alpha_j = q_j.A q_j
  * makes a tridiagonal matrix whose largest eigenvalue rises to that of A from below (C. Lanczos,
  * J. Res. Natl. Bur. Stand. 45 (1950) 255). Without orthogonalising anew the largest one is found
@@ -21,6 +21,13 @@ typedef struct {
   double alpha[PRODUCTS], beta[PRODUCTS];
 } lanczos;
 
+/* Volume over that of level 0. Between particles of different volumes K is symmetric as a force,
+ * not as its density. */
+static double volume(const bw_pd_body *pd, size_t i)
+{
+  return bw_pd_body_level(pd, i)->dv / pd->level->dv;
+}
+
 static double density(const bw_pd_body *pd, size_t i)
 {
   return bw_pd_body_material(pd, i)->rho;
@@ -40,13 +47,14 @@ static void product(const bw_pd_body *pd, lanczos *z)
 {
   for (int k = 0; k < 3; k++) {
     for (size_t i = 0; i < pd->n; i++)
-      z->copy[k][pd->points.place[i]] = (bw_real)(z->q[3 * i + (size_t)k] / sqrt(density(pd, i)));
+      z->copy[k][pd->points.place[i]] =
+          (bw_real)(z->q[3 * i + (size_t)k] / sqrt(density(pd, i) * volume(pd, i)));
     bw_pd_body_fill_places(pd, z->copy[k]);
   }
   pd->law->tangent(pd, z->copy, z->next);
   for (size_t i = 0; i < pd->n; i++)
     for (size_t k = 0; k < 3; k++)
-      z->next[3 * i + k] /= sqrt(density(pd, i));
+      z->next[3 * i + k] *= volume(pd, i) / sqrt(density(pd, i) * volume(pd, i));
 }
 
 /* A number from -1 to 1 that depends on a particle's id alone. */

@@ -1,6 +1,7 @@
 /* The ordinary law as a row of the table of laws. */
 #include "pd_state_ordinary.h"
 #include "bw_memory.h"
+#include "pd_jump.h"
 
 bw_pd_state_ordinary_options bw_pd_state_ordinary_options_default(void)
 {
@@ -18,17 +19,32 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   const bw_pd_state_ordinary_options o = resolved(options);
   BW_REQUIRE((unsigned)o.influence <= BW_PD_STATE_INVERSE, BW_EINPUT,
              "solid: influence = %d is unknown", (int)o.influence);
+  const bw_pd_finer *f = &c->finer;
+  const bool levels = f->n > 0 || f->map != NULL;
+  BW_REQUIRE(!levels || (f->map == NULL && !f->same_horizon && f->jump != BW_PD_JUMP_ONE_SIDED),
+             BW_EINPUT,
+             "solid: law = ordinary knows levels that stay, each with its own horizon; levels that "
+             "change, one horizon for all and one-sided bonds are of law = bond");
   return bw_pd_state__check_poisson(c);
 }
 
-/* q of the families at the start: what breaks later leaves theta, not q. Collective. */
-static void moments(bw_pd_body *pd)
+/* w Gamma dV of a bond in the family of its owner. */
+static double weight_of(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_walk *b)
+{
+  const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  return o->own != NULL && block->exact >= 0
+             ? (double)o->own[bw_pd_ordinary_near(pd, block, b->slot) + (size_t)b->lane]
+             : bw_pd_ordinary_influence(o, b->rest.r0) * b->weight;
+}
+
+/* What breaks later leaves theta, not q. */
+void bw_pd_state__ordinary_moments(bw_pd_body *pd)
 {
   bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     double sum[BW_PD_LANES] = {0};
     for (bw_pd_walk x = bw_pd_walk_families(pd, &pd->bonds.block[b]); bw_pd_walk_next(&x);)
-      sum[x.lane] += bw_pd_ordinary_influence(o, x.rest.r0) * x.rest.r0 * x.rest.r0 * x.weight;
+      sum[x.lane] += weight_of(pd, &pd->bonds.block[b], &x) * x.rest.r0 * x.rest.r0;
     for (int lane = 0; lane < BW_PD_LANES; lane++)
       if (pd->bonds.block[b].mask >> lane & 1)
         o->q[pd->bonds.block[b].first + lane] = (bw_real)sum[lane];
@@ -52,7 +68,8 @@ static bw_status prepare(bw_pd_body *pd, const void *options)
   }
   BW_TRY(bw_comm_agree(pd->comm, st));
   bw_pd_state__resolve_poisson(&pd->config);
-  moments(pd);
+  if (pd->finest > 0) return bw_pd_state__ordinary_levels(pd);
+  bw_pd_state__ordinary_moments(pd);
   return BW_OK;
 }
 
@@ -70,12 +87,12 @@ static void row_constants(bw_pd_body *pd, const bw_pd_level *level, int g, int h
       bw_pd_state__strain_poisson(c->geometry, 0.5 * (c->material[g].nu + c->material[h].nu));
   const double held =
       bw_pd_state__joint_G0(c, g, h) /
-      (o->crossing[level - pd->level] *
-       bw_pd_state__ordinary_crack(c, o->options.influence == BW_PD_STATE_INVERSE, nu));
+      bw_pd_state__ordinary_crack(c, o->options.influence == BW_PD_STATE_INVERSE, nu);
   for (int q = 0; q < s->n; q++, row += BW_PD_ROW) {
     const double w = cloud ? 1 : bw_pd_ordinary_influence(o, s->r0[q]);
-    row[BW_PD_STIFFNESS] = (bw_real)(w * (cloud ? 1 : s->fraction[q]) * level->dv);
-    row[BW_PD_LIMIT2] = (bw_real)(2 * held / w);
+    row[BW_PD_STIFFNESS] = (bw_real)(w * ((cloud ? 1 : s->fraction[q]) * level->dv));
+    row[BW_PD_LIMIT2] = (bw_real)(2 * (held / o->crossing[level - pd->level]) / w);
+    row[BW_PD_PARTNER_LIMIT] = (bw_real)(2 * (held / o->crossing[s->other[q]]) / w);
   }
 }
 
@@ -114,7 +131,7 @@ static double particle_energy(const bw_pd_body *pd, const bw_pd_block *block, in
   const int32_t h = block->first + lane;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;
-    const double w = bw_pd_ordinary_influence(o, b.rest.r0) * b.weight;
+    const double w = weight_of(pd, block, &b);
     const double e = bw_pd_walk_present(&b, y) - b.rest.r0;
     swell += w * b.rest.r0 * e;
     bonds += w * e * e;
@@ -156,13 +173,51 @@ bool bw_pd_state__ordinary_beyond(const bw_pd_body *pd, const bw_pd_level *level
   return e > 0 && f * e > limit;
 }
 
+/* Whether a bond has two weights: across a jump, or where they differ. */
+static bool has_two(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_walk *b)
+{
+  const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  if (o->own == NULL || block->exact < 0) return false;
+  const size_t at = bw_pd_ordinary_near(pd, block, b->slot) + (size_t)b->lane;
+  return b->slot->direction >= bw_pd_body_level_of(pd, block)->stencil.same ||
+         o->own[at] != o->reverse[at];
+}
+
+/* The same of a bond of two weights: what both halves hold, each by its own weight, against what
+ * each may hold. From either end the same numbers but for a power of 2. */
+static bool near_beyond(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_walk *b)
+{
+  const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  const bw_pd_level *level = bw_pd_body_level_of(pd, block);
+  const size_t at = bw_pd_ordinary_near(pd, block, b->slot) + (size_t)b->lane;
+  const bw_real *row =
+      bw_pd_state__row(pd, level, bw_pd_body_group_at(pd, b->h), bw_pd_body_group_at(pd, b->l)) +
+      b->slot->direction * BW_PD_ROW;
+  double y[3], half[2];
+  const double e = bw_pd_walk_present(b, y) - b->rest.r0;
+  for (int q = 0; q < 2; q++) {
+    const int32_t p = q == 0 ? b->h : b->l;
+    const double f = (double)o->stiff[p] * e + (double)o->pull[p] * b->rest.r0;
+    const double limit = (double)row[q == 0 ? BW_PD_LIMIT2 : BW_PD_PARTNER_LIMIT];
+    half[q] = (double)(q == 0 ? o->own : o->reverse)[at] * (f * e - 0.5 * limit);
+  }
+  return e > 0 && half[0] + half[1] > 0;
+}
+
 /* The force of what breaks goes with the passes that follow. */
 static bool breaks(bw_pd_body *pd, bw_pd_block *block)
 {
   const bw_pd_level *level = bw_pd_body_level_of(pd, block);
   bool any = false;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)~block->gone); bw_pd_walk_next(&b);) {
-    if (!bw_pd_state__ordinary_beyond(pd, level, &b) || bw_pd_walk_unbreakable(&b)) continue;
+    if (!(has_two(pd, block, &b) ? near_beyond(pd, block, &b)
+                                 : bw_pd_state__ordinary_beyond(pd, level, &b)) ||
+        bw_pd_walk_unbreakable(&b))
+      continue;
+    if (bw_pd_body_above_finest(pd, block, b.slot)) {
+      bw_pd_body_note_astray(pd, block, (uint8_t)(1u << b.lane));
+      continue;
+    }
     bw_pd_body_cut(pd, block, b.slot, b.lane);
     any = true;
   }
@@ -178,13 +233,12 @@ static void virial(const bw_pd_body *pd, const bw_pd_block *block, int lane, dou
   const int32_t h = block->first + lane;
   double y[3], pull = 0;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, one); bw_pd_walk_next(&b);)
-    pull += bw_pd_ordinary_influence(o, b.rest.r0) * b.weight * b.rest.r0 *
-            (bw_pd_walk_present(&b, y) - b.rest.r0);
+    pull += weight_of(pd, block, &b) * b.rest.r0 * (bw_pd_walk_present(&b, y) - b.rest.r0);
   pull *= (double)o->swell[h];
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, one); bw_pd_walk_next(&b);) {
     const double r = bw_pd_walk_present(&b, y);
-    const double t = bw_pd_ordinary_influence(o, b.rest.r0) * b.weight *
-                     (pull * b.rest.r0 + (double)o->stiff[h] * (r - b.rest.r0));
+    const double t =
+        weight_of(pd, block, &b) * (pull * b.rest.r0 + (double)o->stiff[h] * (r - b.rest.r0));
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
         sum[i][j] += t * y[i] * y[j] / r;
@@ -193,6 +247,9 @@ static void virial(const bw_pd_body *pd, const bw_pd_block *block, int lane, dou
 
 static void destroy(bw_pd_body *pd)
 {
+  if (pd->state == NULL) return;
+  bw_release(&bw_pd_ordinary_of(pd)->own);
+  bw_release(&bw_pd_ordinary_of(pd)->reverse);
   bw_release(&pd->state);
 }
 
@@ -212,6 +269,7 @@ const bw_pd_law bw_pd_state_ordinary_law = {
     .prepare = prepare,
     .constants = constants,
     .n_sweep = 2,
+    .levels = true,
     .sweep = {bw_pd_state__ordinary_dilate, bw_pd_state__ordinary_force},
     .breaks = breaks,
     .bond_energy = bond_energy,

@@ -9,10 +9,12 @@ typedef struct {
   double lam[BW_PD_GROUPS], mu[BW_PD_GROUPS]; /* lam* and mu [M/(L T^2)] */
   bool dilates;                               /* some lam* is not mu: theta counts */
   bool breakable;                             /* some limit is finite */
-  bw_real *q;     /* storage: sum of w |xi|^2 Gamma dV over the family */
-  bw_real *stiff; /* storage: d (d + 2) mu/q */
-  bw_real *swell; /* storage: d^2 (lam* - mu)/q^2 */
-  bw_real *pull;  /* storage: d (lam* - mu) theta/q; copies after the first pass */
+  bw_real *q;             /* storage: sum of w |xi|^2 Gamma dV over the family */
+  bw_real *stiff;         /* storage: d (d + 2) mu/q */
+  bw_real *swell;         /* storage: d^2 (lam* - mu)/q^2 */
+  bw_real *own, *reverse; /* (n_exact, lanes) of bonds near jumps between levels: w Gamma dV in the
+                             family of the owner, and in that of the partner [w L^3]; NULL: none */
+  bw_real *pull;          /* storage: d (lam* - mu) theta/q; copies after the first pass */
 } bw_pd_ordinary;
 
 static inline bw_pd_ordinary *bw_pd_ordinary_of(const bw_pd_body *pd)
@@ -26,9 +28,26 @@ static inline double bw_pd_ordinary_influence(const bw_pd_ordinary *o, double r0
   return o->options.influence == BW_PD_STATE_INVERSE ? 1 / r0 : 1;
 }
 
+/* Columns of the kernel rows: LIMIT2 is twice the energy of a bond that breaks, over w, by the
+ * owner's level; this one by the partner's. */
+enum { BW_PD_PARTNER_LIMIT = BW_PD_MINUS_R0 };
+
+/* Where own and reverse have a bond's numbers; of blocks that are near a jump. */
+static inline size_t bw_pd_ordinary_near(const bw_pd_body *pd, const bw_pd_block *block,
+                                         const bw_pd_slot *slot)
+{
+  return ((size_t)block->exact + (size_t)(slot - pd->bonds.slot) - block->slot) * BW_PD_LANES;
+}
+
 /* Whether a bond is beyond its limit. Local. */
 bool bw_pd_state__ordinary_beyond(const bw_pd_body *pd, const bw_pd_level *level,
                                   const bw_pd_walk *b);
+
+/* pd_state_ordinary.c: q of all families, copies too. Collective. */
+void bw_pd_state__ordinary_moments(bw_pd_body *pd);
+/* pd_state_ordinary_weights.c: own, reverse and q of a body of several levels. BW_EMEM, BW_EINPUT:
+ * too many bonds near jumps. Collective. */
+bw_status bw_pd_state__ordinary_levels(bw_pd_body *pd) BW_MUST_CHECK;
 
 /* pd_state_ordinary_sweep.c: the passes, and the product with the tangent. */
 void bw_pd_state__ordinary_dilate(bw_pd_body *pd, size_t first, size_t last, bool check,

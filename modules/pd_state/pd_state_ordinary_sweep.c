@@ -10,13 +10,19 @@ typedef struct {
   sweep all;
   const bw_real *swell, *stiff;
   bw_real *pull;
-  bool inverse; /* w = 1/|xi| */
+  const bw_real *own, *reverse; /* of bonds near jumps between levels; NULL: none */
+  bool inverse;                 /* w = 1/|xi| */
 } ordinary;
 
 INLINE ordinary ordinary_of(const bw_pd_body *pd)
 {
   const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
-  return (ordinary){sweep_of(pd), o->swell, o->stiff, o->pull,
+  return (ordinary){sweep_of(pd),
+                    o->swell,
+                    o->stiff,
+                    o->pull,
+                    o->own,
+                    o->reverse,
                     o->options.influence == BW_PD_STATE_INVERSE};
 }
 
@@ -96,8 +102,8 @@ INLINE stretched look(const ordinary *s, const bw_pd_slot *slot, const bw_real *
 }
 
 /* d (lam* - mu) theta/q of the owners, to pull. */
-INLINE void block_dilation(const ordinary *s, const bw_pd_block *block, int dimension, bool cloud,
-                           bool linear)
+INLINE void dilation(const ordinary *s, const bw_pd_block *block, int dimension, bool cloud,
+                     bool linear, bool near)
 {
   const owners h = owners_of(&s->all, block, dimension, cloud);
   const bw_real *rows = rows_of(&s->all, block);
@@ -107,12 +113,83 @@ INLINE void block_dilation(const ordinary *s, const bw_pd_block *block, int dime
     if (slot->mask == 0) continue;
     const stretched b =
         look(s, slot, rows + slot->direction * BW_PD_ROW, &h, dimension, cloud, linear);
-    sum += vec_keep(lanes_of(slot->mask), b.weight * b.r0 * b.e);
+    const vec weight =
+        near ? vec_load(s->own + bw_pd_ordinary_near(s->all.pd, block, slot)) : b.weight;
+    sum += vec_keep(lanes_of(slot->mask), weight * b.r0 * b.e);
   }
   /* Lanes that are copies keep what their owners will send. */
   const vec pull = sum * vec_load(s->swell + block->first);
   for (int lane = 0; lane < BW_PD_LANES; lane++)
     if (block->mask >> lane & 1) s->pull[block->first + lane] = pull[lane];
+}
+
+/* Near a jump between levels bonds have weights of their own. */
+static __attribute__((noinline)) void near_dilation(const ordinary *s, const bw_pd_block *block,
+                                                    bool linear)
+{
+  dilation(s, block, 3, false, linear, true);
+}
+
+INLINE void block_dilation(const ordinary *s, const bw_pd_block *block, int dimension, bool cloud,
+                           bool linear)
+{
+  if (!cloud && s->own != NULL && block->exact >= 0)
+    near_dilation(s, block, linear);
+  else
+    dilation(s, block, dimension, cloud, linear, false);
+}
+
+/* A sum of two halves of a bond, the first end's first: the same from both ends. */
+INLINE vec halves(bool first, vec a, vec x, vec b, vec y)
+{
+  return first ? vec_fma(a, x, b * y) : vec_fma(b, y, a * x);
+}
+
+/* block_force where bonds have two weights: near a jump between levels. */
+static __attribute__((noinline)) bool near_force(const ordinary *s, const bw_pd_block *block,
+                                                 bool linear, bool check, vec sum[3])
+{
+  const owners h = owners_of(&s->all, block, 3, false);
+  const bw_real *rows = rows_of(&s->all, block);
+  const vec pull = vec_load(s->pull + block->first), stiff = vec_load(s->stiff + block->first);
+  const bool mixed = block->group == BW_PD_MIXED;
+  const bw_pd_stencil *stencil = &s->all.level[block->level].stencil;
+  const int same = stencil->same;
+  lanes beyond = lanes_of(0);
+  for (int k = 0; k < 3; k++)
+    sum[k] = vec_all(0);
+  const bw_pd_slot *end = s->all.slot + bw_pd_body_slot_end(block);
+  for (const bw_pd_slot *slot = s->all.slot + block->slot; slot < end; slot++) {
+    if (slot->mask == 0) continue;
+    const bw_real *row = rows + slot->direction * BW_PD_ROW;
+    const stretched b = look(s, slot, row, &h, 3, false, linear);
+    const size_t at = bw_pd_ordinary_near(s->all.pd, block, slot);
+    const bool first = bw_pd_body_is_first(stencil, slot->direction);
+    const vec own = vec_load(s->own + at), reverse = vec_load(s->reverse + at);
+    const vec mine = vec_fma(stiff, b.e, pull * b.r0);
+    const vec theirs =
+        vec_fma(vec_load(s->stiff + slot->base), b.e, vec_load(s->pull + slot->base) * b.r0);
+    /* Bonds of one weight are as in block_force, to the bit: blocks are divided over ranks. */
+    const lanes differ = slot->direction >= same
+                             ? lanes_of((1 << BW_PD_LANES) - 1)
+                             : vec_above(own, reverse) | vec_above(reverse, own);
+    const lanes one = (lanes)~differ;
+    const vec both = vec_fma(stiff + vec_load(s->stiff + slot->base), b.e,
+                             (pull + vec_load(s->pull + slot->base)) * b.r0);
+    const vec two = halves(first, own, mine, reverse, theirs);
+    const vec f = vec_keep(one, own * both) + vec_keep(differ, two);
+    const vec c = vec_keep(lanes_of(slot->mask), f * b.over);
+    for (int k = 0; k < 3; k++)
+      sum[k] = vec_fma(c, b.z[k], sum[k]);
+    if (!check) continue;
+    const vec limit = constant_of(&s->all, block, slot, row, BW_PD_LIMIT2, mixed);
+    const vec partner = constant_of(&s->all, block, slot, row, BW_PD_PARTNER_LIMIT, mixed);
+    const vec of_two = halves(first, own, limit, reverse, partner) * vec_all((bw_real)0.5);
+    const lanes over =
+        (one & vec_above(both * b.e, limit)) | (differ & vec_above(two * b.e, of_two));
+    beyond |= over & vec_above(b.e, vec_all(0)) & lanes_of(slot->mask);
+  }
+  return check && lanes_bits(beyond) != 0;
 }
 
 /* Force density of the owners; returns whether a bond that holds is beyond its limit. */
@@ -156,7 +233,9 @@ INLINE size_t force_blocks(const ordinary *s, size_t first, size_t last, int dim
     const bw_pd_block *block = &s->all.block[q];
     const bool mixed = block->group == BW_PD_MIXED;
     vec sum[3];
-    if (block_force(s, block, dimension, cloud, false, check, mixed, sum))
+    const bool near = !cloud && s->own != NULL && block->exact >= 0;
+    if (near ? near_force(s, block, false, check, sum)
+             : block_force(s, block, dimension, cloud, false, check, mixed, sum))
       hit[n_hit++] = (uint32_t)q;
     const vec over = over_density(&s->all, block, 1, mixed);
     for (int k = 0; k < dimension; k++)
@@ -225,7 +304,10 @@ void bw_pd_state__ordinary_tangent(const bw_pd_body *pd, bw_real *const x[3], do
   for (size_t q = 0; q < pd->bonds.n_block; q++) {
     const bw_pd_block *block = &pd->bonds.block[q];
     vec sum[3];
-    block_force(&s, block, 3, cloud, true, false, false, sum);
+    if (s.own != NULL && block->exact >= 0)
+      near_force(&s, block, true, false, sum);
+    else
+      block_force(&s, block, 3, cloud, true, false, false, sum);
     for (int lane = 0; lane < BW_PD_LANES; lane++)
       for (size_t k = 0; k < 3; k++)
         if (block->mask >> lane & 1)

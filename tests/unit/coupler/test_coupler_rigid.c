@@ -183,10 +183,10 @@ START_TEST(films_are_refused)
 {
   double U[3] = {0};
   const bw_rigid_body body = {.count = 1, .shape = &BALL, .density = 1.0};
-  const bw_coupler_films films[] = {{true, NAN, 2.0 * H, -INFINITY},
-                                    {true, NAN, NAN, -INFINITY},
-                                    {true, 0.5 * H, 0.1 * H, -INFINITY},
-                                    {true, NAN, 0.1 * H, -1.0}};
+  const bw_coupler_films films[] = {{true, NAN, 2.0 * H, -INFINITY, false},
+                                    {true, NAN, NAN, -INFINITY, false},
+                                    {true, 0.5 * H, 0.1 * H, -INFINITY, false},
+                                    {true, NAN, 0.1 * H, -1.0, false}};
   for (size_t q = 0; q < sizeof films / sizeof *films; q++) {
     bw_coupler_rigid_config c = oil();
     scene s;

@@ -249,7 +249,7 @@ static inline bw_status bending_create(const bw_comm *comm, const bending_config
   bw_coupler_config c = f->config.coupling;
   c.rho = config->fluid.density;
   c.nu = config->fluid.viscosity;
-  c.count_work = true;
+  c.count_work = c.check_relaxation = true;
   c.walled[1][0] = true;
   return bw_coupler_create(&c, f->fluid, f->solid, &f->coupler);
 }

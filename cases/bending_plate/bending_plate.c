@@ -41,6 +41,7 @@ static bw_status advance(bending_run *p, bool *stopped)
     bw_coupler_watch(p->flow.coupler, next % p->config->output.sample_every == 0 || next == p->end);
     st = bw_coupler_step(p->flow.coupler, time->step);
     p->step += st == BW_OK;
+    bw_coupler_tell_limit(p->flow.coupler, bw_case_log(p->run));
     BW_THEN(st, after_step(p, &m));
     bw_progress_update(line, p->step, bw_ns_channel_time(p->flow.fluid),
                        "tip %.4f heights, force %.4g N/m", m.tip[0] / p->flow.config.plate.height,

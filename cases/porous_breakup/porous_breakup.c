@@ -27,6 +27,7 @@ static bw_status run_phase(porous_run *p)
     bw_coupler_watch(p->coupler, porous_sample_due(p));
     BW_THEN(st, bw_coupler_step(p->coupler, f->time_step));
     if (st != BW_OK) break;
+    bw_coupler_tell_limit(p->coupler, bw_case_log(p->run));
     p->step++, p->total_step++;
     st = porous_after_step(p);
     const double drop = porous_pressure_drop(p);

@@ -99,7 +99,7 @@ static bw_status build_coupler(porous_run *p)
   bw_coupler_config c = q->coupling;
   c.rho = q->fluid.density;
   c.nu = q->fluid.viscosity;
-  c.count_work = true;
+  c.count_work = c.check_relaxation = true;
   c.walled[1][0] = c.walled[1][1] = true;
   return bw_coupler_create(&c, p->fluid, p->solid, &p->coupler);
 }

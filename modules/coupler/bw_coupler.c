@@ -18,7 +18,7 @@ bw_coupler_config bw_coupler_config_default(void)
                              .probe_length = 2.0,
                              .probe_profile = BW_PROBE_QUADRATIC,
                              .solid_safety = 0.8,
-                             .load_relaxation = 0.1,
+                             .load_relaxation = NAN,
                              .virtual_mass = 1.0,
                              .coupling_iterations = 1,
                              .coupling_residual = 1e-4,
@@ -55,8 +55,8 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
   BW_REQUIRE(q->nu > 0.0, BW_EINPUT, "coupler: nu = %g: the viscosity must be > 0", q->nu);
   BW_REQUIRE(q->solid_safety > 0.0 && q->solid_safety <= 1.0, BW_EINPUT,
              "coupler: solid_safety = %g: must lie in (0, 1]", q->solid_safety);
-  BW_REQUIRE(q->load_relaxation > 0.0 && q->load_relaxation <= 1.0, BW_EINPUT,
-             "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
+  BW_REQUIRE(isnan(q->load_relaxation) || (q->load_relaxation > 0.0 && q->load_relaxation <= 1.0),
+             BW_EINPUT, "coupler: load_relaxation = %g: must lie in (0, 1]", q->load_relaxation);
   BW_REQUIRE(q->virtual_mass >= 0.0 && q->virtual_mass <= 100.0, BW_EINPUT,
              "coupler: virtual_mass = %g: must lie in [0, 100]", q->virtual_mass);
   BW_REQUIRE(q->coupling_iterations >= 1, BW_EINPUT,
@@ -270,6 +270,10 @@ bw_status bw_coupler_create(const bw_coupler_config *config, bw_ns_channel *flui
   if (st != BW_OK) return st;
   /* From here on destroy can take the object, whatever is missing. */
   c->config = *config;
+  c->choice = (bw_coupler__choice){.open = isnan(config->load_relaxation),
+                                   .limit = {.relaxation = NAN, .added = NAN}};
+  /* Until it is chosen; iterated: of what earlier tries do not tell. */
+  if (c->choice.open) c->config.load_relaxation = 0.1;
   c->fluid = fluid;
   c->solid = solid;
   /* A solid at rest in a flow that settles: what most runs begin with. */

@@ -31,6 +31,13 @@
  * markers nor probes reach farther than about a cell, so that tips have as much as they need.
  * Measured: validation, coupler.fast_modes.
  *
+ * What holds. The first explicit step measures the limit of w where load_relaxation is left open
+ * (NaN): power iteration over "velocity of the surface, load of the fluid, answer of the solid in
+ * one step" finds the shapes that the fluid resists most, their answers over forty steps and the
+ * recurrence above the limit (stability.c). Half of it is taken, 0.1 at most. Chosen anew when 2 %
+ * of the bonds have broken since, or the step is another by half. What was chosen is part of a
+ * checkpoint.
+ *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
  * velocity is that of a quasi-Newton step (IQN-ILS, iterate.c); what earlier tries do not tell is
@@ -115,7 +122,11 @@ typedef struct {
       probe_profile;         /* of the velocity along a probe               default quadratic */
   double solid_safety;       /* solid sub-step over its limit, 0 .. 1 [-]   default 0.8 */
   bw_coupler_load_kind load; /*                                             default probes */
-  double load_relaxation;    /* share of the new load in each step, (0, 1]  default 0.1 */
+  double load_relaxation;    /* share of the new load in each step, (0, 1]; NaN: chosen by what the
+                                first coupled step measures ("What holds" below)
+                                                                            default NaN */
+  bool check_relaxation;     /* measure what holds also where load_relaxation is given
+                                (bw_coupler_tell_limit)                     default false */
   double virtual_mass;       /* of the surface, over w rho A h; 0: none [-]   default 1 */
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
   double coupling_residual;  /* iterated: what the surface's velocity lacks of a fixed point, over
@@ -177,6 +188,24 @@ int bw_coupler_substeps(const bw_coupler *c, double dt);
  * that; bw_coupler_step refuses them, too. Local, the same on all ranks. */
 bw_status bw_coupler_check_substeps(const bw_coupler *c, double dt) BW_MUST_CHECK;
 
+/* Explicit coupling of this body in this fluid. */
+typedef struct {
+  double relaxation; /* below this load_relaxation small motions do not grow, with the virtual mass
+                        of the configuration; 1: whatever it is; NaN: could not be measured */
+  double added;      /* what the fluid adds within twelve steps to the mass that resists in one, of
+                        the motion for which that is so [-] */
+  bool late;         /* that motion is the one that the fluid resists most over twelve steps, not
+                        the one that it resists most at once */
+} bw_coupler_limit;
+/* Measures it for steps of dt [T], from the present state and surface, by some 190 steps of the
+ * fluid and 70 of the solid (stability.c); the state is put back, to the same bits. What
+ * bw_coupler_measure tells of the last step is lost until the next. BW_EMEM. Collective. */
+bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out) BW_MUST_CHECK;
+
+/* Says once on `log` what the first coupled step, or a later one after much had broken, measured
+ * and chose; a warning where a given load_relaxation is above half of the limit. Local. */
+void bw_coupler_tell_limit(bw_coupler *c, bw_log *log);
+
 /* What was seen in the last step. */
 typedef struct {
   double force_reaction[3];       /* on the solid, from the markers, minus rho sum Q dV [M L/T^2] */
@@ -211,6 +240,8 @@ typedef struct {
                                      became another */
   int iterations;           /* of the last step; 1: explicit */
   double residual;          /* with which it ended [-]; 0 when explicit */
+  double relaxation;        /* load_relaxation in use [-] */
+  double relaxation_limit;  /* bw_coupler_limit that was measured last; NaN: none was */
   int64_t unconverged;      /* steps so far whose iterations did not reach coupling_residual */
   int64_t markers;          /* of all ranks */
   int64_t markers_outside;  /* of them, outside the box: they force nothing */

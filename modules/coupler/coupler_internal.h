@@ -26,6 +26,8 @@ typedef struct {
   int64_t steps;                 /* booked */
 } bw_coupler__book;
 
+enum { BW_COUPLER__CHOICE = 6 }; /* numbers of a choice (stability.c) */
+
 /* A copy of everything a run needs to go on: fields with halos, particle rows. */
 typedef struct {
   bool filled;
@@ -37,6 +39,7 @@ typedef struct {
   double *V_before, *F, *M;                                    /* (n,3) */
   double *bodies;                                              /* joined.c; NULL: none */
   double *edge, *carried; /* (n) of films: pressure at edges, volume brought; NULL: no films */
+  double choice[BW_COUPLER__CHOICE];
 } bw_coupler__state;
 
 /* Surface particles that share a marker. A block's members are sent to one rank, which hands the
@@ -71,6 +74,13 @@ typedef struct {
   int columns, room; /* used, and how many there may be */
   double *q[BW_COUPLER__COLUMNS], *d[BW_COUPLER__COLUMNS];
 } bw_coupler__iteration;
+
+/* What holds, and what was chosen by it (stability.c). */
+typedef struct {
+  bool open, made, told;  /* left to us; found; said */
+  double dt, broken;      /* of then: step, broken ends of bonds */
+  bw_coupler_limit limit; /* found */
+} bw_coupler__choice;
 
 struct bw_coupler {
   bw_coupler_config config;
@@ -145,6 +155,7 @@ struct bw_coupler {
   int slip_above;      /* reports in a row with much slip; -1: it was said */
   double slip_last[2]; /* slip and leak of the last of them */
   bool load_told;      /* bw_coupler_warn_load has looked */
+  bw_coupler__choice choice;
 };
 
 /* Everything with a row per particle anew, after the set of particles changed. Collective. */
@@ -240,3 +251,15 @@ void bw_coupler__free_inside(bw_coupler *c, double dt);
 bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);
+
+/* Stability (stability.c, relaxation.c). Does the recurrence b_{k+1} = y_k with
+ * y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which it
+ * does, with a virtual mass of w mu times what resists. Pure. */
+bool bw_coupler__relaxation_holds(int n, const double lambda[], double w);
+double bw_coupler__relaxation_limit(int n, const double lambda[], double mu);
+/* Before an explicit step of dt: finds what holds where that is asked for and not known, and sets
+ * what was left open. Collective. */
+bw_status bw_coupler__choose(bw_coupler *c, double dt) BW_MUST_CHECK;
+/* The choice as numbers; the way back, of a checkpoint. Local. */
+void bw_coupler__get_choice(const bw_coupler *c, double choice[BW_COUPLER__CHOICE]);
+void bw_coupler__adopt_choice(bw_coupler *c, const double choice[BW_COUPLER__CHOICE]);

@@ -168,7 +168,9 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
                          .work_film = c->work.film,
                          .iterations = c->iterations,
                          .residual = c->residual,
-                         .unconverged = c->unconverged};
+                         .unconverged = c->unconverged,
+                         .relaxation = c->config.load_relaxation,
+                         .relaxation_limit = c->choice.limit.relaxation};
   double box[3], mass[3];
   int64_t count[2];
   const double speed = bw_coupler__reference_speed(c);

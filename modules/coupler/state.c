@@ -13,6 +13,7 @@ static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "soli
 static const char more_work_name[] = "solid/work_of_load";
 static const char film_name[] = "solid/film_edge", film_work_name[] = "solid/work_of_films";
 static const char brought_name[] = "solid/film_brought";
+static const char choice_name[] = "solid/relaxation_chosen";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
 
@@ -86,6 +87,7 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
     memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
     memcpy(s->carried, bw_coupler__solid_films_carried(c), c->n * sizeof *s->carried);
   }
+  bw_coupler__get_choice(c, s->choice);
   s->filled = true;
 }
 
@@ -142,6 +144,7 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/sums", BW_SOLID_RESTART_SUMS, s->sums));
   BW_TRY(bw_checkpoint_put_numbers(ck, "solid/work_of_fluid", 2, s->work));
   BW_TRY(bw_checkpoint_put_numbers(ck, more_work_name, 2, s->work + 2));
+  BW_TRY(bw_checkpoint_put_numbers(ck, choice_name, BW_COUPLER__CHOICE, s->choice));
   /* Everything of the particles, as rows. */
   BW_TRY(bw_checkpoint_put_table(ck, "solid/rows", total, c->n, id,
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
@@ -173,6 +176,9 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
   s->work[2] = s->work[3] = s->work[4] = 0.0;
   if (bw_checkpoint_has(ck, more_work_name))
     BW_TRY(bw_checkpoint_get_numbers(ck, more_work_name, 2, s->work + 2));
+  s->choice[0] = 0.0;
+  if (bw_checkpoint_has(ck, choice_name))
+    BW_TRY(bw_checkpoint_get_numbers(ck, choice_name, BW_COUPLER__CHOICE, s->choice));
   /* Rows find their particles by id. */
   BW_TRY(bw_checkpoint_get_table(ck, "solid/rows", total, c->n, id,
                                  (int)bw_solid_restart_row(c->solid), BW_CK_DOUBLE, s->rows));
@@ -256,6 +262,7 @@ bw_status bw_coupler_load(bw_coupler *c, bw_checkpoint *ck)
                                own * c->kept.work[3], own * c->kept.work[4]};
   memset(c->book.window, 0, sizeof c->book.window); /* windows begin anew */
   c->book.steps = 0;
+  bw_coupler__adopt_choice(c, c->kept.choice);
   BW_TRY(bw_coupler__state_restore(c, &c->kept));
   c->steps = BW_COUPLER__START;
   /* The surface follows from bonds and places. */

@@ -200,6 +200,7 @@ static bw_status step(bw_coupler *c, double dt)
     if (c->floats != NULL) BW_THEN(st, bw_coupler__step_floats(c, dt));
     return st;
   }
+  BW_TRY(bw_coupler__choose(c, dt)); /* how much of a new load holds */
   bw_coupler__book_open(c);
   if (c->config.coupling_iterations > 1) {
     /* The same phases, repeated until both sides agree. */

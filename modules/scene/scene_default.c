@@ -154,7 +154,6 @@ static const knob knobs[] = {
     {D(memory), OF_MARKERS, {0.2, 0.2, 0.2}},
     {D(marker_spacing), OF_COUPLING, {1.0, 1.0, 1.0}},
     {D(probe_length), OF_MARKERS, {2.0, 2.0, 2.0}},
-    {D(load_relaxation), OF_COUPLING, {0.1, 0.1, 0.1}},
     {D(virtual_mass), OF_MOVING, {1.0, 1.0, 1.0}},
     {I(coupling_iterations), OF_COUPLING, {1, 1, 20}},
     {D(coupling_residual), OF_COUPLING, {1e-3, 1e-4, 1e-5}},

@@ -189,7 +189,9 @@ static bw_status advance(bw_scene *s, double dt)
   if (s->water != NULL) return bw_scene__water_step(s, dt);
   if (s->coupler != NULL) {
     BW_TRY(bw_scene__loads_apply(s, dt));
-    return bw_coupler_step(s->coupler, dt);
+    BW_TRY(bw_coupler_step(s->coupler, dt));
+    bw_coupler_tell_limit(s->coupler, s->log);
+    return BW_OK;
   }
   if (s->floats != NULL) {
     bw_scene__rigid_tell(s, dt);

@@ -22,13 +22,14 @@ typedef enum { A_BLOCK, A_CYLINDER, A_PLATE } block_body;
 typedef struct {
   block_body body;
   double ratio; /* density of the block over the fluid's */
-  double w;     /* load relaxation */
+  double w;     /* load relaxation; NaN: left to the coupler */
   double virtual_mass;
   double dt; /* of the steps to come: says what is stiff */
   bw_coupler_load_kind load;
   double speed;
   int iterations; /* 0: explicit */
   bool moved;     /* by force; else free, and starting with `speed` */
+  double spacing; /* of markers, in cells; 0: one a particle */
 } block_set_up;
 
 typedef struct {
@@ -127,6 +128,7 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   c.load_relaxation = b->w;
   c.virtual_mass = b->virtual_mass;
   c.count_work = true;
+  c.marker_spacing = b->spacing;
   c.walled[1][0] = b->body == A_PLATE;
   if (b->iterations > 0) {
     c.coupling_iterations = b->iterations;

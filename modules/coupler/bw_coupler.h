@@ -34,9 +34,9 @@
  * What holds. The first explicit step measures the limit of w where load_relaxation is left open
  * (NaN): power iteration over "velocity of the surface, load of the fluid, answer of the solid in
  * one step" finds the shapes that the fluid resists most, their answers over forty steps and the
- * recurrence above the limit (stability.c). Half of it is taken, 0.1 at most. Chosen anew when 2 %
- * of the bonds have broken since, or the step is another by half. What was chosen is part of a
- * checkpoint.
+ * recurrence above the limit; a trial with a rough disturbance may lower it (stability.c). Half of
+ * it is taken, 0.1 at most. Chosen anew when 2 % of the bonds have broken since, or the step is
+ * another by half. What was chosen is part of a checkpoint.
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
@@ -198,8 +198,9 @@ typedef struct {
                         the one that it resists most at once */
 } bw_coupler_limit;
 /* Measures it for steps of dt [T], from the present state and surface, by some 190 steps of the
- * fluid and 70 of the solid (stability.c); the state is put back, to the same bits. What
- * bw_coupler_measure tells of the last step is lost until the next. BW_EMEM. Collective. */
+ * fluid, 70 of the solid, and 240 of both or more (stability.c); the state is put back, to the same
+ * bits. What bw_coupler_measure tells of the last step is lost until the next. BW_EMEM. Collective.
+ */
 bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out) BW_MUST_CHECK;
 
 /* Says once on `log` what the first coupled step, or a later one after much had broken, measured

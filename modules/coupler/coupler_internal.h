@@ -255,6 +255,8 @@ void bw_coupler__iteration_release(bw_coupler *c);
 /* Stability (stability.c, relaxation.c). Does the recurrence b_{k+1} = y_k with
  * y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which it
  * does, with a virtual mass of w mu times what resists. Pure. */
+#define BW_COUPLER__MARGIN 0.5 /* of the limit, which is taken ... */
+#define BW_COUPLER__MOST   0.1 /* ... up to this: loads of ten steps, without the noise of one */
 bool bw_coupler__relaxation_holds(int n, const double lambda[], double w);
 double bw_coupler__relaxation_limit(int n, const double lambda[], double mu);
 /* Before an explicit step of dt: finds what holds where that is asked for and not known, and sets

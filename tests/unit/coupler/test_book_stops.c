@@ -25,58 +25,49 @@ static int march(const block_set_up *b, bw_status *st)
   return n;
 }
 
-/* What grows ends with the coupling named as its cause, and what to change. */
+/* What grows ends with the coupling named as its cause, and what to change. The fast ones meet the
+ * fluid's own limit before a window of the book has ended; the breathing of the plate
+ * (stability.c), 4 % a step, is met by the book itself. */
 START_TEST(what_grows_is_stopped)
 {
+  static const char slower[] = "smaller load_relaxation";
   static const struct {
-    block_body body;
-    double ratio, w, virtual_mass;
-    int iterations;
-    const char *remedy;
+    block_set_up of;
+    const char *says, *remedy;
   } bad[] = {
-      {A_BLOCK, 0.3, 1.0, 0.0, 0, "smaller load_relaxation"}, /* holds from 0.55, 0.73 on */
-      {A_CYLINDER, 0.3, 1.0, 0.0, 0, "smaller load_relaxation"},
-      {A_PLATE, 1.0, 1.0, 0.0, 0, "smaller load_relaxation"},
-      {A_PLATE, 0.1, 0.3, 1.0, 0, "smaller load_relaxation"},
-      {A_PLATE, 0.002, 0.1, 1.0, 50, "smaller steps"},
+      {{A_BLOCK, 0.3, 1.0, .load = BW_LOAD_PROBES}, "likely cause", slower},   /* from 0.55 on */
+      {{A_BLOCK, 0.3, 1.0, .load = BW_LOAD_REACTION}, "likely cause", slower}, /* from 0.73 on */
+      {{A_PLATE, 0.1, 0.3, 1.0, .load = BW_LOAD_PROBES}, "likely cause", slower},
+      {{A_PLATE, 1.0, 0.1, 1.0, .load = BW_LOAD_REACTION}, "no physics since step", slower},
+      {{A_PLATE, 0.1, .iterations = 50, .load = BW_LOAD_PROBES}, "coupling", "smaller steps"},
   };
-  for (size_t q = 0; q < sizeof bad / sizeof *bad; q++)
-    for (int load = BW_LOAD_PROBES; load <= BW_LOAD_REACTION; load++) {
-      const block_set_up b = {.body = bad[q].body,
-                              .ratio = bad[q].ratio,
-                              .w = bad[q].w,
-                              .virtual_mass = bad[q].virtual_mass,
-                              .iterations = bad[q].iterations,
-                              .dt = DT,
-                              .load = (bw_coupler_load_kind)load,
-                              .speed = SPEED};
-      bw_status st;
-      const int n = march(&b, &st);
-      ck_assert_int_lt(n, STEPS);
-      ck_assert(st == BW_EDIVERGED || st == BW_ECFL);
-      ck_assert_ptr_nonnull(strstr(bw_last_message(), "coupling of fluid and solid"));
-      ck_assert_ptr_nonnull(strstr(bw_last_message(), bad[q].remedy));
-    }
+  for (size_t q = 0; q < sizeof bad / sizeof *bad; q++) {
+    block_set_up b = bad[q].of;
+    bw_status st;
+    b.dt = DT, b.speed = SPEED;
+    ck_assert_int_lt(march(&b, &st), STEPS);
+    ck_assert(st == BW_EDIVERGED || st == BW_ECFL);
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), bad[q].says));
+    ck_assert_ptr_nonnull(strstr(bw_last_message(), bad[q].remedy));
+  }
 }
 END_TEST
 
-/* The same bodies with what the coupler chooses. */
+/* The same plate with what the coupler chooses. */
 START_TEST(what_holds_is_left_alone)
 {
-  static const double ratio[3] = {10.0, 1.0, 0.1};
-  for (int body = A_BLOCK; body <= A_PLATE; body++)
-    for (int q = 0; q < 6; q++) {
-      const block_set_up b = {.body = (block_body)body,
-                              .ratio = ratio[q / 2],
-                              .w = NAN,
-                              .virtual_mass = 1.0,
-                              .dt = DT,
-                              .load = (bw_coupler_load_kind)(q % 2),
-                              .speed = SPEED};
-      bw_status st;
-      ck_assert_int_eq(march(&b, &st), STEPS);
-      bw_check_ok(st);
-    }
+  for (int q = 0; q < 4; q++) {
+    const block_set_up b = {.body = A_PLATE,
+                            .ratio = q / 2 == 0 ? 1.0 : 0.1,
+                            .w = NAN,
+                            .virtual_mass = 1.0,
+                            .dt = DT,
+                            .load = (bw_coupler_load_kind)(q % 2),
+                            .speed = SPEED};
+    bw_status st;
+    ck_assert_int_eq(march(&b, &st), STEPS);
+    bw_check_ok(st);
+  }
 }
 END_TEST
 

@@ -93,13 +93,15 @@ static void check(const scene_case *c)
   ck_assert(watches_box(s) == c->box);
   const size_t before = in_use();
   const int64_t first = bw_scene_steps(s);
+  /* Before its first step a coupler has measured what holds. */
+  const long so_far = s->fluid != NULL ? bw_ns_channel_cost(s->fluid).substeps : 0;
   while (!bw_scene_done(s))
     bw_check_ok(bw_scene_step(s, INFINITY));
   ck_assert_uint_eq(in_use(), before);
   ck_assert_int_ge(bw_scene_steps(s) - first, 7);
   /* Three sub-steps of the fluid each, and none without one. */
   const long substeps = s->fluid != NULL ? bw_ns_channel_cost(s->fluid).substeps : 0;
-  ck_assert_int_eq(substeps, s->fluid != NULL ? 3 * bw_scene_steps(s) : 0);
+  ck_assert_int_eq(substeps - so_far, s->fluid != NULL ? 3 * (bw_scene_steps(s) - first) : 0);
   bw_scene_destroy(&s);
 }
 

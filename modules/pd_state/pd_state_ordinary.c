@@ -28,30 +28,6 @@ static bw_status check(const bw_pd_body_config *c, const void *options)
   return bw_pd_state__check_poisson(c);
 }
 
-/* w Gamma dV of a bond in the family of its owner. */
-static double weight_of(const bw_pd_body *pd, const bw_pd_block *block, const bw_pd_walk *b)
-{
-  const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
-  return o->own != NULL && block->exact >= 0
-             ? (double)o->own[bw_pd_ordinary_near(pd, block, b->slot) + (size_t)b->lane]
-             : bw_pd_ordinary_influence(o, b->rest.r0) * b->weight;
-}
-
-/* What breaks later leaves theta, not q. */
-void bw_pd_state__ordinary_moments(bw_pd_body *pd)
-{
-  bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
-  for (size_t b = 0; b < pd->bonds.n_block; b++) {
-    double sum[BW_PD_LANES] = {0};
-    for (bw_pd_walk x = bw_pd_walk_families(pd, &pd->bonds.block[b]); bw_pd_walk_next(&x);)
-      sum[x.lane] += weight_of(pd, &pd->bonds.block[b], &x) * x.rest.r0 * x.rest.r0;
-    for (int lane = 0; lane < BW_PD_LANES; lane++)
-      if (pd->bonds.block[b].mask >> lane & 1)
-        o->q[pd->bonds.block[b].first + lane] = (bw_real)sum[lane];
-  }
-  bw_pd_body_fill_places(pd, o->q);
-}
-
 static bw_status prepare(bw_pd_body *pd, const void *options)
 {
   bw_status st = BW_ALLOCATE((bw_pd_ordinary **)&pd->state, 1);
@@ -131,7 +107,7 @@ static double particle_energy(const bw_pd_body *pd, const bw_pd_block *block, in
   const int32_t h = block->first + lane;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, (uint8_t)(1u << lane)); bw_pd_walk_next(&b);) {
     if (b.slot == without) continue;
-    const double w = weight_of(pd, block, &b);
+    const double w = bw_pd_ordinary_weight(pd, block, &b);
     const double e = bw_pd_walk_present(&b, y) - b.rest.r0;
     swell += w * b.rest.r0 * e;
     bonds += w * e * e;
@@ -233,12 +209,13 @@ static void virial(const bw_pd_body *pd, const bw_pd_block *block, int lane, dou
   const int32_t h = block->first + lane;
   double y[3], pull = 0;
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, one); bw_pd_walk_next(&b);)
-    pull += weight_of(pd, block, &b) * b.rest.r0 * (bw_pd_walk_present(&b, y) - b.rest.r0);
+    pull +=
+        bw_pd_ordinary_weight(pd, block, &b) * b.rest.r0 * (bw_pd_walk_present(&b, y) - b.rest.r0);
   pull *= (double)o->swell[h];
   for (bw_pd_walk b = bw_pd_walk_of(pd, block, one); bw_pd_walk_next(&b);) {
     const double r = bw_pd_walk_present(&b, y);
-    const double t =
-        weight_of(pd, block, &b) * (pull * b.rest.r0 + (double)o->stiff[h] * (r - b.rest.r0));
+    const double t = bw_pd_ordinary_weight(pd, block, &b) *
+                     (pull * b.rest.r0 + (double)o->stiff[h] * (r - b.rest.r0));
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
         sum[i][j] += t * y[i] * y[j] / r;

@@ -39,11 +39,21 @@ static inline size_t bw_pd_ordinary_near(const bw_pd_body *pd, const bw_pd_block
   return ((size_t)block->exact + (size_t)(slot - pd->bonds.slot) - block->slot) * BW_PD_LANES;
 }
 
+/* w Gamma dV of a bond in the family of its owner. */
+static inline double bw_pd_ordinary_weight(const bw_pd_body *pd, const bw_pd_block *block,
+                                           const bw_pd_walk *b)
+{
+  const bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  return o->own != NULL && block->exact >= 0
+             ? (double)o->own[bw_pd_ordinary_near(pd, block, b->slot) + (size_t)b->lane]
+             : bw_pd_ordinary_influence(o, b->rest.r0) * b->weight;
+}
+
 /* Whether a bond is beyond its limit. Local. */
 bool bw_pd_state__ordinary_beyond(const bw_pd_body *pd, const bw_pd_level *level,
                                   const bw_pd_walk *b);
 
-/* pd_state_ordinary.c: q of all families, copies too. Collective. */
+/* pd_state_ordinary_sweep.c: q of all families, copies too. Collective. */
 void bw_pd_state__ordinary_moments(bw_pd_body *pd);
 /* pd_state_ordinary_weights.c: own, reverse and q of a body of several levels. BW_EMEM, BW_EINPUT:
  * too many bonds near jumps. Collective. */

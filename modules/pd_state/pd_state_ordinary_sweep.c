@@ -314,3 +314,18 @@ void bw_pd_state__ordinary_tangent(const bw_pd_body *pd, bw_real *const x[3], do
           kx[3 * (size_t)bw_pd_body_owner(block, lane) + k] = -(double)sum[k][lane];
   }
 }
+
+/* What breaks later leaves theta, not q. */
+void bw_pd_state__ordinary_moments(bw_pd_body *pd)
+{
+  bw_pd_ordinary *o = bw_pd_ordinary_of(pd);
+  for (size_t b = 0; b < pd->bonds.n_block; b++) {
+    double sum[BW_PD_LANES] = {0};
+    for (bw_pd_walk x = bw_pd_walk_families(pd, &pd->bonds.block[b]); bw_pd_walk_next(&x);)
+      sum[x.lane] += bw_pd_ordinary_weight(pd, &pd->bonds.block[b], &x) * x.rest.r0 * x.rest.r0;
+    for (int lane = 0; lane < BW_PD_LANES; lane++)
+      if (pd->bonds.block[b].mask >> lane & 1)
+        o->q[pd->bonds.block[b].first + lane] = (bw_real)sum[lane];
+  }
+  bw_pd_body_fill_places(pd, o->q);
+}

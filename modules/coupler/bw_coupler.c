@@ -111,15 +111,15 @@ static bw_status create_parts(bw_coupler *c)
 }
 
 /* The arrays with a row per particle, in one list for creation and release. */
-enum { N_VECTORS = 27 };
+enum { N_VECTORS = 26 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
       &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
       &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
-      &c->traction, &c->force,    &c->turn,     &c->spin,      &c->root_V,      &c->load,
-      &c->moment,   &c->M,        &c->marker_M, &c->book.X,    &c->book.V,      &c->book.change,
-      &c->height,   &c->side,     &c->flow};
+      &c->traction, &c->force,    &c->turn,     &c->root_V,    &c->load,        &c->moment,
+      &c->M,        &c->marker_M, &c->book.X,   &c->book.V,    &c->book.change, &c->height,
+      &c->side,     &c->flow};
   memcpy(vector, all, sizeof all);
 }
 
@@ -147,7 +147,6 @@ static bw_status particle_arrays(bw_coupler *c)
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
-  BW_TRY(BW_ALLOCATE(&c->flag, n));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
@@ -157,6 +156,7 @@ static bw_status particle_arrays(bw_coupler *c)
   BW_TRY(BW_ALLOCATE(&c->id, n));
   if (n > 0) memcpy(c->id, bw_solid_id(c->solid), n * sizeof *c->id);
   c->events = -1; /* not asked yet */
+  BW_TRY(bw_coupler__probes_create(c));
   if (c->films != NULL) BW_TRY(bw_coupler__solid_films_rows(c));
   /* Iterations repeat a step from a state that has to be kept. */
   return c->config.coupling_iterations > 1 ? bw_coupler__iteration_create(c) : BW_OK;
@@ -168,7 +168,7 @@ static void release_particle_arrays(bw_coupler *c)
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
     bw_release(vector[q]);
-  bw_release(&c->flag);
+  bw_coupler__probes_release(c);
   bw_release(&c->particle);
   bw_release(&c->particle_inside);
   bw_release(&c->row);

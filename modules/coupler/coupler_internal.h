@@ -82,6 +82,18 @@ typedef struct {
   bw_coupler_limit limit; /* found */
 } bw_coupler__choice;
 
+/* Where probes begin, one or several for a surface point (probes.c). */
+typedef struct {
+  size_t n, room;
+  int32_t *point;           /* (n) which surface point */
+  double *X, *N, *A;        /* (n,3), (n,3), (n) */
+  double *H;                /* (n) from the particle's centre to X along N [L] */
+  double *V, *spin, *accel; /* (n,3) each */
+  double *traction;         /* (n,3) */
+  unsigned char *flag;      /* (n) bw_probe_flag */
+  double *moment;           /* (n_surface,3) of their forces about the particles [M L^2/T^2] */
+} bw_coupler__probes;
+
 struct bw_coupler {
   bw_coupler_config config;
   bw_ns_channel *fluid;
@@ -107,7 +119,7 @@ struct bw_coupler {
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
   double *marker_M; /* (n,3) memory of the surface points [L^4/T^2]; NaN: they have none */
-  double *root, *normal, *area;     /* probe points (n,3), normals (n,3), areas (n) */
+  double *root, *normal, *area;     /* nominal surface (n,3), normals (n,3), areas (n) */
   double *height;                   /* (n) of the surface above its particles' centres [L] */
   double *side;                     /* (n,3) normals that markers know; NaN: they are retracted */
   int *closed;                      /* (n) body of the surface points */
@@ -117,9 +129,9 @@ struct bw_coupler {
   double *flow;                     /* (n,3) the same without the couples of their moments */
   double *moment;                   /* (n,3) of the interface's rows [M L^2/T^2] */
   double *turn;                     /* (n,3) spin of the interface's rows */
-  double *spin, *root_V;            /* (n,3) of the surface points */
-  unsigned char *flag;              /* (n) bw_probe_flag */
-  double force_probe[3];            /* of this rank, last probes */
+  double *root_V;                   /* (n,3) scratch */
+  bw_coupler__probes probes;
+  double force_probe[3]; /* of this rank, last probes */
   bw_real *p_mean;       /* field: pressure that acted over the last step (ns_channel's p/rho) */
   bool p_mean_known;     /* false before the first step, after a load, after an unwatched step */
   bool watched, stepped; /* bw_coupler_watch; has there been a step since create or load */
@@ -164,9 +176,10 @@ bw_status bw_coupler__renew(bw_coupler *c) BW_MUST_CHECK;
 bw_status bw_coupler__follow_surface(bw_coupler *c) BW_MUST_CHECK;
 /* The memory of the markers to the particles, at the end of a step. Collective. */
 void bw_coupler__remember(bw_coupler *c);
-/* Velocity (n_surface,3) of the surface points or of their markers, by the solid's present
- * velocities; c->spin and c->V are current after. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, bool marker, double V[]);
+/* Velocities c->V and spins c->turn of the solid as it moves now; computed once for each motion.
+ * Collective. */
+void bw_coupler__know_motion(bw_coupler *c);
+/* Velocity (n_surface,3) of the surface's markers then. Collective. */
 void bw_coupler__marker_velocity(bw_coupler *c, double V[]);
 /* Sets c->V of the surface particles to what makes the markers move at V (n_surface,3). Collective.
  */
@@ -174,6 +187,11 @@ void bw_coupler__tell_surface(bw_coupler *c, const double V[]);
 /* Hand the markers over if the surface has moved. At the beginning of a step, so that the forces
  * of the last one can be asked for until then. Collective. */
 bw_status bw_coupler__place_markers(bw_coupler *c) BW_MUST_CHECK;
+/* moment = out N x force. Pure. */
+void bw_coupler__moment(double out, const double N[3], const double force[3], double moment[3]);
+/* Room for the probes of the present set of particles. Local. */
+bw_status bw_coupler__probes_create(bw_coupler *c);
+void bw_coupler__probes_release(bw_coupler *c);
 /* Force of the fluid on each surface particle, c->force (n_surface,3) [M L/T^2], by probes (dt:
  * the step whose velocities give the acceleration) or by the markers' reaction. Collective. */
 bw_status bw_coupler__probe_force(bw_coupler *c, double dt) BW_MUST_CHECK;

@@ -10,9 +10,10 @@
 static void count_probes(const bw_coupler *c, int64_t count[2])
 {
   count[0] = count[1] = 0;
-  for (size_t q = 0; q < c->n_surface; q++) {
-    count[0] += c->flag[q] == BW_PROBE_SHORTENED || c->flag[q] == BW_PROBE_CROWDED;
-    count[1] += c->flag[q] == BW_PROBE_BLOCKED;
+  for (size_t q = 0; q < c->probes.n; q++) {
+    const unsigned char flag = c->probes.flag[q];
+    count[0] += flag == BW_PROBE_SHORTENED || flag == BW_PROBE_CROWDED;
+    count[1] += flag == BW_PROBE_BLOCKED;
   }
 }
 
@@ -133,7 +134,7 @@ void bw_coupler_warn_load(bw_coupler *c, const bw_coupler_report *r, bw_log *log
   static const double MANY =
       1.0 / 3.0; /* of the probes: what they miss is then told by the forces */
   const uint8_t *kind = bw_solid_kind(c->solid);
-  double count[2] = {0.0, (double)c->n_surface}; /* held particles, probes */
+  double count[2] = {0.0, (double)c->probes.n}; /* held particles, probes */
   if (c->load_told || c->held || c->config.load != BW_LOAD_PROBES) return;
   c->load_told = true;
   for (size_t i = 0; i < c->n; i++)

@@ -28,32 +28,24 @@ static double outside(const bw_coupler *c, size_t q, bool marker)
   return c->height[q] - (inside ? c->config.retraction * c->h : 0.0);
 }
 
-/* Velocity V of the surface points, or of their markers, and their spin; computed once for each
- * motion of the solid. Collective. */
-void bw_coupler__surface_velocity(bw_coupler *c, bool marker, double V[])
+void bw_coupler__know_motion(bw_coupler *c)
 {
-  /* Collective, and therefore once for each motion of the solid. */
-  if (!c->motion_known) {
-    bw_pd_interface_turn(c->interface, c->turn);
-    bw_solid_get_velocity(c->solid, c->V);
-    c->motion_known = true;
-  }
-  for (size_t q = 0; q < c->n_surface; q++) {
-    /* V + out spin x N: a surface that turns moves faster than its particles' centres. */
-    const double *spin = c->turn + 3 * (size_t)c->row[q], *N = c->normal + 3 * q;
-    const double out = outside(c, q, marker);
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      c->spin[3 * q + (size_t)d] = spin[d];
-      V[3 * q + (size_t)d] =
-          c->V[3 * (size_t)c->particle[q] + (size_t)d] + out * (spin[e] * N[f] - spin[f] * N[e]);
-    }
-  }
+  if (c->motion_known) return;
+  bw_pd_interface_turn(c->interface, c->turn);
+  bw_solid_get_velocity(c->solid, c->V);
+  c->motion_known = true;
 }
 
 void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 {
-  bw_coupler__surface_velocity(c, true, V);
+  bw_coupler__know_motion(c);
+  for (size_t q = 0; q < c->n_surface; q++) {
+    /* V + out spin x N: a surface that turns moves faster than its particles' centres. */
+    const double *spin = c->turn + 3 * (size_t)c->row[q], *v = c->V + 3 * (size_t)c->particle[q];
+    bw_coupler__moment(outside(c, q, true), spin, c->normal + 3 * q, V + 3 * q);
+    for (size_t d = 0; d < 3; d++)
+      V[3 * q + d] += v[d];
+  }
 }
 
 void bw_coupler__tell_surface(bw_coupler *c, const double V[])
@@ -186,8 +178,10 @@ void bw_coupler__find_reach(bw_coupler *c)
     }
   bw_comm_max(bw_grid_comm(bw_ns_channel_grid(c->fluid)), 6, far);
   for (int d = 0; d < 3; d++) {
-    /* A probe, and three cells for half a stencil, the kernel and what it moves in a step. */
-    const double h = g->spacing[d], more = c->config.probe_length * c->h / h + 3.0;
+    /* A probe from any side of a particle, and three cells for half a stencil, the kernel and what
+     * it moves in a step. */
+    const double h = g->spacing[d], ds = bw_solid_settings(c->solid)->ds;
+    const double more = (c->config.probe_length * c->h + ds) / h + 3.0;
     const int lowest = 1 - g->halo[d], highest = g->m[d] + g->halo[d];
     const double from = floor(-far[3 + d] / h - more), to = ceil(far[d] / h + more);
     /* A box that crosses a periodic seam is seen from both ends: the whole direction. */
@@ -196,53 +190,6 @@ void bw_coupler__find_reach(bw_coupler *c)
     c->reach[d][0] = none || around ? lowest : (int)fmax(lowest, from - g->lo[d]);
     c->reach[d][1] = none ? lowest - 1 : around ? highest : (int)fmin(highest, to - g->lo[d]);
   }
-}
-
-/* Velocity and spin of the surface at the probes' roots; its acceleration over the last step, which
- * is smoother than that of the last sub-step, with the lattice's acoustics, less what drives the
- * fluid: with that alone fluid would fall along without pressure. Collective. */
-static void surface_motion(bw_coupler *c, double dt)
-{
-  double drive[3] = {0.0, 0.0, 0.0};
-  drive[bw_ns_channel_settings(c->fluid)->forcing_axis] = bw_ns_channel_driving(c->fluid);
-  /* On the nominal surface, where probes begin. */
-  bw_coupler__surface_velocity(c, false, c->root_V);
-  for (size_t q = 0; q < c->n_surface; q++) {
-    const size_t p = (size_t)c->particle[q];
-    for (int d = 0; d < 3; d++) {
-      /* dU/dt of ERRATA 19, less the force per mass that p does not hold (ERRATA 31). */
-      const double a = c->held ? 0.0 : (c->V[3 * p + d] - c->V_before[3 * p + d]) / dt;
-      c->accel[3 * q + d] = a - drive[d];
-    }
-  }
-}
-
-const bw_real *bw_coupler__read_pressure(const bw_coupler *c)
-{
-  return c->p_mean_known ? c->p_mean : bw_ns_channel_pressure(c->fluid);
-}
-
-bw_status bw_coupler__probe_force(bw_coupler *c, double dt)
-{
-  bw_real *const *u = bw_ns_channel_velocity(c->fluid);
-  const bw_real *p = bw_coupler__read_pressure(c);
-  /* Obstacles before points: setting points decides which probes are shortened. */
-  BW_TRY(bw_coupler__find_obstacles(c));
-  BW_TRY(bw_probe_set_points(c->probe, c->n_surface, c->root, c->normal));
-  /* Velocity, spin and acceleration of the roots. */
-  surface_motion(c, dt);
-  bw_probe_set_velocity(c->probe, c->root_V, c->spin);
-  /* t on each root (POROUS 3.83 to 3.94), from the pressure that acted over the step. */
-  bw_probe_traction(c->probe, u, p, c->accel, c->traction, c->flag);
-  bw_timer_work(c->timer, BW_PART_PROBES, (double)c->n_surface);
-  /* t A_h per surface particle; its sum is the second of the three routes. */
-  memset(c->force_probe, 0, sizeof c->force_probe);
-  for (size_t q = 0; q < c->n_surface; q++)
-    for (int d = 0; d < 3; d++) {
-      c->force[3 * q + d] = c->traction[3 * q + d] * c->area[q];
-      c->force_probe[d] += c->force[3 * q + d];
-    }
-  return BW_OK;
 }
 
 void bw_coupler__reaction_force(bw_coupler *c)
@@ -273,23 +220,32 @@ static double power_held_back(bw_coupler *c)
   return sum;
 }
 
+void bw_coupler__moment(double out, const double N[3], const double force[3], double moment[3])
+{
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    moment[d] = out * (N[e] * force[f] - N[f] * force[e]);
+  }
+}
+
 /* c->load: the forces of the surface points, or of their markers, on the particles: force, moment
  * and power are the same. */
 void bw_coupler__carry_force(bw_coupler *c, bool marker)
 {
   memset(c->load, 0, 3 * c->n * sizeof *c->load);
   memset(c->moment, 0, 3 * c->n * sizeof *c->moment);
-  /* F on the particle and the moment out N x F on its row of the interface. */
+  /* F on the particle and the moment out N x F on its row of the interface; of probes the sum over
+   * their sides. */
   for (size_t q = 0; q < c->n_surface; q++) {
     const double *N = c->normal + 3 * q, *force = c->force + 3 * q;
     double *load = c->load + 3 * (size_t)c->particle[q],
            *moment = c->moment + 3 * (size_t)c->row[q];
     const double out = outside(c, q, marker);
-    for (int d = 0; d < 3; d++) {
-      const int e = (d + 1) % 3, f = (d + 2) % 3;
-      load[d] = force[d];
-      moment[d] = out * (N[e] * force[f] - N[f] * force[e]);
-    }
+    memcpy(load, force, 3 * sizeof *load);
+    if (marker)
+      bw_coupler__moment(out, N, force, moment);
+    else
+      memcpy(moment, c->probes.moment + 3 * q, 3 * sizeof *moment);
   }
   memcpy(c->flow, c->load, 3 * c->n * sizeof *c->flow);
   /* Moments become couples on the line elements that tell the spin: power stays what it is. */

@@ -74,6 +74,7 @@ static bw_status allocate_arrays(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&pi->fit.side, pi->n_extended));
   BW_THEN(st, BW_ALLOCATE(&pi->fit.lift, n));
   BW_THEN(st, BW_ALLOCATE(&pi->area_first, n));
+  BW_THEN(st, BW_ALLOCATE(&pi->sides.open, n));
   BW_THEN(st, BW_ALLOCATE(&pi->fit.own_normal, 3 * n));
   /* Normals of copies too: fits reach across ranks. */
   for (int pass = 0; pass <= BW_PD_INTERFACE__PASSES; pass++)
@@ -139,6 +140,7 @@ static void measure_reference(bw_pd_interface *pi)
     const double facing = bw_pd_interface__facing_area(pi, h, &pi->fit.own_normal[3 * h]);
     const bool known = bw_pd_interface__normal_of(pi, h, n); /* else a sheet open on both sides */
     const double side = bw_pd_interface__side_area(pi, h);
+    pi->sides.open[h] = (uint8_t)bw_pd_interface__open_sides(pi, h);
     pi->area_first[h] = known ? fmax(facing, 0.25 * side) : side; /* a ridge is a marker, too */
     total[1] += 1.0;
   }
@@ -175,6 +177,7 @@ static bw_status establish(bw_pd_interface *pi)
   /* The reference shape first, as if nothing had broken ... */
   memset(pi->rows.stale, true, pi->n * sizeof *pi->rows.stale);
   measure_reference(pi);
+  BW_TRY(bw_comm_agree(bw_solid_comm(pd), bw_pd_interface__sides_create(pi)));
   /* ... then the present one, which may be that of a restart. */
   memset(pi->rows.stale, true, pi->n * sizeof *pi->rows.stale);
   pi->fresh_start = true;
@@ -223,6 +226,11 @@ static void release_all(bw_pd_interface *p)
                     (void **)&p->seen.place,
                     (void **)&p->wall.off,
                     (void **)&p->area_first,
+                    (void **)&p->sides.open,
+                    (void **)&p->sides.row,
+                    (void **)&p->sides.N,
+                    (void **)&p->sides.A,
+                    (void **)&p->sides.H,
                     (void **)&p->fit.own_normal,
                     (void **)&p->fit.touched,
                     (void **)&p->fit.border,

@@ -90,6 +90,22 @@ typedef struct {
 } bw_pd_surface;
 /* The surface as of the last update; arrays are borrowed until the next. Local. */
 bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
+/* Where that surface meets the fluid: one point for each of its rows where it is smooth and on new
+ * crack faces, elsewhere one for each side of the lattice that was open in the reference shape, on
+ * that side and turned with the body: a ridge, an edge, a sheet has sides towards different
+ * pressures. A side has ds^2; sum A N over a body of such sides is nothing. With equal areas one
+ * point for each row. */
+typedef struct {
+  size_t n;
+  const int32_t *row; /* (n) the row of bw_pd_surface it belongs to, rising */
+  const double *N;    /* (n,3) unit outward normal */
+  const double *A;    /* (n) area [L^2] */
+  const double *H;    /* (n) how far from the particle's centre, along N, the surface is [L] */
+} bw_pd_sides;
+/* Those of the last update; arrays are borrowed until the next. Collective. */
+bw_pd_sides bw_pd_interface_sides(bw_pd_interface *pi);
+/* How many they can become while the set of particles stays. Local. */
+size_t bw_pd_interface_most_sides(const bw_pd_interface *pi);
 /* spin (n,3) of that surface [1/T]: half the curl of the present velocities around each particle,
  * from the line elements that carry its normal; exact for rigid motion, 0 where none can be told. A
  * point at X + a N moves with V + a spin x N. After an update. Collective. */

@@ -226,6 +226,32 @@ void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_motion *now
   }
 }
 
+void bw_pd_interface__carry_sides(const bw_pd_interface *pi, size_t block, const bw_pd_motion *now,
+                                  double N[ROWS][6][3])
+{
+  lanes a0[3][3], a[3][3], c[3][3] = {{{0}}}, det;
+  at_rest(pi, block, a0);
+  complete(&pi->now.lines[block], a0, NULL);
+  present(pi, block, now, a, NULL, c, det);
+  /* As the normals are carried: n ~ sum_r (n0.a0_r) c_r/det, n0 a direction of the lattice. */
+  for (size_t k = 0; k < ROWS; k++)
+    for (int side = 0; side < 6; side++) {
+      const double *axis = pi->stencil->axes[side / 2], way = side % 2 ? 1.0 : -1.0;
+      double n[3] = {0.0, 0.0, 0.0}, squared = 0.0;
+      for (int r = 0; r < 3; r++) {
+        double hold = 0.0;
+        for (int d = 0; d < 3; d++)
+          hold += way * axis[d] * a0[r][d][k];
+        for (int d = 0; d < 3; d++)
+          n[d] += copysign(hold, hold * det[k]) * c[r][d][k];
+      }
+      for (int d = 0; d < 3; d++)
+        squared += n[d] * n[d];
+      for (int d = 0; d < 3; d++)
+        N[k][side][d] = squared > 0.0 ? n[d] / sqrt(squared) : way * axis[d];
+    }
+}
+
 /* 1/(2 det) where the elements span space, else 0 (two are missing, or crushed into a plane). */
 static void half_inverse(lanes a[3][3], lanes det)
 {

@@ -201,19 +201,26 @@ static double face_projection(const bw_pd_interface__stencil *s, const uint8_t s
   return fabs(v[0] * e[0] + v[1] * e[1] + v[2] * e[2]) / length;
 }
 
-/* The open sides of h, resolved last: outward unit normals e, (6,3) at most. */
-static int open_sides(const bw_pd_interface *pi, size_t h, double e[][3])
+unsigned bw_pd_interface__open_sides(const bw_pd_interface *pi, size_t h)
 {
   const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
   unsigned closed = 0;
-  int open = 0;
   /* A side is open when nobody ever touched it: cells are split as wholes, so that one finer
    * neighbour there is as good as all. */
   for (int q = 0; q < s->slots; q++)
     if (pi->seen.state[q] != BW_PD_INTERFACE__ABSENT) closed |= s->faces[q];
+  return ~closed & ((1u << (2 * s->dims)) - 1u);
+}
+
+/* The open sides of h, resolved last: outward unit normals e, (6,3) at most. */
+static int open_sides(const bw_pd_interface *pi, size_t h, double e[][3])
+{
+  const bw_pd_interface__stencil *s = bw_pd_interface__stencil_of(pi, h);
+  const unsigned bits = bw_pd_interface__open_sides(pi, h);
+  int open = 0;
   for (int r = 0; r < s->dims; r++)
     for (int side = -1; side <= 1; side += 2) {
-      if (closed >> (2 * r + (side > 0)) & 1u) continue;
+      if (!(bits >> (2 * r + (side > 0)) & 1u)) continue;
       for (int d = 0; d < 3; d++)
         e[open][d] = side * s->axes[r][d];
       open++;

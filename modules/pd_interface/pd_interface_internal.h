@@ -105,6 +105,14 @@ typedef struct {
                           [L]; NULL: a lattice */
 } bw_pd_interface__shown;
 
+/* Points of the surface that may look several ways. */
+typedef struct {
+  uint8_t *open;     /* (n) bit 2 r + (upper side): open in the reference shape; 0: one point */
+  size_t n, room;    /* points now, and how many there can be */
+  int32_t *row;      /* (room) */
+  double *N, *A, *H; /* (room,3) (room) (room) */
+} bw_pd_interface__sides;
+
 /* Normals of the reference shape as they are fitted. */
 typedef struct {
   double *own_normal;                        /* (n,3) of the surface, 0 elsewhere */
@@ -141,6 +149,7 @@ struct bw_pd_interface {
   bw_pd_interface__seen seen;
   bw_pd_interface__rows rows;
   bw_pd_interface__shown now;
+  bw_pd_interface__sides sides;
   bw_pd_interface__fit fit;
 };
 
@@ -189,6 +198,9 @@ bool bw_pd_interface__normal_of(const bw_pd_interface *pi, size_t h, double n[3]
 /* Has h, resolved last, a side that nobody ever touched? Local. */
 bool bw_pd_interface__has_open_side(const bw_pd_interface *pi, size_t h);
 
+/* Bits 2 r + (upper side) of the sides of h, resolved last, that nobody ever touched. Local. */
+unsigned bw_pd_interface__open_sides(const bw_pd_interface *pi, size_t h);
+
 /* Area [L^2] of the open lattice faces of the particle resolved last, each projected on the
  * normal there (reference shape). Local. */
 double bw_pd_interface__open_area(const bw_pd_interface *pi, size_t h);
@@ -222,6 +234,13 @@ void bw_pd_interface__anchor(bw_pd_interface *pi, size_t h);
 void bw_pd_interface__lay_lines(bw_pd_interface *pi, const bw_pd_motion *now);
 /* list_normal: own_normal turned with the body. */
 void bw_pd_interface__carry_normals(bw_pd_interface *pi, const bw_pd_motion *now);
+
+/* N (8,3,6): sides of the block's rows as they look now, side 2 r + (upper) of the lattice. */
+void bw_pd_interface__carry_sides(const bw_pd_interface *pi, size_t block, const bw_pd_motion *now,
+                                  double N[BW_PD_INTERFACE__ROWS][6][3]);
+
+/* bw_pd_sides.c: room for all that can be open. Local. */
+bw_status bw_pd_interface__sides_create(bw_pd_interface *pi);
 
 /* bw_pd_follow.c: is h, resolved last, surface? now NULL: in the reference shape. */
 bool bw_pd_interface__judge(bw_pd_interface *pi, size_t h, const bw_pd_motion *now);

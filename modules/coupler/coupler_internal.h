@@ -91,6 +91,7 @@ typedef struct {
   double *V, *spin, *accel; /* (n,3) each */
   double *traction;         /* (n,3) */
   unsigned char *flag;      /* (n) bw_probe_flag */
+  unsigned char *part;      /* (n) which part of the traction bears: bw_coupler__part */
   double *moment;           /* (n_surface,3) of their forces about the particles [M L^2/T^2] */
 } bw_coupler__probes;
 

@@ -1,12 +1,19 @@
-/* What the fluid does to the surface, read beside it: a probe for every side of a particle that
- * looks towards the fluid. */
+/* What the fluid does to the surface, read beside it.
+ *
+ * Where the surface is smooth a probe stands on each particle along its normal. On ridges and edges
+ * the pressure on one side is not that on the other: there a probe stands on every open side for
+ * the pressure (the part of the traction along the side's normal), and one along the particle's
+ * normal for the friction (the part across it), which the sides of a step do not know: they are no
+ * walls that the fluid flows along. Sheets have whole probes on both sides. */
 #include "bw_coupler.h"
 #include "bw_memory.h"
 #include "coupler_internal.h"
 
 #include <string.h>
 
-/* Arrays with `vectors` numbers a probe, and how many. */
+enum { WHOLE, PRESSURE, FRICTION }; /* part of the traction that bears */
+
+/* Arrays and how many numbers of each a probe has. */
 enum { N_ARRAYS = 8 };
 static void list_arrays(bw_coupler__probes *p, double **array[N_ARRAYS], size_t width[N_ARRAYS])
 {
@@ -24,11 +31,13 @@ bw_status bw_coupler__probes_create(bw_coupler *c)
   size_t width[N_ARRAYS];
   list_arrays(p, array, width);
   p->n = 0;
-  p->room = bw_pd_interface_most_sides(c->interface);
+  /* A probe for each side, and one for the friction. */
+  p->room = bw_pd_interface_most_sides(c->interface) + c->n;
   for (int q = 0; q < N_ARRAYS; q++)
     BW_TRY(BW_ALLOCATE(array[q], width[q] * p->room));
   BW_TRY(BW_ALLOCATE(&p->point, p->room));
   BW_TRY(BW_ALLOCATE(&p->flag, p->room));
+  BW_TRY(BW_ALLOCATE(&p->part, p->room));
   return BW_ALLOCATE(&p->moment, 3 * c->n);
 }
 
@@ -42,30 +51,40 @@ void bw_coupler__probes_release(bw_coupler *c)
     bw_release(array[q]);
   bw_release(&p->point);
   bw_release(&p->flag);
+  bw_release(&p->part);
   bw_release(&p->moment);
   p->n = p->room = 0;
+}
+
+/* One more probe, H from the centre of the point's particle along N. */
+static void add(bw_coupler *c, size_t point, const double N[3], double A, double H, int part)
+{
+  bw_coupler__probes *p = &c->probes;
+  for (size_t d = 0; d < 3; d++) {
+    const double centre = c->root[3 * point + d] - c->height[point] * c->normal[3 * point + d];
+    p->X[3 * p->n + d] = centre + H * N[d];
+  }
+  memcpy(p->N + 3 * p->n, N, 3 * sizeof *N);
+  p->A[p->n] = A, p->H[p->n] = H;
+  p->part[p->n] = (unsigned char)part;
+  p->point[p->n++] = (int32_t)point;
 }
 
 /* The sides of the surface points: both lists go by rising rows of the interface. Collective. */
 static void find_sides(bw_coupler *c)
 {
   const bw_pd_sides s = bw_pd_interface_sides(c->interface);
-  bw_coupler__probes *p = &c->probes;
   size_t point = 0;
-  p->n = 0;
+  c->probes.n = 0;
   for (size_t q = 0; q < s.n; q++) {
     while (point < c->n_surface && c->row[point] < s.row[q])
       point++;
     if (point == c->n_surface) break;
     if (c->row[point] != s.row[q]) continue; /* beyond a side of the box */
-    const double *N = s.N + 3 * q;
-    for (size_t d = 0; d < 3; d++) {
-      const double centre = c->root[3 * point + d] - c->height[point] * c->normal[3 * point + d];
-      p->X[3 * p->n + d] = centre + s.H[q] * N[d];
-    }
-    memcpy(p->N + 3 * p->n, N, 3 * sizeof *N);
-    p->A[p->n] = s.A[q], p->H[p->n] = s.H[q];
-    p->point[p->n++] = (int32_t)point;
+    const bool first = q == 0 || s.row[q] != s.row[q - 1];
+    if (s.step[q] && first)
+      add(c, point, c->normal + 3 * point, c->area[point], c->height[point], FRICTION);
+    add(c, point, s.N + 3 * q, s.A[q], s.H[q], s.step[q] ? PRESSURE : WHOLE);
   }
 }
 
@@ -93,6 +112,18 @@ static void find_motion(bw_coupler *c, double dt)
   }
 }
 
+/* The part of a probe's traction that bears, times its area. */
+static void force_of(const bw_coupler__probes *p, size_t q, double force[3])
+{
+  const double *t = p->traction + 3 * q, *N = p->N + 3 * q;
+  const double along = t[0] * N[0] + t[1] * N[1] + t[2] * N[2];
+  for (int d = 0; d < 3; d++) {
+    const double normal = along * N[d];
+    const double share[] = {[WHOLE] = t[d], [PRESSURE] = normal, [FRICTION] = t[d] - normal};
+    force[d] = share[p->part[q]] * p->A[q];
+  }
+}
+
 /* t A per surface particle, and the moments about its centre. */
 static void gather(bw_coupler *c)
 {
@@ -103,8 +134,7 @@ static void gather(bw_coupler *c)
   for (size_t q = 0; q < p->n; q++) {
     const size_t point = (size_t)p->point[q];
     double force[3], moment[3];
-    for (size_t d = 0; d < 3; d++)
-      force[d] = p->traction[3 * q + d] * p->A[q];
+    force_of(p, q, force);
     bw_coupler__moment(p->H[q], p->N + 3 * q, force, moment);
     for (size_t d = 0; d < 3; d++) {
       c->force[3 * point + d] += force[d];

@@ -231,6 +231,7 @@ static void release_all(bw_pd_interface *p)
                     (void **)&p->sides.N,
                     (void **)&p->sides.A,
                     (void **)&p->sides.H,
+                    (void **)&p->sides.step,
                     (void **)&p->fit.own_normal,
                     (void **)&p->fit.touched,
                     (void **)&p->fit.border,

@@ -101,6 +101,8 @@ typedef struct {
   const double *N;    /* (n,3) unit outward normal */
   const double *A;    /* (n) area [L^2] */
   const double *H;    /* (n) how far from the particle's centre, along N, the surface is [L] */
+  const bool *step;   /* (n) a side of a step: the surface there looks as N of its row does; false:
+                         N is the surface's own, or a sheet's, whose sides are opposite */
 } bw_pd_sides;
 /* Those of the last update; arrays are borrowed until the next. Collective. */
 bw_pd_sides bw_pd_interface_sides(bw_pd_interface *pi);

@@ -23,15 +23,24 @@ bw_status bw_pd_interface__sides_create(bw_pd_interface *pi)
   BW_THEN(st, BW_ALLOCATE(&s->N, 3 * s->room));
   BW_THEN(st, BW_ALLOCATE(&s->A, s->room));
   BW_THEN(st, BW_ALLOCATE(&s->H, s->room));
+  BW_THEN(st, BW_ALLOCATE(&s->step, s->room));
   return st;
 }
 
-static void add(bw_pd_interface__sides *s, size_t row, const double N[3], double A, double H)
+static void add(bw_pd_interface__sides *s, size_t row, const double N[3], double A, double H,
+                bool step)
 {
   s->row[s->n] = (int32_t)row;
   memcpy(s->N + 3 * s->n, N, 3 * sizeof *N);
-  s->A[s->n] = A, s->H[s->n] = H;
+  s->A[s->n] = A, s->H[s->n] = H, s->step[s->n] = step;
   s->n++;
+}
+
+/* A sheet of one layer. */
+static bool has_opposite(const bw_pd_interface *pi, size_t row)
+{
+  const unsigned open = pi->sides.open[pi->now.list[row]], lower = 0x15;
+  return (open & open >> 1 & lower) != 0;
 }
 
 /* Sides of a row that is not smooth. */
@@ -41,16 +50,14 @@ static void add_open(bw_pd_interface *pi, size_t row, double N[SIDES][3])
   for (int side = 0; side < SIDES; side++)
     if (pi->sides.open[h] >> side & 1u)
       add(&pi->sides, row, N[side], bw_pd_interface__side_area(pi, h),
-          0.5 * bw_solid_spacing(pi->pd, h));
+          0.5 * bw_solid_spacing(pi->pd, h), !has_opposite(pi, row));
 }
 
-/* Does the row have its sides, or one point? A sheet of one layer is smooth, and has two. */
+/* Does the row have its sides, or one point? A sheet is smooth, and has two. */
 static bool is_split(const bw_pd_interface *pi, size_t row)
 {
-  const unsigned open = pi->sides.open[pi->now.list[row]], lower = 0x15;
-  const bool opposite = (open & open >> 1 & lower) != 0;
-  return pi->config.area == BW_PD_AREA_OPEN_SIDES && open != 0 &&
-         (opposite || !pi->now.smooth[row]);
+  return pi->config.area == BW_PD_AREA_OPEN_SIDES && pi->sides.open[pi->now.list[row]] != 0 &&
+         (has_opposite(pi, row) || !pi->now.smooth[row]);
 }
 
 static void tell_block(bw_pd_interface *pi, size_t block, const bw_pd_motion *now)
@@ -66,7 +73,8 @@ static void tell_block(bw_pd_interface *pi, size_t block, const bw_pd_motion *no
     if (is_split(pi, row))
       add_open(pi, row, N[row - first]);
     else
-      add(&pi->sides, row, pi->now.list_normal + 3 * row, pi->now.area[row], pi->now.height[row]);
+      add(&pi->sides, row, pi->now.list_normal + 3 * row, pi->now.area[row], pi->now.height[row],
+          false);
 }
 
 bw_pd_sides bw_pd_interface_sides(bw_pd_interface *pi)
@@ -75,8 +83,12 @@ bw_pd_sides bw_pd_interface_sides(bw_pd_interface *pi)
   pi->sides.n = 0;
   for (size_t block = 0; block * ROWS < pi->now.n_list; block++)
     tell_block(pi, block, &now);
-  return (bw_pd_sides){
-      .n = pi->sides.n, .row = pi->sides.row, .N = pi->sides.N, .A = pi->sides.A, .H = pi->sides.H};
+  return (bw_pd_sides){.n = pi->sides.n,
+                       .row = pi->sides.row,
+                       .N = pi->sides.N,
+                       .A = pi->sides.A,
+                       .H = pi->sides.H,
+                       .step = pi->sides.step};
 }
 
 size_t bw_pd_interface_most_sides(const bw_pd_interface *pi)

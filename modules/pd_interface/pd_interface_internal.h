@@ -111,6 +111,7 @@ typedef struct {
   size_t n, room;    /* points now, and how many there can be */
   int32_t *row;      /* (room) */
   double *N, *A, *H; /* (room,3) (room) (room) */
+  bool *step;        /* (room) a side of a step */
 } bw_pd_interface__sides;
 
 /* Normals of the reference shape as they are fitted. */

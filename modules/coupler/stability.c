@@ -274,11 +274,9 @@ static bw_status try_relaxation(experiment *e, double w, bool *holds)
   enum { LAST = TRIAL / WINDOW - 1 };
   double square[TRIAL / WINDOW];
   bool broke = false;
-  const bw_coupler__work work = e->c->work;
   begin_shape(e, 0.9);
   bw_status st = run_coupled(e, w, 0.0, square, &broke);
   BW_THEN(st, run_coupled(e, w, e->part * e->speed, square, &broke));
-  e->c->work = work;
   *holds = broke || (st == BW_OK && (square[LAST] <= grown * square[LAST - 1] ||
                                      square[LAST] <= nothing * square[0]));
   return st == BW_ECFL || st == BW_EDIVERGED ? BW_OK : st;
@@ -310,6 +308,7 @@ bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out)
 {
   const bw_comm *comm = bw_solid_comm(c->solid);
   const bool stepped = c->stepped, fine = BW_REAL_EPSILON < 1e-10;
+  const bw_coupler__work work = c->work; /* a restore leaves it */
   experiment e = {.c = c, .dt = dt, .speed = MOVED * c->h / dt, .part = fine ? 0.01 : 1.0};
   *out = (bw_coupler_limit){.relaxation = NAN, .added = NAN};
   bw_status st = bw_comm_agree(comm, make_room(&e));
@@ -324,6 +323,7 @@ bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out)
     if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_follow(c);
     c->markers_moved = true;
     c->stepped = stepped;
+    c->work = work;
   }
   release(&e);
   return st;

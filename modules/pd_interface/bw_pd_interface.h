@@ -96,7 +96,7 @@ bw_pd_surface bw_pd_interface_surface(const bw_pd_interface *pi);
  * pressures. A side has ds^2; sum A N over a body of such sides is nothing. With equal areas one
  * point for each row. */
 typedef struct {
-  size_t n;
+  size_t n;           /* points of this rank */
   const int32_t *row; /* (n) the row of bw_pd_surface it belongs to, rising */
   const double *N;    /* (n,3) unit outward normal */
   const double *A;    /* (n) area [L^2] */

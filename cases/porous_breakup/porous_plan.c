@@ -85,7 +85,8 @@ typedef struct {
 
 /* Memory of a rank. That of the fluid is known; `held` is what the small run holds after its first
  * step: beside its own fluid, fields of the coupler and of the last good state (two and four), and
- * what grows with the particles. A checkpoint on its way is added. */
+ * what grows with the particles. Added is the larger of a checkpoint on its way and of what the
+ * measurement of the load's relaxation takes. */
 static bw_status weigh(const porous_run *small, const porous_config *q, int ranks, double held,
                        porous_estimate *e)
 {
@@ -101,8 +102,10 @@ static bw_status weigh(const porous_run *small, const porous_config *q, int rank
   const double particles = fmax(0.0, held - own.bytes - fields) / n;
   const double rows = bw_checkpoint_table_bytes(all / ranks, row);
   const double field = cells_of(q) / ranks * (double)sizeof(bw_real);
-  e->bytes = e->fluid_bytes + share * fields + all / ranks * particles +
-             bw_checkpoint_file_bytes() + fmax(rows, field);
+  const double checkpoint = bw_checkpoint_file_bytes() + fmax(rows, field);
+  const double limit =
+      4.0 / 6.0 * share * fields + all / ranks / n * bw_coupler_limit_bytes(small->coupler);
+  e->bytes = e->fluid_bytes + share * fields + all / ranks * particles + fmax(checkpoint, limit);
   e->bonds = 2.0 * (double)ledger.bonds / n * all;
   return BW_OK;
 }

@@ -3,6 +3,7 @@
 #include "bw_memory.h"
 #include "bw_message.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { TAG_FORWARD = 71, TAG_BACKWARD = 72 };
@@ -179,7 +180,9 @@ static unsigned char *packed(bw_exchange *e, size_t bytes)
   if (e->to.total * bytes > e->buffer_bytes) {
     bw_release(&e->buffer);
     e->buffer_bytes = e->to.total * bytes;
-    if (bw_allocate(e->buffer_bytes, 1, &e->buffer) != BW_OK) MPI_Abort(MPI_COMM_WORLD, BW_EMEM);
+    if (bw_allocate(e->buffer_bytes, 1, &e->buffer) == BW_OK) return e->buffer;
+    fprintf(stderr, "breakwater: error: %s\n", bw_last_message());
+    MPI_Abort(MPI_COMM_WORLD, BW_EMEM);
   }
   return e->buffer;
 }

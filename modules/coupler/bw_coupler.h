@@ -202,6 +202,9 @@ typedef struct {
  * bits. What bw_coupler_measure tells of the last step is lost until the next. BW_EMEM. Collective.
  */
 bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out) BW_MUST_CHECK;
+/* What that takes at most while it lasts [byte], of this rank, beside four fields of the grid: as
+ * if every particle were surface. Local. */
+double bw_coupler_limit_bytes(const bw_coupler *c);
 
 /* Says once on `log` what the first coupled step, or a later one after much had broken, measured
  * and chose; a warning where a given load_relaxation is above half of the limit. Local. */

@@ -79,6 +79,15 @@ static bw_status make_room(experiment *e)
   return BW_ALLOCATE(&e->answer0, n_s);
 }
 
+double bw_coupler_limit_bytes(const bw_coupler *c)
+{
+  /* As make_room has it, all particles surface; a state's rows of the solid are its restart's. */
+  const double vectors = (3.0 * (TRIAL + 4.0) + 15.0) * (double)c->n;
+  const double rows = (double)bw_solid_restart_row(c->solid) * (double)c->n;
+  return sizeof(double) * (vectors + rows) +
+         (double)(c->n * bw_solid_bits_bytes(c->solid)); /* fields: four of the grid's */
+}
+
 /* The markers move by V0 + speed v from now on. Collective. */
 static bw_status move(experiment *e, double speed)
 {

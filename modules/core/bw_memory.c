@@ -50,6 +50,17 @@ bw_status bw_allocate(size_t count, size_t size, void *out)
   return BW_OK;
 }
 
+bw_status bw_enlarge(size_t kept, size_t count, size_t size, void *array)
+{
+  void *old = NULL, *larger = NULL;
+  BW_TRY(bw_allocate(count, size, &larger));
+  memcpy(&old, array, sizeof old);
+  if (kept > 0) memcpy(larger, old, kept * size);
+  free(old);
+  memcpy(array, &larger, sizeof larger);
+  return BW_OK;
+}
+
 void bw_release(void *out)
 {
   void *p = NULL;

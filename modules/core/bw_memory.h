@@ -17,6 +17,14 @@ void bw_release(void *out);
 /* Typed form: BW_ALLOCATE(&x, n) for `double *x`, the status of bw_allocate. */
 #define BW_ALLOCATE(pointer, count) bw_allocate((count), sizeof **(pointer), (pointer))
 
+/* *array, of which `kept` items are in use, becomes one of `count` >= kept items with those at its
+ * beginning, zeros behind; as it was after a failure. `array` is the address of a pointer as above,
+ * which may be NULL where kept is 0. BW_EMEM. Local. */
+bw_status bw_enlarge(size_t kept, size_t count, size_t size, void *array) BW_MUST_CHECK;
+
+/* Typed form: BW_ENLARGE(&x, kept, count) for `double *x`. */
+#define BW_ENLARGE(pointer, kept, count) bw_enlarge((kept), (count), sizeof **(pointer), (pointer))
+
 /* What this process has allocated and not released [bytes]; 0 where the C library does not tell.
  * Local. */
 size_t bw_memory_in_use(void);

@@ -41,11 +41,8 @@ static bw_status make_braked(bw_coupler__solid_films *f)
 {
   if (f->n_braked < f->room_braked) return BW_OK;
   const size_t room = 2 * f->n_braked + 256;
-  bw_coupler__braked *larger = NULL;
-  BW_TRY(BW_ALLOCATE(&larger, room));
-  if (f->n_braked > 0) memcpy(larger, f->braked, f->n_braked * sizeof *larger);
-  bw_release(&f->braked);
-  f->braked = larger, f->room_braked = room;
+  BW_TRY(BW_ENLARGE(&f->braked, f->n_braked, room));
+  f->room_braked = room;
   return BW_OK;
 }
 

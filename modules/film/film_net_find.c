@@ -131,11 +131,8 @@ static bw_status make_feet(bw_film_net *w, size_t more)
 {
   if (w->n_feet + more <= w->room_feet) return BW_OK;
   const size_t room = 2 * (w->n_feet + more) + 256;
-  film_net_foot *larger = NULL;
-  BW_TRY(BW_ALLOCATE(&larger, room));
-  if (w->n_feet > 0) memcpy(larger, w->foot, w->n_feet * sizeof *larger);
-  bw_release(&w->foot);
-  w->foot = larger, w->room_feet = room;
+  BW_TRY(BW_ENLARGE(&w->foot, w->n_feet, room));
+  w->room_feet = room;
   return BW_OK;
 }
 

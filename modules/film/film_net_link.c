@@ -51,11 +51,8 @@ static bw_status make_link(bw_film_net *w, const film_net_link *link)
 {
   if (w->n_links == w->room_links) {
     const size_t room = 2 * w->room_links + 1024;
-    film_net_link *larger = NULL;
-    BW_TRY(BW_ALLOCATE(&larger, room));
-    if (w->n_links > 0) memcpy(larger, w->link, w->n_links * sizeof *larger);
-    bw_release(&w->link);
-    w->link = larger, w->room_links = room;
+    BW_TRY(BW_ENLARGE(&w->link, w->n_links, room));
+    w->room_links = room;
   }
   w->link[w->n_links++] = *link;
   return BW_OK;

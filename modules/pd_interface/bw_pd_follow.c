@@ -96,11 +96,7 @@ static bool make_room(bw_pd_interface *pi, size_t more)
   if (pi->rows.pool_n + more <= pi->rows.pool_room) return true;
   /* Half as much again, so that a growing crack asks rarely. */
   const size_t room = pi->rows.pool_n + more + pi->rows.pool_room / 2 + 1024;
-  bw_pd_interface__near *pool = NULL;
-  if (BW_ALLOCATE(&pool, room) != BW_OK) return false;
-  if (pi->rows.pool_n > 0) memcpy(pool, pi->rows.pool, pi->rows.pool_n * sizeof *pool);
-  bw_release(&pi->rows.pool);
-  pi->rows.pool = pool;
+  if (BW_ENLARGE(&pi->rows.pool, pi->rows.pool_n, room) != BW_OK) return false;
   pi->rows.pool_room = room;
   return true;
 }

@@ -13,24 +13,14 @@ void bw_pd_crack_track_release(bw_pd_crack_track *track)
   track->n = track->room = 0;
 }
 
-static bw_status grow(double **values, size_t n, size_t room)
-{
-  double *more = NULL;
-  BW_TRY(BW_ALLOCATE(&more, room));
-  if (n > 0) memcpy(more, *values, n * sizeof *more);
-  bw_release(values);
-  *values = more;
-  return BW_OK;
-}
-
 bw_status bw_pd_crack_track_note(bw_pd_crack_track *track, double time, double place)
 {
   /* No farther than before by a step: no arrival. */
   if (track->n > 0 && !(place > track->place[track->n - 1] + track->step)) return BW_OK;
   if (track->n == track->room) {
     const size_t room = 2 * track->room + 64;
-    BW_TRY(grow(&track->time, track->n, room));
-    BW_TRY(grow(&track->place, track->n, room));
+    BW_TRY(BW_ENLARGE(&track->time, track->n, room));
+    BW_TRY(BW_ENLARGE(&track->place, track->n, room));
     track->room = room;
   }
   track->time[track->n] = time;

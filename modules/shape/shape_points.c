@@ -73,23 +73,13 @@ static double shown(const surface *s, const place *p)
 
 /* ---- the list ---- */
 
-static bw_status grow(double **array, int64_t width, int64_t n, int64_t room)
-{
-  double *more = NULL;
-  BW_TRY(BW_ALLOCATE(&more, (size_t)(width * room)));
-  if (n > 0) memcpy(more, *array, (size_t)(width * n) * sizeof *more);
-  bw_release(array);
-  *array = more;
-  return BW_OK;
-}
-
 static bw_status put(surface *s, const place *p, double area)
 {
   if (s->n == s->room) {
     const int64_t room = 2 * s->room + 1024;
-    BW_TRY(grow(&s->point, 3, s->n, room));
-    BW_TRY(grow(&s->normal, 3, s->n, room));
-    BW_TRY(grow(&s->area, 1, s->n, room));
+    BW_TRY(BW_ENLARGE(&s->point, 3 * (size_t)s->n, 3 * (size_t)room));
+    BW_TRY(BW_ENLARGE(&s->normal, 3 * (size_t)s->n, 3 * (size_t)room));
+    BW_TRY(BW_ENLARGE(&s->area, (size_t)s->n, (size_t)room));
     s->room = room;
   }
   memcpy(s->point + 3 * s->n, p->x, sizeof p->x);

@@ -28,11 +28,7 @@ static void forget(void *state)
 static bw_status add(stack *s, const char *folder, const char *name)
 {
   if (s->n == s->room) {
-    char **more = NULL;
-    BW_TRY(BW_ALLOCATE(&more, 2 * s->room + 64));
-    if (s->n > 0) memcpy(more, s->name, s->n * sizeof *more);
-    bw_release(&s->name);
-    s->name = more;
+    BW_TRY(BW_ENLARGE(&s->name, s->n, 2 * s->room + 64));
     s->room = 2 * s->room + 64;
   }
   const size_t room = strlen(folder) + strlen(name) + 2;

@@ -12,12 +12,8 @@ static const uint32_t MOST = UINT32_MAX / 3; /* triangles whose corners can be n
 
 static bw_status make_room(const char *path, uint32_t room, bw_shape__triangles *t)
 {
-  float *more = NULL;
   BW_REQUIRE(room <= MOST, BW_EINPUT, "%s: more than %u triangles", path, MOST);
-  BW_TRY(BW_ALLOCATE(&more, 9 * (size_t)room));
-  if (t->n > 0) memcpy(more, t->corner, 9 * (size_t)t->n * sizeof *more);
-  bw_release(&t->corner);
-  t->corner = more;
+  BW_TRY(BW_ENLARGE(&t->corner, 9 * (size_t)t->n, 9 * (size_t)room));
   t->room = room;
   return BW_OK;
 }

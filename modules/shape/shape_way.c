@@ -166,11 +166,7 @@ static bw_status plan_borders(slab *s)
 
 static bw_status grow(front *f)
 {
-  int64_t *more = NULL;
-  BW_TRY(BW_ALLOCATE(&more, 2 * f->room + 1024));
-  if (f->n > 0) memcpy(more, f->cell, f->n * sizeof *more);
-  bw_release(&f->cell);
-  f->cell = more;
+  BW_TRY(BW_ENLARGE(&f->cell, f->n, 2 * f->room + 1024));
   f->room = 2 * f->room + 1024;
   return BW_OK;
 }

@@ -43,11 +43,7 @@ static bw_status add_faces(bw_ulph *u)
 {
   const int64_t rank = bw_comm_rank(u->comm), size = bw_comm_size(u->comm), n = u->body.n;
   const int64_t from = n * rank / size, to = n * (rank + 1) / size;
-  bw_ulph__particle *larger = NULL;
-  BW_TRY(BW_ALLOCATE(&larger, u->n + 2 * (size_t)(to - from)));
-  memcpy(larger, u->own, u->n * sizeof *larger);
-  bw_release(&u->own);
-  u->own = larger;
+  BW_TRY(BW_ENLARGE(&u->own, u->n, u->n + 2 * (size_t)(to - from)));
   for (int64_t q = 2 * from; q < 2 * to; q++) {
     const int64_t i = q / 2;
     if (u->body.volume[i] <= 0) continue;

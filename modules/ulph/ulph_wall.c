@@ -107,16 +107,6 @@ static bw_status keep_near(bw_ulph *u, const walls *all, int64_t n, const int32_
   return BW_OK;
 }
 
-static bw_status grow_own(bw_ulph *u, size_t more)
-{
-  bw_ulph__particle *larger = NULL;
-  BW_TRY(BW_ALLOCATE(&larger, u->n + more));
-  if (u->n > 0) memcpy(larger, u->own, u->n * sizeof *larger);
-  bw_release(&u->own);
-  u->own = larger;
-  return BW_OK;
-}
-
 /* The particles of one wall. Its parts, joined over ranks, are in the order of the whole: so are
  * the numbers. */
 static bw_status build_one(bw_ulph *u, const walls *all)
@@ -129,7 +119,7 @@ static bw_status build_one(bw_ulph *u, const walls *all)
   int32_t *site = NULL;
   uint8_t *kind = NULL;
   BW_TRY(bw_shape_fill_shared(u->comm, w->count, w->shape, &lattice, &n, &site, &kind, NULL));
-  bw_status st = grow_own(u, (size_t)n);
+  bw_status st = BW_ENLARGE(&u->own, u->n, u->n + (size_t)n);
   BW_THEN(st, keep_near(u, all, n, site));
   bw_release(&site);
   bw_release(&kind);

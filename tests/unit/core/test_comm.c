@@ -184,6 +184,16 @@ START_TEST(memory)
   bw_check_ok(BW_ALLOCATE(&x, 0));
   ck_assert_ptr_nonnull(x);
   bw_release(&x);
+  bw_check_ok(BW_ENLARGE(&x, 0, 3)); /* of nothing */
+  for (int q = 0; q < 3; q++)
+    x[q] = q + 1.0;
+  bw_check_status(BW_ENLARGE(&x, 3, SIZE_MAX / 8), BW_EMEM); /* what is there stays */
+  bw_check_ok(BW_ENLARGE(&x, 2, 1000));
+  ck_assert_double_eq(x[0], 1.0);
+  ck_assert_double_eq(x[1], 2.0);
+  for (int q = 2; q < 1000; q++)
+    ck_assert_double_eq(x[q], 0.0);
+  bw_release(&x);
   /* count * size wraps to a small number */
   bw_check_status(BW_ALLOCATE(&x, SIZE_MAX / 8 + 2), BW_EMEM);
   ck_assert_ptr_null(x);

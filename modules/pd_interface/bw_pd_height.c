@@ -10,18 +10,13 @@
 #include "pd_interface_internal.h"
 #include <math.h>
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* ERRATA 33, by the settled normal. */
 static double mean_of_sides(const bw_pd_interface *pi, size_t h)
 {
   const bw_solid_config *c = bw_solid_settings(pi->pd);
   double sum = 0.0;
   for (int d = 0; d < pi->stencil->dims; d++)
-    sum += fabs(dot(c->axes[d], &pi->fit.own_normal[3 * h]));
+    sum += fabs(bw_pd_interface__dot(c->axes[d], &pi->fit.own_normal[3 * h]));
   /* On ridges and edges there is no plane that the sides are steps of. */
   if (!bw_pd_interface__is_smooth(pi, h)) sum = 1.0;
   return 0.5 * bw_solid_spacing(pi->pd, h) / fmax(sum, 1.0);
@@ -40,10 +35,11 @@ static double mean_about(const bw_pd_interface *pi, size_t h)
     if (near[q].partner < 0) continue;
     const double *xi = &s->xi[3 * near[q].slot];
     const double *its = pi->fit.side[near[q].partner];
-    const double w = its[1] * (1.0 - dot(xi, xi) / (s->family * s->family));
+    const double w = its[1] * (1.0 - bw_pd_interface__dot(xi, xi) / (s->family * s->family));
     double m[3], along = 0.0;
     bw_pd_interface__partner_normal(&near[q], all, m);
-    if (!(w > 0.0 && dot(n, m) > 0.7)) continue; /* 45 degrees; 0 where it is not smooth */
+    if (!(w > 0.0 && bw_pd_interface__dot(n, m) > 0.7))
+      continue; /* 45 degrees; 0 where it is not smooth */
     for (int d = 0; d < 3; d++)
       along += 0.5 * (xi[d] + its[0] * m[d] - mine[0] * n[d]) * (n[d] + m[d]);
     sum += w * along;

@@ -56,11 +56,6 @@ static void cross(const double a[3], const double b[3], double c[3])
     c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
 }
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Two unit vectors along the surface. Which way they point is without effect: the fit is taken at
  * h, where both coordinates are zero. */
 static void tangents(const double n[3], double t[2][3])
@@ -72,7 +67,7 @@ static void tangents(const double n[3], double t[2][3])
   double e[3] = {0.0, 0.0, 0.0};
   e[least] = 1.0;
   cross(n, e, t[0]);
-  const double length = sqrt(dot(t[0], t[0]));
+  const double length = sqrt(bw_pd_interface__dot(t[0], t[0]));
   for (int d = 0; d < 3; d++)
     t[0][d] /= length;
   cross(n, t[0], t[1]);
@@ -105,10 +100,11 @@ static void sum_fit(const bw_pd_interface *pi, size_t h, const double all[], fit
     /* A wall without a mirror image has no normal. */
     if (near[q].partner < 0) continue;
     bw_pd_interface__partner_normal(&near[q], all, other);
-    if (!(dot(n, other) > 0.5)) continue; /* 60 degrees; 0 where there is no surface */
+    if (!(bw_pd_interface__dot(n, other) > 0.5))
+      continue; /* 60 degrees; 0 where there is no surface */
     /* Reference places: the fit is a function of the bonds that hold, not of how the body moved. */
     const double *xi = &s->xi[3 * near[q].slot];
-    const double f[3] = {1.0, dot(t[0], xi), dot(t[1], xi)};
+    const double f[3] = {1.0, bw_pd_interface__dot(t[0], xi), bw_pd_interface__dot(t[1], xi)};
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++) {
         sums->ff[a][b] += f[a] * f[b];
@@ -127,7 +123,7 @@ static double solve_fit(fit_sums *sums, int dims, double value[3], double *bend)
   /* Inverse of the symmetric 3 x 3 matrix by cofactors. */
   for (int a = 0; a < 3; a++)
     cross(m[(a + 1) % 3], m[(a + 2) % 3], inverse[a]);
-  const double det = dot(m[0], inverse[0]);
+  const double det = bw_pd_interface__dot(m[0], inverse[0]);
   /* Too few neighbours look the same way. */
   if (members < 5.0 || !(det > 0.0)) return INFINITY;
   for (int a = 0; a < 3; a++) {
@@ -135,11 +131,11 @@ static double solve_fit(fit_sums *sums, int dims, double value[3], double *bend)
       for (int d = 0; d < 3; d++)
         c[a][d] += inverse[a][b] / det * sums->fn[b][d];
     /* Residual of a least-squares fit: sum of squares less what the fit explains. */
-    explained += dot(c[a], sums->fn[a]);
+    explained += bw_pd_interface__dot(c[a], sums->fn[a]);
   }
-  *bend = sqrt(dot(c[1], c[1]) + dot(c[2], c[2]));
+  *bend = sqrt(bw_pd_interface__dot(c[1], c[1]) + bw_pd_interface__dot(c[2], c[2]));
   /* c[0] is the value at h itself. */
-  const double length = sqrt(dot(c[0], c[0]));
+  const double length = sqrt(bw_pd_interface__dot(c[0], c[0]));
   if (!(length > 0.5)) return INFINITY;
   for (int d = 0; d < 3; d++)
     value[d] = c[0][d] / length;
@@ -182,7 +178,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
   bw_solid_fill_extended(pi->pd, 3 * sizeof *from, from, from);
   bw_pd_interface__spread_change(pi);
   for (size_t h = 0; h < pi->n; h++) {
-    const bool there = dot(&from[3 * h], &from[3 * h]) > 0.0;
+    const bool there = bw_pd_interface__dot(&from[3 * h], &from[3 * h]) > 0.0;
     double n[3];
     fit_sums sums;
     /* Nothing near it has changed: its fit is what it was. */
@@ -201,7 +197,7 @@ static void fit_all(bw_pd_interface *pi, double from[], double to[], bool judge)
 bool bw_pd_interface__is_smooth(const bw_pd_interface *pi, size_t h)
 {
   const double *n = &pi->fit.told[BW_PD_INTERFACE__PASSES][3 * h];
-  return dot(n, n) > 0.0;
+  return bw_pd_interface__dot(n, n) > 0.0;
 }
 
 void bw_pd_interface__settle_normals(bw_pd_interface *pi)
@@ -216,7 +212,7 @@ void bw_pd_interface__settle_normals(bw_pd_interface *pi)
   /* The last fit where there is one, else 3.45. */
   for (size_t h = 0; h < pi->n; h++) {
     const double *n = &pi->fit.told[BW_PD_INTERFACE__PASSES][3 * h];
-    memcpy(&pi->fit.own_normal[3 * h], dot(n, n) > 0.0 ? n : &pi->fit.told[0][3 * h],
-           3 * sizeof *n);
+    memcpy(&pi->fit.own_normal[3 * h],
+           bw_pd_interface__dot(n, n) > 0.0 ? n : &pi->fit.told[0][3 * h], 3 * sizeof *n);
   }
 }

@@ -154,6 +154,11 @@ struct bw_pd_interface {
   bw_pd_interface__fit fit;
 };
 
+static inline double bw_pd_interface__dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* Directions of an own particle. */
 static inline const bw_pd_interface__stencil *bw_pd_interface__stencil_of(const bw_pd_interface *pi,
                                                                           size_t h)

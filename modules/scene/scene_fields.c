@@ -8,6 +8,8 @@
 #include <string.h>
 
 #define V BW_CONFIG_VALUE
+const bw_config_word bw_scene__truth_words[] = {
+    {"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 const bw_config_word bw_scene__axis_words[] = {
     {"x", 0, NULL}, {"y", 1, NULL}, {"z", 2, NULL}, {NULL, 0, NULL}};
 static const bw_config_word accuracy_words[] = {

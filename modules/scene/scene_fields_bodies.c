@@ -170,7 +170,6 @@ static const bw_config_field rigid_fields[] = {
       "in which it keeps its velocity at the start, mostly none: x, y, z, turn_x, turn_y, turn_z, "
       "turn (all three)"),
     BW_CONFIG_END};
-static const bw_config_word self_words[] = {{"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 #define OURS bw_scene_body
 const bw_config_field bw_scene__body_fields[] = {
     V(OURS, name, BW_REQUIRED, BW_ANY, "", "by which the rest of the scene calls it"),
@@ -196,7 +195,7 @@ const bw_config_field bw_scene__body_fields[] = {
         "boxes in which its particles are finer; cracks have to stay in the finest ones"),
     BW_CONFIG_MAP_IF(bw_scene_body, refine, has_refine, refine_fields,
                      "its particles become finer where it is about to crack, and coarser again"),
-    BW_CONFIG_WORD(bw_scene_body, self_contact, BW_OPTIONAL, self_words,
+    BW_CONFIG_WORD(bw_scene_body, self_contact, BW_OPTIONAL, bw_scene__truth_words,
                    "does what breaks off collide with the rest? Left out: if the body breaks"),
     BW_CONFIG_END};
 #undef OURS

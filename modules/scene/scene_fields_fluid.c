@@ -3,15 +3,12 @@
 #include "bw_ns_words.h"
 #include "scene_internal.h"
 
-static const bw_config_word flux_words[] = {{"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 #define V BW_CONFIG_VALUE
 static const bw_config_word model_words[] = {
     {"incompressible", BW_SCENE_INCOMPRESSIBLE, "a flow on a grid"},
     {"particles", BW_SCENE_PARTICLES, "particles with a free surface"},
     {"none", BW_SCENE_NO_FLUID, NULL},
     {NULL, 0, NULL}};
-static const bw_config_word truth_words[] = {
-    {"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 static const bw_config_word walls_words[] = {{"slip", BW_SCENE_SLIP, "the fluid slips along them"},
                                              {"stick", BW_SCENE_STICK, "it sticks to them"},
                                              {NULL, 0, NULL}};
@@ -48,7 +45,7 @@ static const bw_config_field start_fields[] = {
       "the profile of a poiseuille inflow at the lower x side, everywhere"),
     BW_CONFIG_LIST(bw_scene_start, vortices, n_vortices, BW_OPTIONAL, vortex_fields,
                    "vortices added to it"),
-    BW_CONFIG_WORD(bw_scene_start, hydrostatic, BW_OPTIONAL, truth_words,
+    BW_CONFIG_WORD(bw_scene_start, hydrostatic, BW_OPTIONAL, bw_scene__truth_words,
                    "of particles: under the pressure of rest below the top of each shape; left "
                    "out: true"),
     V(bw_scene_start, file, BW_OPTIONAL, BW_FILE, "",
@@ -88,7 +85,7 @@ const bw_config_field bw_scene__fluid_fields[] = {
       "pressure, 0 or less, below which a film between bodies that deform cavitates; left out: it "
       "bears any"),
     BW_CONFIG_WORD(
-        bw_scene_fluid, film_flux, BW_OPTIONAL, flux_words,
+        bw_scene_fluid, film_flux, BW_OPTIONAL, bw_scene__truth_words,
         "what flows in a film between bodies that deform leaves the grid and enters it "
         "at the film's edges, by the cubic law; for films that answer within some steps; "
         "left out: no"),

@@ -13,8 +13,6 @@ static const bw_config_field until_fields[] = {
       "origin; ends below it"),
     BW_CONFIG_END};
 #define OURS bw_scene_phase
-static const bw_config_word breaking_words[] = {
-    {"false", 0, NULL}, {"true", 1, NULL}, {NULL, 0, NULL}};
 const bw_config_field bw_scene__phase_fields[] = {
     V(OURS, name, BW_OPTIONAL, BW_ANY, "", "what it is called in the log"),
     BW_CONFIG_BRIEF(bw_scene_phase, until, has_until, until_fields,
@@ -23,7 +21,7 @@ const bw_config_field bw_scene__phase_fields[] = {
     V(OURS, damp, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L3 T)", "damping against rest, of all bodies"),
     V(OURS, step, BW_OPTIONAL, BW_ABOVE(0), "T",
       "fixed time step in this phase; left out: as numerics says"),
-    BW_CONFIG_WORD(bw_scene_phase, breaking, BW_OPTIONAL, breaking_words,
+    BW_CONFIG_WORD(bw_scene_phase, breaking, BW_OPTIONAL, bw_scene__truth_words,
                    "may bonds break? Left out: those of breakable bodies"),
     BW_CONFIG_END};
 #undef OURS

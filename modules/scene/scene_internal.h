@@ -16,6 +16,7 @@ extern const bw_config_field bw_scene__output_fields[];
 extern const bw_config_field bw_scene__numerics_fields[];
 extern const bw_config_word bw_scene__axis_words[];
 extern const bw_config_word bw_scene__motion_words[];
+extern const bw_config_word bw_scene__truth_words[]; /* false 0, true 1 */
 
 /* The word of a value; "?" where there is none. */
 const char *bw_scene__word(const bw_config_word words[], int value);

@@ -24,10 +24,9 @@
  * BUILD modules=coupler,shape
  * TEST  ranks=1 timeout=3600 */
 #include "bw_coupler.h"
-#include "bw_memory.h"
-#include "bw_shape.h"
 #include "bw_validation.h"
 #include "cylinder_in_channel.h"
+#include "cylinder_of_particles.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -59,14 +58,7 @@ static void scene_destroy(scene *s)
 static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s)
 {
   const bw_grid_view *g = bw_grid_look(s->grid);
-  const bw_shape cylinder = {.kind = BW_SHAPE_CYLINDER,
-                             .centre = {0.5 * g->length[0], 0.5 * g->length[1], 0.0},
-                             .radius = 0.5,
-                             .axis = 2};
   bw_solid_config c = bw_solid_config_default();
-  int64_t n = 0;
-  int32_t *site = NULL;
-  uint8_t *kind = NULL;
   c.geometry = BW_PD_PLANE_STRAIN;
   c.ds = c.thickness = s->h;
   c.rho = b->motion == FALL ? 2.0 : 1.0;
@@ -74,12 +66,7 @@ static bw_status make_solid(const bw_comm *comm, const scene_set_up *b, scene *s
   /* pairs: damping against a mean would hold back its turning; the family has about 30 h^3 */
   c.damping.pair = 1.0 * c.rho / (s->dt * 30.0 * s->h * s->h * s->h);
   c.origin[2] = 0.5 * s->h;
-  const bw_shape_lattice lattice = bw_shape_lattice_straight(s->h, c.origin, true);
-  bw_status st = bw_shape_fill(1, &cylinder, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_solid_create_same(comm, &c, n, site, kind, &s->solid));
-  bw_release(&site);
-  bw_release(&kind);
-  return st;
+  return cylinder_of_particles(comm, 0.5 * g->length[0], 0.5 * g->length[1], &c, &s->solid);
 }
 
 static bw_status make_scene(const bw_comm *comm, const scene_set_up *b, scene *s)

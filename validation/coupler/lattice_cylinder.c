@@ -18,8 +18,8 @@
  * TEST  ranks=1 timeout=3600 */
 #include "../../cases/cylinder_drag/cylinder_flow.h"
 #include "bw_coupler.h"
-#include "bw_shape.h"
 #include "bw_validation.h"
+#include "cylinder_of_particles.h"
 
 #include <stdio.h>
 
@@ -57,23 +57,14 @@ static bw_status make_fluid(const bw_comm *comm, const cylinder_config *c, scene
 static bw_status make_solid(const bw_comm *comm, const cylinder_config *c, double ds, scene *s)
 {
   const double height = bw_grid_look(s->grid)->length[1];
-  const bw_shape cylinder = {
-      .kind = BW_SHAPE_CYLINDER, .centre = {c->upstream, 0.5 * height}, .radius = 0.5, .axis = 2};
   bw_solid_config solid = bw_solid_config_default();
-  int64_t n = 0;
-  int32_t *site = NULL;
-  uint8_t *kind = NULL;
   solid.geometry = BW_PD_PLANE_STRAIN;
   solid.ds = ds, solid.thickness = s->h;
   solid.rho = solid.E = 1.0;
   solid.origin[2] = 0.5 * s->h;
-  const bw_shape_lattice lattice = bw_shape_lattice_straight(ds, solid.origin, true);
-  bw_status st = bw_shape_fill(1, &cylinder, &lattice, 0, 1, &n, &site, &kind, NULL);
-  BW_THEN(st, bw_solid_create_same(comm, &solid, n, site, kind, &s->solid));
-  bw_release(&site);
-  bw_release(&kind);
-  if (st == BW_OK) s->wide = 2.0 * ds * sqrt((double)bw_solid_total(s->solid) / acos(-1.0));
-  return st;
+  BW_TRY(cylinder_of_particles(comm, c->upstream, 0.5 * height, &solid, &s->solid));
+  s->wide = 2.0 * ds * sqrt((double)bw_solid_total(s->solid) / acos(-1.0));
+  return BW_OK;
 }
 
 static bw_status make_scene(const bw_comm *comm, const cylinder_config *c, double ds, scene *s)

@@ -167,18 +167,26 @@ START_TEST(square_plates)
 }
 END_TEST
 
+/* A slit of 40 spacings and the pressure that drops by `drop` along it, solved; forces to F. */
+static bw_film_net *slit(cloud *c, double h, double drop, double F[])
+{
+  const double still[3] = {0.0};
+  bw_film_net *w = make(true);
+  c->n = 0;
+  add_block(c, 40, 0.0, -0.5 * h, false, 0.0, 0.0, still);
+  add_block(c, 40, 0.0, 0.5 * h, true, 0.0, 0.0, still);
+  find(w, c);
+  press(w, c, 1.0, drop, 0.0, F);
+  return w;
+}
+
 /* Flow along a slit: h^3 G/(12 mu) per depth. */
 START_TEST(flow_along_a_slit)
 {
-  const double h = 0.02, drop = 3.0, L = 40 * DS, still[3] = {0.0};
+  const double h = 0.02, drop = 3.0, L = 40 * DS;
   static cloud c;
   static double F[3 * MOST];
-  bw_film_net *w = make(true);
-  c.n = 0;
-  add_block(&c, 40, 0.0, -0.5 * h, false, 0.0, 0.0, still);
-  add_block(&c, 40, 0.0, 0.5 * h, true, 0.0, 0.0, still);
-  find(w, &c);
-  press(w, &c, 1.0, drop, 0.0, F);
+  bw_film_net *w = slit(&c, h, drop, F);
   const double theory = DEPTH * pow(h, 3) / (12.0 * MU) * drop / L;
   for (int q = -1; q < 2; q++) {
     const double x[3] = {1.03 * q, 0.0, 0.0}, n[3] = {1.0, 0.0, 0.0};
@@ -191,15 +199,10 @@ END_TEST
 /* What a film brings: out of one end of a slit, in at the other, nothing in between and in all. */
 START_TEST(what_a_film_brings)
 {
-  const double h = 0.02, drop = 3.0, L = 40 * DS, dt = 0.3, still[3] = {0.0};
+  const double h = 0.02, drop = 3.0, L = 40 * DS, dt = 0.3;
   static cloud c;
   static double F[3 * MOST], moved[MOST];
-  bw_film_net *w = make(true);
-  c.n = 0;
-  add_block(&c, 40, 0.0, -0.5 * h, false, 0.0, 0.0, still);
-  add_block(&c, 40, 0.0, 0.5 * h, true, 0.0, 0.0, still);
-  find(w, &c);
-  press(w, &c, 1.0, drop, 0.0, F);
+  bw_film_net *w = slit(&c, h, drop, F);
   memset(moved, 0, sizeof moved);
   bw_film_net_bring(w, dt, moved);
   const double theory = dt * DEPTH * pow(h, 3) / (12.0 * MU) * drop / L;

@@ -40,7 +40,7 @@ void bw_coupler__book_open(bw_coupler *c)
 void bw_coupler__book_motion(bw_coupler *c, double dt)
 {
   const bool iterated = c->config.coupling_iterations > 1;
-  double *X = c->X, *V = c->accel; /* scratch */
+  double *X = c->X, *V = c->scratch[0];
   c->book.missed = c->book.received = 0.0;
   if (!c->config.check_book && !c->config.count_work) return;
   bw_solid_get_position(c->solid, X);
@@ -59,7 +59,7 @@ void bw_coupler__book_motion(bw_coupler *c, double dt)
 /* What the step changed of each particle's velocity, against what the step before did. */
 static void add_motion(bw_coupler *c, double sum[])
 {
-  double *V = c->X, *last = c->book.V, *change = c->book.change; /* scratch */
+  double *V = c->X, *last = c->book.V, *change = c->book.change;
   bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < c->n; i++) {
     const double mass = bw_solid_volume_of(c->solid, i) * bw_solid_density(c->solid, i);

@@ -115,11 +115,11 @@ enum { N_VECTORS = 26 };
 static void list_vectors(bw_coupler *c, double **vector[N_VECTORS])
 {
   double **const all[N_VECTORS] = {
-      &c->F,        &c->V,        &c->V_before, &c->X,         &c->root_inside, &c->marker_X,
-      &c->root,     &c->marker_V, &c->normal,   &c->marker_dV, &c->area,        &c->accel,
-      &c->traction, &c->force,    &c->turn,     &c->root_V,    &c->load,        &c->moment,
-      &c->M,        &c->marker_M, &c->book.X,   &c->book.V,    &c->book.change, &c->height,
-      &c->side,     &c->flow};
+      &c->F,          &c->V,        &c->V_before, &c->X,          &c->root_inside, &c->marker_X,
+      &c->root,       &c->marker_V, &c->normal,   &c->marker_dV,  &c->area,        &c->scratch[0],
+      &c->scratch[1], &c->force,    &c->turn,     &c->scratch[2], &c->load,        &c->moment,
+      &c->M,          &c->marker_M, &c->book.X,   &c->book.V,     &c->book.change, &c->height,
+      &c->side,       &c->flow};
   memcpy(vector, all, sizeof all);
 }
 

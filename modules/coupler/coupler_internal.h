@@ -120,17 +120,17 @@ struct bw_coupler {
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
   double *marker_X, *marker_V, *marker_dV; /* (n,3), (n,3), (n) */
   double *marker_M; /* (n,3) memory of the surface points [L^4/T^2]; NaN: they have none */
-  double *root, *normal, *area;     /* nominal surface (n,3), normals (n,3), areas (n) */
-  double *height;                   /* (n) of the surface above its particles' centres [L] */
-  double *side;                     /* (n,3) normals that markers know; NaN: they are retracted */
-  int *closed;                      /* (n) body of the surface points */
-  bool on_surface;                  /* markers know their normals and stand on the surface */
-  double *accel, *traction, *force; /* (n,3) each: of the surface points */
-  double *load;                     /* (n,3) of c->force, on the particles [M L/T^2] */
-  double *flow;                     /* (n,3) the same without the couples of their moments */
-  double *moment;                   /* (n,3) of the interface's rows [M L^2/T^2] */
-  double *turn;                     /* (n,3) spin of the interface's rows */
-  double *root_V;                   /* (n,3) scratch */
+  double *root, *normal, *area; /* nominal surface (n,3), normals (n,3), areas (n) */
+  double *height;               /* (n) of the surface above its particles' centres [L] */
+  double *side;                 /* (n,3) normals that markers know; NaN: they are retracted */
+  int *closed;                  /* (n) body of the surface points */
+  bool on_surface;              /* markers know their normals and stand on the surface */
+  double *force;                /* (n,3) of the surface points */
+  double *load;                 /* (n,3) of c->force, on the particles [M L/T^2] */
+  double *flow;                 /* (n,3) the same without the couples of their moments */
+  double *moment;               /* (n,3) of the interface's rows [M L^2/T^2] */
+  double *turn;                 /* (n,3) spin of the interface's rows */
+  double *scratch[3];           /* (n,3) each, free between calls */
   bw_coupler__probes probes;
   double force_probe[3]; /* of this rank, last probes */
   bw_real *p_mean;       /* field: pressure that acted over the last step (ns_channel's p/rho) */

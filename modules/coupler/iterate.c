@@ -92,7 +92,7 @@ static void look_inside(bw_coupler *c, double U[])
 static bw_status open_inside(bw_coupler *c)
 {
   bw_coupler__iteration *t = &c->iteration;
-  double *rest = c->accel, *volume = c->traction; /* scratch */
+  double *rest = c->scratch[0], *volume = c->scratch[1];
   if (c->inside_fluid == NULL) return BW_OK;
   memset(rest, 0, 3 * c->n * sizeof *rest);
   for (size_t i = 0; i < c->n; i++)
@@ -104,7 +104,7 @@ static bw_status open_inside(bw_coupler *c)
 
 void bw_coupler__free_inside(bw_coupler *c, double dt)
 {
-  double *U = c->traction; /* scratch: only probes use it */
+  double *U = c->scratch[1];
   if (c->inside_fluid == NULL) return;
   look_inside(c, U);
   for (size_t i = 0; i < 3 * c->n; i++)
@@ -134,7 +134,7 @@ static double load_residual(bw_coupler *c, double residual, double step)
 static double compare(bw_coupler *c, double dt, double *norm)
 {
   bw_coupler__iteration *t = &c->iteration;
-  double *V = c->accel, sums[2] = {0.0, 0.0}; /* scratch */
+  double *V = c->scratch[0], sums[2] = {0.0, 0.0};
   /* The solid has answered: X_{n+1}, V_{n+1}. */
   bw_solid_get_position(c->solid, c->X);
   bw_coupler__marker_velocity(c, V);

@@ -50,7 +50,7 @@ void bw_coupler__marker_velocity(bw_coupler *c, double V[])
 
 void bw_coupler__tell_surface(bw_coupler *c, const double V[])
 {
-  double *before = c->root_V; /* scratch */
+  double *before = c->scratch[2];
   /* What the markers do now; the difference is put on the particles' velocities. */
   bw_coupler__marker_velocity(c, before);
   for (size_t q = 0; q < c->n_surface; q++)
@@ -213,7 +213,7 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
 /* Power of the load that the particles do not feel in this step, as they move at its beginning. */
 static double power_held_back(bw_coupler *c)
 {
-  double *V = c->X, sum = 0.0; /* scratch */
+  double *V = c->X, sum = 0.0;
   bw_solid_get_velocity(c->solid, V);
   for (size_t i = 0; i < 3 * c->n; i++)
     sum += (c->load[i] - bw_solid_volume_of(c->solid, i / 3) * c->F[i]) * V[i];

@@ -7,7 +7,7 @@
 
 bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation)
 {
-  double *k = c->accel, *V = c->root_V; /* scratch */
+  double *k = c->scratch[0], *V = c->scratch[2];
   const double mass = c->config.virtual_mass * relaxation * c->config.rho * c->h;
   /* An iterated step agrees with the fluid's answer to its own motion: nothing is late. */
   if (mass == 0.0 || c->config.coupling_iterations > 1) return BW_OK;
@@ -22,7 +22,7 @@ bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation)
 
 void bw_coupler__carry_over(bw_coupler *c, double dt, double relaxation)
 {
-  double *impulse = c->X; /* scratch */
+  double *impulse = c->X;
   const double work = bw_solid_get_drag(c->solid, impulse);
   /* What the drag took is still owed: it joins the next load. */
   c->work.late -= work;

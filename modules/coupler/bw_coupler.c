@@ -61,6 +61,10 @@ static bw_status check_config(const bw_coupler_config *q, const bw_grid_view *g)
              "coupler: virtual_mass = %g: must lie in [0, 100]", q->virtual_mass);
   BW_REQUIRE(q->coupling_iterations >= 1, BW_EINPUT,
              "coupler: coupling_iterations = %d: at least 1 (explicit)", q->coupling_iterations);
+  BW_REQUIRE(!q->predictor || q->coupling_iterations == 1, BW_EINPUT,
+             "coupler: predictor with coupling_iterations = %d: repeated steps find the motion "
+             "themselves; choose one of the two",
+             q->coupling_iterations);
   BW_REQUIRE(q->coupling_residual > 0.0, BW_EINPUT,
              "coupler: coupling_residual = %g: must be > 0, 1e-4 or so", q->coupling_residual);
   BW_REQUIRE(isnan(q->retraction) || fabs(q->retraction) <= 2.0, BW_EINPUT,
@@ -147,6 +151,8 @@ static bw_status particle_arrays(bw_coupler *c)
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
+  if (c->config.predictor) BW_TRY(BW_ALLOCATE(&c->felt, 3 * n));
+  BW_TRY(bw_coupler__predictor_create(c));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
   BW_TRY(BW_ALLOCATE(&c->row, n));
@@ -176,6 +182,8 @@ static void release_particle_arrays(bw_coupler *c)
   bw_release(&c->body);
   bw_release(&c->closed);
   bw_release(&c->id);
+  bw_release(&c->felt);
+  bw_coupler__state_release(&c->predicted);
   bw_coupler__state_release(&c->kept);
   bw_coupler__iteration_release(c);
   bw_coupler__blocks_release(&c->blocks);
@@ -191,7 +199,7 @@ static bw_status create_arrays(bw_coupler *c)
 }
 
 /* What a step takes over from the one before, (n,3) each, with the ids of the particles. */
-enum { N_CARRIED = 3 };
+enum { N_CARRIED = 4 };
 typedef struct {
   size_t n;
   int64_t *id;
@@ -200,7 +208,7 @@ typedef struct {
 
 static void list_carried(bw_coupler *c, double **of[N_CARRIED])
 {
-  double **const all[N_CARRIED] = {&c->F, &c->V_before, &c->M};
+  double **const all[N_CARRIED] = {&c->F, &c->V_before, &c->M, &c->felt};
   memcpy(of, all, sizeof all);
 }
 
@@ -231,7 +239,7 @@ static void give_back(bw_coupler *c, const carried *k)
       at = at + 1 < k->n ? at + 1 : 0, tried++;
     if (tried == k->n) continue;
     for (int q = 0; q < N_CARRIED; q++)
-      memcpy(*of[q] + 3 * i, k->of[q] + 3 * at, 3 * sizeof **of[q]);
+      if (k->of[q] != NULL) memcpy(*of[q] + 3 * i, k->of[q] + 3 * at, 3 * sizeof **of[q]);
   }
 }
 

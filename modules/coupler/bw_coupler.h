@@ -29,14 +29,17 @@
  * load takes from them. No passive scheme can vanish for steady acceleration: its impedance would
  * have a double zero.) m_v = virtual_mass w rho A h, A the particle's area: in one step neither
  * markers nor probes reach farther than about a cell, so that tips have as much as they need.
- * Measured: validation, coupler.fast_modes.
+ * With a `predictor` the fluid is told the mean velocity over the step instead, that of the solid
+ * under the load it felt last: every mode is damped, by w G (1 - cos theta)/(theta^2 m) a step, and
+ * no virtual mass is needed (predictor.c). It costs the solid's sub-steps a second time, and light
+ * bodies, which swing with the step, hold half the w. Measured: validation, coupler.fast_modes.
  *
  * What holds. The first explicit step measures the limit of w where load_relaxation is left open
  * (NaN): power iteration over "velocity of the surface, load of the fluid, answer of the solid in
  * one step" finds the shapes that the fluid resists most, their answers over forty steps and the
  * recurrence above the limit; a trial with a rough disturbance may lower it (stability.c). Half of
- * it is taken, 0.1 at most. Chosen anew when 2 % of the bonds have broken since, or the step is
- * another by half. What was chosen is part of a checkpoint.
+ * it is taken, 0.1 at most, 0.3 with a predictor. Chosen anew when 2 % of the bonds have broken
+ * since, or the step is another by half. What was chosen is part of a checkpoint.
  *
  * Iterated coupling (coupling_iterations > 1), for light solids: the step is repeated, from the
  * same state, until the surface moves as the markers were told to, to the residual. The next try's
@@ -127,6 +130,9 @@ typedef struct {
                                                                             default NaN */
   bool check_relaxation;     /* measure what holds also where load_relaxation is given
                                 (bw_coupler_tell_limit)                     default false */
+  bool predictor;            /* tell the fluid how the solid would move in the step under its last
+                                load, by its sub-steps once more; no virtual mass then
+                                                                            default false */
   double virtual_mass;       /* of the surface, over w rho A h; 0: none [-]   default 1 */
   int coupling_iterations;   /* at most, per step; 1: explicit              default 1 */
   double coupling_residual;  /* iterated: what the surface's velocity lacks of a fixed point, over

@@ -36,7 +36,10 @@ const bw_config_field bw_coupler_fields[] = {
     WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(OURS, load_relaxation, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",
       "share of the new fluid load in each step; 1: plain explicit coupling; left out: half of "
-      "what is measured to hold, 0.1 at most"),
+      "what is measured to hold, 0.1 at most (0.3 with a predictor)"),
+    V(OURS, predictor, BW_OPTIONAL | BW_MAY_CHANGE, BW_ANY, "",
+      "tell the fluid how the solid would move in the step under its last load, by its sub-steps "
+      "once more; then without a virtual mass"),
     V(OURS, virtual_mass, BW_OPTIONAL | BW_MAY_CHANGE, BW_FROM_TO(0, 100), "",
       "virtual mass of the surface, over load_relaxation x density x area x cell, which keeps "
       "motions faster than the step from being fed; 0: none"),

@@ -9,6 +9,13 @@
 
 static const double CHANGED = 0.02; /* of the bonds broken since: the body is another */
 
+double bw_coupler__most(const bw_coupler *c)
+{
+  /* Loads of ten steps, without the noise of one; told the motion of each step, the fluid answers
+   * with less of it, and what is held back of a load falls with the steps that it takes. */
+  return c->config.predictor ? 0.3 : 0.1;
+}
+
 /* Ends of bonds that are broken, of all ranks; the load's share changes with them. Collective. */
 static double count_broken(const bw_coupler *c)
 {
@@ -69,7 +76,7 @@ bw_status bw_coupler__choose(bw_coupler *c, double dt)
   o->dt = dt, o->broken = broken;
   const double limit = o->limit.relaxation; /* NaN: nothing could be measured */
   if (!o->open || isnan(limit)) return BW_OK;
-  use(c, fmin(BW_COUPLER__MOST, BW_COUPLER__MARGIN * limit));
+  use(c, fmin(bw_coupler__most(c), BW_COUPLER__MARGIN * limit));
   return BW_OK;
 }
 
@@ -84,7 +91,7 @@ void bw_coupler_tell_limit(bw_coupler *c, bw_log *log)
            "explicit coupling holds below load_relaxation = %.3g (measured: in 12 steps the fluid "
            "adds %.3g times the mass that resists)",
            limit, o->limit.added);
-  if (o->open && w < BW_COUPLER__MOST)
+  if (o->open && w < bw_coupler__most(c))
     bw_log_info(log, "%s: %.2g is taken, so that loads come in over %.0f steps", found, w, 1.0 / w);
   else if (o->open)
     bw_log_info(log, "%s: %g is taken", found, w);

@@ -37,6 +37,7 @@ typedef struct {
   double sums[BW_SOLID_RESTART_SUMS], work[BW_COUPLER__WORKS]; /* of all ranks */
   uint8_t *bits;                                               /* (n, bits_bytes) */
   double *V_before, *F, *M;                                    /* (n,3) */
+  double *felt;                                                /* (n,3); NULL: no predictor */
   double *bodies;                                              /* joined.c; NULL: none */
   double *edge, *carried; /* (n) of films: pressure at edges, volume brought; NULL: no films */
   double choice[BW_COUPLER__CHOICE];
@@ -109,12 +110,12 @@ struct bw_coupler {
   int64_t *id;      /* (n) theirs */
   int64_t revision; /* of the solid that the arrays below are for */
   double h;         /* grid spacing [L] */
-  double *F; /* (n,3) load on particles during a step, else what it takes over [M/(L^2 T^2)] */
-  double *M; /* (n,3) memory of the particles' markers [L^4/T^2] */
+  double *F;    /* (n,3) load on particles during a step, else what it takes over [M/(L^2 T^2)] */
+  double *felt; /* (n,3) load of the last step [M/(L^2 T^2)]; NULL: no predictor */
+  double *M;    /* (n,3) memory of the particles' markers [L^4/T^2] */
   uint16_t *broken;        /* (n) broken bonds of each particle ... */
   int64_t events;          /* ... when the solid had counted so many */
-  double *V, *V_before;    /* (n,3) velocity now, and of the step before: at its beginning, or
-                              what the markers were told (iterated) */
+  double *V, *V_before;    /* (n,3) velocity now, or what the markers are told; the step before */
   int *body, n_bodies;     /* (n) which body each particle belongs to */
   size_t n_surface;        /* surface particles inside the box: rows used of the arrays below */
   int32_t *particle, *row; /* which particle each is; which row of the interface's surface */
@@ -159,6 +160,7 @@ struct bw_coupler {
   bw_coupler_rigid *floats; /* rigid bodies in the same flow, borrowed; NULL: none */
   bw_coupler__touch *touch; /* contact with them; NULL: none */
   bw_coupler__state kept;
+  bw_coupler__state predicted; /* the solid at the beginning of the step (predictor.c) */
   bw_coupler__iteration iteration;
   int iterations;
   double residual;
@@ -243,6 +245,10 @@ void bw_coupler__state_release(bw_coupler__state *s);
 bw_status bw_coupler__state_create(const bw_coupler *c,
                                    bw_coupler__state *s) BW_MUST_CHECK; /* Local */
 void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s);
+/* The same of the solid, what is joined to it, and its load alone. Local; Collective. */
+bw_status bw_coupler__state_create_solid(const bw_coupler *c, bw_coupler__state *s) BW_MUST_CHECK;
+void bw_coupler__state_capture_solid(const bw_coupler *c, bw_coupler__state *s);
+bw_status bw_coupler__state_restore_solid(bw_coupler *c, const bw_coupler__state *s) BW_MUST_CHECK;
 /* Fluid and solid as they were; surface and markers stay. Collective. */
 bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s) BW_MUST_CHECK;
 
@@ -250,6 +256,10 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s) B
 bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
 bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
+/* predictor.c: room for it (Local); with one, the markers of the step to come move as the solid
+ * would under the load that it felt last (Collective). */
+bw_status bw_coupler__predictor_create(bw_coupler *c) BW_MUST_CHECK;
+bw_status bw_coupler__predict(bw_coupler *c, double dt) BW_MUST_CHECK;
 /* virtual_mass.c: the drag of the step to come, after V_before is known; what is carried over to
  * the next load after it. Local. */
 bw_status bw_coupler__resist(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
@@ -271,13 +281,13 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);
 
-/* Stability (stability.c, relaxation.c). Does the recurrence b_{k+1} = y_k with
- * y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which it
- * does, with a virtual mass of w mu times what resists. Pure. */
-#define BW_COUPLER__MARGIN 0.5 /* of the limit, which is taken ... */
-#define BW_COUPLER__MOST   0.1 /* ... up to this: loads of ten steps, without the noise of one */
-bool bw_coupler__relaxation_holds(int n, const double lambda[], double w);
-double bw_coupler__relaxation_limit(int n, const double lambda[], double mu);
+/* Stability (stability.c, relaxation.c). Does the recurrence b_{k+1} = y_k + lead (y_k - y_{k-1})
+ * with y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which
+ * it does, with a virtual mass of w mu times what resists. Pure. */
+#define BW_COUPLER__MARGIN 0.5                /* of the limit, which is taken ... */
+double bw_coupler__most(const bw_coupler *c); /* ... up to this */
+bool bw_coupler__relaxation_holds(int n, const double lambda[], double w, double lead);
+double bw_coupler__relaxation_limit(int n, const double lambda[], double mu, double lead);
 /* Before an explicit step of dt: finds what holds where that is asked for and not known, and sets
  * what was left open. Collective. */
 bw_status bw_coupler__choose(bw_coupler *c, double dt) BW_MUST_CHECK;

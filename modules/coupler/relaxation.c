@@ -17,7 +17,7 @@ static double drag_of(int n, const double lambda[])
   return fmax(0.0, mean);
 }
 
-bool bw_coupler__relaxation_holds(int n, const double lambda[], double w)
+bool bw_coupler__relaxation_holds(int n, const double lambda[], double w, double lead)
 {
   enum { LONG = 1200 };
   const double drag = drag_of(n, lambda);
@@ -28,7 +28,9 @@ bool bw_coupler__relaxation_holds(int n, const double lambda[], double w)
     double sum = drag * before;
     for (int q = 0; q < n && q <= k; q++)
       sum += lambda[q] * b[k - q];
-    b[k + 1] = y = (1.0 - w) * y - w * sum;
+    const double last = y;
+    y = (1.0 - w) * y - w * sum;
+    b[k + 1] = y + lead * (y - last);
     if (!(fabs(y) < 1e100)) return false;
     if (k >= LONG / 2)
       late = fmax(late, fabs(y));
@@ -40,23 +42,23 @@ bool bw_coupler__relaxation_holds(int n, const double lambda[], double w)
 
 /* The largest W up to which all hold; the set need not be whole: where an answer comes late, more
  * of a load at once may hold again, but not on purpose. */
-static double all_below(int n, const double lambda[])
+static double all_below(int n, const double lambda[], double lead)
 {
   static const double least = 1e-4, up = 1.3, fine = 1.01;
   double low = 0.0, high = least;
-  while (high < 1.0 && bw_coupler__relaxation_holds(n, lambda, high))
+  while (high < 1.0 && bw_coupler__relaxation_holds(n, lambda, high, lead))
     low = high, high = fmin(1.0, high * up);
-  if (bw_coupler__relaxation_holds(n, lambda, high)) return high;
+  if (bw_coupler__relaxation_holds(n, lambda, high, lead)) return high;
   while (low > 0.0 && high > fine * low) {
     const double middle = sqrt(low * high);
-    *(bw_coupler__relaxation_holds(n, lambda, middle) ? &low : &high) = middle;
+    *(bw_coupler__relaxation_holds(n, lambda, middle, lead) ? &low : &high) = middle;
   }
   return low;
 }
 
-double bw_coupler__relaxation_limit(int n, const double lambda[], double mu)
+double bw_coupler__relaxation_limit(int n, const double lambda[], double mu, double lead)
 {
-  const double W = all_below(n, lambda);
+  const double W = all_below(n, lambda, lead);
   /* What the virtual mass makes of w: W is no more than 1/mu whatever w is. */
   if (mu * W >= 1.0) return 1.0;
   return mu > 0.0 ? fmin(1.0, -log1p(-mu * W) / mu) : W;

@@ -7,7 +7,9 @@
  *   b_{n+1} = y_n,   y_n = (1 - W) y_{n-1} - W sum_k S_k b_{n-k},   W = w E,
  * where the virtual mass m_v = w mu m (bw_coupler.h) lets the share E = (1 - exp(-w mu))/(w mu) of
  * a load through in its own step, and owes the rest, so that it acts like a smaller w:
- * W = (1 - exp(-w mu))/mu. Held in one mode, S_k = lambda_k: numbers. The trial b_n = z^n gives
+ * W = (1 - exp(-w mu))/mu. Told the mean velocity of the step the fluid sees
+ * b_{n+1} = 3/2 y_n - 1/2 y_{n-1}, and there is no virtual mass (predictor.c). Held in one mode,
+ * S_k = lambda_k: numbers. The trial b_n = z^n, of the first form, gives
  *   (z - 1 + W) + W sum_k lambda_k z^-k = 0,
  * whose roots have to stay inside the unit circle. All of it in the first step leaves it at z = -1,
  * W = 2/(1 + lambda_0); a late answer leaves it earlier, as a slow swing. An elastic mode of
@@ -222,8 +224,9 @@ static bw_status limit_of_shape(experiment *e, int steps, int tries, double *lim
   for (size_t q = 0; q < 3 * c->n_surface; q++)
     area += c->area[q / 3] * e->v[q] * e->v[q];
   bw_comm_sum(bw_solid_comm(c->solid), 1, &area);
-  const double mu = c->config.virtual_mass * c->config.rho * c->h * area * l[0] / (-p[0] * e->dt);
-  *limit = bw_coupler__relaxation_limit(MEMORY, l, mu);
+  const double virtual_mass = c->config.predictor ? 0.0 : c->config.virtual_mass;
+  const double mu = virtual_mass * c->config.rho * c->h * area * l[0] / (-p[0] * e->dt);
+  *limit = bw_coupler__relaxation_limit(MEMORY, l, mu, c->config.predictor ? 0.5 : 0.0);
   *sum = 0.0;
   for (int k = 0; k < LATE; k++)
     *sum += l[k];
@@ -251,6 +254,7 @@ static bw_status run_coupled(experiment *e, double w, double speed, double squar
     bw_coupler__marker_velocity(c, c->marker_V);
     c->markers_moved = true;
     if (c->block > 1) BW_TRY(bw_coupler__blocks_follow(c));
+    BW_TRY(bw_coupler__predict(c, e->dt));
     BW_TRY(bw_coupler__advance_fluid(c, e->dt));
     BW_TRY(bw_coupler__load_solid(c, e->dt, w));
     BW_TRY(bw_coupler__advance_solid(c, e->dt, w));
@@ -305,7 +309,7 @@ static bw_status experiment_run(experiment *e, bw_coupler_limit *out)
   }
   /* What neither shape knows: down by halves from twice what would be taken at most. */
   bool holds = false;
-  double w = fmin(out->relaxation, BW_COUPLER__MOST / BW_COUPLER__MARGIN);
+  double w = fmin(out->relaxation, bw_coupler__most(e->c) / BW_COUPLER__MARGIN);
   for (int halves = 0; halves < 8 && !holds; halves++) {
     BW_TRY(try_relaxation(e, w, &holds));
     if (!holds) out->relaxation = w *= 0.5;
@@ -329,6 +333,7 @@ bw_status bw_coupler_find_limit(bw_coupler *c, double dt, bw_coupler_limit *out)
     if (st == BW_ECFL || st == BW_EDIVERGED) st = BW_OK;
     BW_THEN(st, bw_coupler__state_restore(c, &e.start));
     memcpy(c->marker_V, e.V0, 3 * c->n_surface * sizeof *e.V0);
+    if (st == BW_OK) bw_coupler__know_motion(c); /* velocities of now, too */
     if (st == BW_OK && c->block > 1) st = bw_coupler__blocks_follow(c);
     c->markers_moved = true;
     c->stepped = stepped;

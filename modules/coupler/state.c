@@ -13,6 +13,7 @@ static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "soli
 static const char more_work_name[] = "solid/work_of_load";
 static const char film_name[] = "solid/film_edge", film_work_name[] = "solid/work_of_films";
 static const char brought_name[] = "solid/film_brought";
+static const char felt_name[] = "solid/load_felt";
 static const char choice_name[] = "solid/relaxation_chosen";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
@@ -25,6 +26,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->bits);
   bw_release(&s->V_before);
   bw_release(&s->F);
+  bw_release(&s->felt);
   bw_release(&s->M);
   bw_release(&s->bodies);
   bw_release(&s->edge);
@@ -40,6 +42,21 @@ static void list_fields(const bw_coupler *c, bw_real *field[N_FIELDS])
   field[3] = bw_ns_channel_pressure(c->fluid);
 }
 
+bw_status bw_coupler__state_create_solid(const bw_coupler *c, bw_coupler__state *s)
+{
+  BW_TRY(BW_ALLOCATE(&s->rows, bw_solid_restart_row(c->solid) * c->n));
+  BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
+  BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
+  if (c->felt != NULL) BW_TRY(BW_ALLOCATE(&s->felt, 3 * c->n));
+  BW_TRY(bw_coupler__joined_room(c, &s->bodies));
+  if (c->films != NULL) {
+    BW_TRY(BW_ALLOCATE(&s->edge, c->n));
+    BW_TRY(BW_ALLOCATE(&s->carried, c->n));
+  }
+  return BW_ALLOCATE(&s->M, 3 * c->n);
+}
+
 bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
 {
   bw_real *field[N_FIELDS];
@@ -47,16 +64,24 @@ bw_status bw_coupler__state_create(const bw_coupler *c, bw_coupler__state *s)
   /* In two dimensions there is no w. */
   for (int q = 0; q < N_FIELDS; q++)
     if (field[q] != NULL) BW_TRY(bw_field_create(bw_ns_channel_grid(c->fluid), &s->field[q]));
-  BW_TRY(BW_ALLOCATE(&s->rows, bw_solid_restart_row(c->solid) * c->n));
-  BW_TRY(BW_ALLOCATE(&s->bits, c->n * bw_solid_bits_bytes(c->solid)));
-  BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
-  BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
-  BW_TRY(bw_coupler__joined_room(c, &s->bodies));
+  return bw_coupler__state_create_solid(c, s);
+}
+
+void bw_coupler__state_capture_solid(const bw_coupler *c, bw_coupler__state *s)
+{
+  /* Motion and ledger as its restart wants them, and which bonds hold. */
+  bw_solid_get_restart(c->solid, s->rows, s->sums);
+  bw_solid_get_bits(c->solid, s->bits);
+  /* The relaxed load and the velocity before belong to the state: both act in the next step. */
+  memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
+  memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
+  memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
+  if (c->felt != NULL) memcpy(s->felt, c->felt, 3 * c->n * sizeof *s->felt);
+  bw_coupler__joined_capture(c, s->bodies);
   if (c->films != NULL) {
-    BW_TRY(BW_ALLOCATE(&s->edge, c->n));
-    BW_TRY(BW_ALLOCATE(&s->carried, c->n));
+    memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
+    memcpy(s->carried, bw_coupler__solid_films_carried(c), c->n * sizeof *s->carried);
   }
-  return BW_ALLOCATE(&s->M, 3 * c->n);
 }
 
 void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
@@ -70,23 +95,12 @@ void bw_coupler__state_capture(const bw_coupler *c, bw_coupler__state *s)
   /* What else the fluid goes on from: time, and the gradient of a constant flow rate. */
   s->fluid_numbers[0] = bw_ns_channel_time(c->fluid);
   s->fluid_numbers[1] = bw_ns_channel_gradient(c->fluid);
-  /* The solid: motion and ledger as its restart wants them, and which bonds hold. */
-  bw_solid_get_restart(c->solid, s->rows, s->sums);
   /* Work is kept as the sum of all ranks, which a restart may divide otherwise. */
   const double work[BW_COUPLER__WORKS] = {c->work.given, c->work.late, c->work.loaded,
                                           c->work.received, c->work.film};
   memcpy(s->work, work, sizeof work);
   bw_comm_sum(bw_solid_comm(c->solid), BW_COUPLER__WORKS, s->work);
-  bw_solid_get_bits(c->solid, s->bits);
-  /* The relaxed load and the velocity before belong to the state: both act in the next step. */
-  memcpy(s->V_before, c->V_before, 3 * c->n * sizeof *s->V_before);
-  memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
-  memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
-  bw_coupler__joined_capture(c, s->bodies);
-  if (c->films != NULL) {
-    memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
-    memcpy(s->carried, bw_coupler__solid_films_carried(c), c->n * sizeof *s->carried);
-  }
+  bw_coupler__state_capture_solid(c, s);
   bw_coupler__get_choice(c, s->choice);
   s->filled = true;
 }
@@ -151,6 +165,8 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, load_name, total, c->n, id, 3, BW_CK_DOUBLE, s->F));
+  if (c->felt != NULL)
+    BW_TRY(bw_checkpoint_put_table(ck, felt_name, total, c->n, id, 3, BW_CK_DOUBLE, s->felt));
   BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   if (c->films != NULL) {
     BW_TRY(bw_checkpoint_put_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
@@ -190,6 +206,10 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
                                  BW_CK_DOUBLE, s->F));
   for (size_t i = 0; old && i < 3 * c->n; i++)
     s->F[i] *= 1.0 - c->config.load_relaxation;
+  /* Files of runs without a predictor tell the load but for what is new in a step. */
+  if (c->felt != NULL) memcpy(s->felt, s->F, 3 * c->n * sizeof *s->felt);
+  if (c->felt != NULL && bw_checkpoint_has(ck, felt_name))
+    BW_TRY(bw_checkpoint_get_table(ck, felt_name, total, c->n, id, 3, BW_CK_DOUBLE, s->felt));
   /* Files from before the memory go on without: it fills within some steps. */
   memset(s->M, 0, 3 * c->n * sizeof *s->M);
   if (bw_checkpoint_has(ck, memory_name))
@@ -210,6 +230,22 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
                                  (int)bw_solid_bits_bytes(c->solid), BW_CK_UINT8, s->bits);
 }
 
+bw_status bw_coupler__state_restore_solid(bw_coupler *c, const bw_coupler__state *s)
+{
+  /* The solid goes on to the same bits; the load that acts on it is part of what follows. */
+  BW_TRY(bw_solid_set_bits(c->solid, s->bits));
+  BW_TRY(bw_solid_set_restart(c->solid, s->rows, s->sums));
+  memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
+  memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
+  memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
+  if (c->felt != NULL) memcpy(c->felt, s->felt, 3 * c->n * sizeof *s->felt);
+  if (c->films != NULL) {
+    memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
+    memcpy(bw_coupler__solid_films_carried(c), s->carried, c->n * sizeof *s->carried);
+  }
+  return bw_coupler__joined_restore(c, bw_ns_channel_time(c->fluid), s->bodies);
+}
+
 bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
 {
   const bw_grid_view *g = bw_grid_look(bw_ns_channel_grid(c->fluid));
@@ -223,17 +259,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s)
   bw_ns_channel_refresh(c->fluid);
   /* Nothing that was derived from the other state may be used. */
   c->p_mean_known = c->stepped = c->motion_known = false;
-  /* The solid goes on to the same bits; the load that acts on it is part of what follows. */
-  BW_TRY(bw_solid_set_bits(c->solid, s->bits));
-  BW_TRY(bw_solid_set_restart(c->solid, s->rows, s->sums));
-  memcpy(c->V_before, s->V_before, 3 * c->n * sizeof *s->V_before);
-  memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
-  memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
-  if (c->films != NULL) {
-    memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
-    memcpy(bw_coupler__solid_films_carried(c), s->carried, c->n * sizeof *s->carried);
-  }
-  return bw_coupler__joined_restore(c, s->fluid_numbers[0], s->bodies);
+  return bw_coupler__state_restore_solid(c, s);
 }
 
 bw_status bw_coupler_save(bw_coupler *c, bw_checkpoint *ck)

@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <string.h>
 
 static double substeps(const bw_coupler *c, double dt)
 {
@@ -132,6 +133,8 @@ bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation)
   bw_coupler__free_inside(c, dt);
   /* F' <- (1 - w) F' + w F against the added mass (bw_coupler.h). */
   bw_coupler__relax_load(c, dt, relaxation);
+  /* The surface's acceleration over the step to come will be told from it. */
+  memcpy(c->V_before, c->V, 3 * c->n * sizeof *c->V_before);
   /* With weight and buoyancy: from here on the solid knows its load. */
   bw_coupler__push_solid(c);
   if (c->floats != NULL) BW_THEN(st, bw_coupler__rigid_find_load(c->floats, dt));
@@ -147,8 +150,6 @@ bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation)
   BW_TRY(bw_coupler_check_substeps(c, dt));
   bw_status st = BW_OK;
   bw_timer_start(c->timer, BW_PART_SOLID);
-  /* The surface's acceleration over the step will be told from it. */
-  bw_solid_get_velocity(c->solid, c->V_before);
   BW_THEN(st, bw_coupler__resist(c, dt, relaxation));
   for (int q = 0; q < n && c->floats == NULL; q++)
     BW_THEN(st, bw_coupler__step_solid(c, dt / n));
@@ -206,6 +207,7 @@ static bw_status step(bw_coupler *c, double dt)
     /* The same phases, repeated until both sides agree. */
     BW_TRY(bw_coupler__iterate(c, dt));
   } else {
+    BW_TRY(bw_coupler__predict(c, dt));       /* how the surface will move */
     BW_TRY(bw_coupler__advance_fluid(c, dt)); /* u, p at t + dt around the solid at t */
     const double w = c->config.load_relaxation;
     BW_TRY(bw_coupler__load_solid(c, dt, w));    /* stress of the new flow */

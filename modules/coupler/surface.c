@@ -210,13 +210,13 @@ void bw_coupler__count_work(bw_coupler *c, double dt)
     c->work.given += dt * c->force[q] * c->marker_V[q];
 }
 
-/* Power of the load that the particles do not feel in this step, as they move at its beginning. */
-static double power_held_back(bw_coupler *c)
+/* Power of the load that the particles do not feel in this step, as the fluid was told they move.
+ */
+static double power_held_back(const bw_coupler *c)
 {
-  double *V = c->X, sum = 0.0;
-  bw_solid_get_velocity(c->solid, V);
+  double sum = 0.0;
   for (size_t i = 0; i < 3 * c->n; i++)
-    sum += (c->load[i] - bw_solid_volume_of(c->solid, i / 3) * c->F[i]) * V[i];
+    sum += (c->load[i] - bw_solid_volume_of(c->solid, i / 3) * c->F[i]) * c->V[i];
   return sum;
 }
 

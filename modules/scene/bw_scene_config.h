@@ -247,6 +247,7 @@ typedef struct {
   double marker_spacing;    /* over the grid spacing [-] */
   double probe_length;      /* over the grid spacing [-] */
   double load_relaxation;   /* of the load, w [-]; NaN: chosen (bw_coupler.h) */
+  bool predictor;           /* does the fluid know how the solids would move, bw_coupler.h? */
   double virtual_mass;      /* of bodies in a flow, see bw_coupler.h and bw_coupler_rigid.h [-] */
   double contact_stiffness; /* of rigid bodies, see bw_rigid.h [M/(L^2 T^2)]; NaN: by the energy
                                that gravity and velocities bring */

@@ -42,6 +42,7 @@ bw_status bw_scene__coupled_create(bw_scene *s)
   c.load = (bw_coupler_load_kind)n->load;
   c.load_relaxation = n->load_relaxation;
   c.check_relaxation = true;
+  c.predictor = n->predictor;
   c.virtual_mass = n->virtual_mass;
   c.coupling_iterations = n->coupling_iterations;
   c.coupling_residual = n->coupling_residual;

@@ -196,6 +196,9 @@ static void set_families(bw_scene_config *c)
 void bw_scene_resolve(bw_scene_config *c)
 {
   set_families(c);
+  /* The one in place of the other: who asks for a predictor does not repeat steps. */
+  if (c->numerics.predictor && c->numerics.coupling_iterations == INT_MIN)
+    c->numerics.coupling_iterations = 1;
   for (int q = 0; q < KNOBS; q++)
     if (knobs[q].of >= OF_ALL || bw_scene__has_particles(c))
       set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);

@@ -99,6 +99,9 @@ const bw_config_field bw_scene__numerics_fields[] = {
     V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "length of the normal probes"),
     V(OURS, load_relaxation, BW_OPTIONAL, BW_ABOVE_TO(0, 1), "",
       "share of the new load of the fluid in each step; left out: chosen by what is measured"),
+    V(OURS, predictor, BW_OPTIONAL, BW_ANY, "",
+      "tell the fluid how the solids would move in the step under their last load, by their "
+      "sub-steps once more"),
     V(OURS, virtual_mass, BW_OPTIONAL, BW_AT_LEAST(0), "",
       "of bodies in a flow, over that of the fluid they carry along"),
     V(OURS, contact_stiffness, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L2 T2)",

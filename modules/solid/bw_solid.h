@@ -159,6 +159,7 @@ bw_status bw_solid_precrack(bw_solid *solid, const double a[3], const double b[3
 /* Whether bonds beyond their limit break at the end of a step; at first they do. The same on all
  * ranks. Local. */
 void bw_solid_enable_breakage(bw_solid *solid, bool on);
+bool bw_solid_breaks(const bw_solid *solid); /* is it on? Local. */
 
 /* New coefficients of damping, units and meaning as in bw_solid_config; dt_max follows. The same on
  * all ranks. Local. */

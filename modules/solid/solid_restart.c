@@ -29,11 +29,13 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
 {
   bw_pd_body *pd = s->body;
   const size_t bytes = bw_solid_bits_bytes(s);
+  bool changed = false;
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     pd->bonds.block[b].broken = false;
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
       bw_pd_slot *slot = &pd->bonds.slot[q];
       /* A bond that never was cannot come to hold. */
+      const uint8_t before = slot->mask;
       slot->mask = 0;
       for (int lane = 0; lane < BW_PD_LANES; lane++) {
         if (!(slot->family >> lane & 1)) continue;
@@ -41,10 +43,12 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
         const int d = slot->direction;
         if (bits[h * bytes + (size_t)d / 8] >> d % 8 & 1) slot->mask |= (uint8_t)(1u << lane);
       }
+      changed = changed || slot->mask != before;
       /* Contact looks for broken bonds in these blocks. */
       if (slot->mask != slot->family) pd->bonds.block[b].broken = true;
     }
   }
+  if (!changed) return BW_OK;
   /* Whoever keeps lists of bonds makes them anew; forces given by a restart stay. */
   pd->bonds.events++;
   if (s->contact != NULL) bw_pd_contact_recheck(s->contact);

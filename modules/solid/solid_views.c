@@ -8,6 +8,11 @@ void bw_solid_enable_breakage(bw_solid *s, bool on)
   s->body->breakage = on;
 }
 
+bool bw_solid_breaks(const bw_solid *s)
+{
+  return s->body->breakage;
+}
+
 void bw_solid_set_damping(bw_solid *s, double pair, double mean, double absolute)
 {
   bw_pd_body_set_damping(s->body, pair, mean, absolute);

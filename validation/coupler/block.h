@@ -24,6 +24,7 @@ typedef struct {
   double ratio; /* density of the block over the fluid's */
   double w;     /* load relaxation; NaN: left to the coupler */
   double virtual_mass;
+  bool predictor;
   double dt; /* of the steps to come: says what is stiff */
   bw_coupler_load_kind load;
   double speed;
@@ -127,6 +128,7 @@ static inline bw_status block_create(const bw_comm *comm, const block_set_up *b,
   c.load = b->load;
   c.load_relaxation = b->w;
   c.virtual_mass = b->virtual_mass;
+  c.predictor = b->predictor;
   c.count_work = true;
   c.marker_spacing = b->spacing;
   c.walled[1][0] = b->body == A_PLATE;

@@ -42,7 +42,7 @@ void bw_coupler__book_motion(bw_coupler *c, double dt)
   const bool iterated = c->config.coupling_iterations > 1;
   double *X = c->X, *V = c->scratch[0];
   c->book.missed = c->book.received = 0.0;
-  if (!c->config.check_book && !c->config.count_work) return;
+  if (!c->config.check_book && !c->config.count_work && !c->config.predictor) return;
   bw_solid_get_position(c->solid, X);
   /* The fluid was told the velocity of the beginning; iterated, BW_COUPLER__THETA of the
    * displacement and the rest of the velocity at the end (iterate.c). */
@@ -53,6 +53,7 @@ void bw_coupler__book_motion(bw_coupler *c, double dt)
     const double F = bw_solid_volume_of(c->solid, i / 3) * c->F[i], moved = X[i] - c->book.X[i];
     c->book.missed += share * F * (told[i] * dt - moved);
     c->book.received += F * moved;
+    if (c->lag != NULL) c->lag[i] += moved - told[i] * dt;
   }
 }
 

@@ -152,6 +152,7 @@ static bw_status particle_arrays(bw_coupler *c)
   for (int q = 0; q < N_VECTORS; q++)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
   if (c->config.predictor) BW_TRY(BW_ALLOCATE(&c->felt, 3 * n));
+  if (c->config.predictor) BW_TRY(BW_ALLOCATE(&c->lag, 3 * n));
   BW_TRY(bw_coupler__predictor_create(c));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));
@@ -183,6 +184,7 @@ static void release_particle_arrays(bw_coupler *c)
   bw_release(&c->closed);
   bw_release(&c->id);
   bw_release(&c->felt);
+  bw_release(&c->lag);
   bw_coupler__state_release(&c->predicted);
   bw_coupler__state_release(&c->kept);
   bw_coupler__iteration_release(c);
@@ -199,7 +201,7 @@ static bw_status create_arrays(bw_coupler *c)
 }
 
 /* What a step takes over from the one before, (n,3) each, with the ids of the particles. */
-enum { N_CARRIED = 4 };
+enum { N_CARRIED = 5 };
 typedef struct {
   size_t n;
   int64_t *id;
@@ -208,7 +210,7 @@ typedef struct {
 
 static void list_carried(bw_coupler *c, double **of[N_CARRIED])
 {
-  double **const all[N_CARRIED] = {&c->F, &c->V_before, &c->M, &c->felt};
+  double **const all[N_CARRIED] = {&c->F, &c->V_before, &c->M, &c->felt, &c->lag};
   memcpy(of, all, sizeof all);
 }
 

@@ -37,7 +37,7 @@ typedef struct {
   double sums[BW_SOLID_RESTART_SUMS], work[BW_COUPLER__WORKS]; /* of all ranks */
   uint8_t *bits;                                               /* (n, bits_bytes) */
   double *V_before, *F, *M;                                    /* (n,3) */
-  double *felt;                                                /* (n,3); NULL: no predictor */
+  double *felt, *lag;                                          /* (n,3); NULL: no predictor */
   double *bodies;                                              /* joined.c; NULL: none */
   double *edge, *carried; /* (n) of films: pressure at edges, volume brought; NULL: no films */
   double choice[BW_COUPLER__CHOICE];
@@ -110,9 +110,11 @@ struct bw_coupler {
   int64_t *id;      /* (n) theirs */
   int64_t revision; /* of the solid that the arrays below are for */
   double h;         /* grid spacing [L] */
-  double *F;    /* (n,3) load on particles during a step, else what it takes over [M/(L^2 T^2)] */
-  double *felt; /* (n,3) load of the last step [M/(L^2 T^2)]; NULL: no predictor */
-  double *M;    /* (n,3) memory of the particles' markers [L^4/T^2] */
+  double *F; /* (n,3) load on particles during a step, else what it takes over [M/(L^2 T^2)] */
+  /* (n,3) load of the last step [M/(L^2 T^2)]; by how much the particles are ahead of what the
+   * fluid was told [L]; NULL: no predictor */
+  double *felt, *lag;
+  double *M;               /* (n,3) memory of the particles' markers [L^4/T^2] */
   uint16_t *broken;        /* (n) broken bonds of each particle ... */
   int64_t events;          /* ... when the solid had counted so many */
   double *V, *V_before;    /* (n,3) velocity now, or what the markers are told; the step before */
@@ -256,6 +258,7 @@ bw_status bw_coupler__state_restore(bw_coupler *c, const bw_coupler__state *s) B
 bw_status bw_coupler__advance_fluid(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__load_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
 bw_status bw_coupler__advance_solid(bw_coupler *c, double dt, double relaxation) BW_MUST_CHECK;
+#define BW_COUPLER__CATCH_UP 0.2 /* of the lag, in a step */
 /* predictor.c: room for it (Local); with one, the markers of the step to come move as the solid
  * would under the load that it felt last (Collective). */
 bw_status bw_coupler__predictor_create(bw_coupler *c) BW_MUST_CHECK;
@@ -281,13 +284,13 @@ bw_status bw_coupler__iterate(bw_coupler *c, double dt) BW_MUST_CHECK;
 bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);
 
-/* Stability (stability.c, relaxation.c). Does the recurrence b_{k+1} = y_k + lead (y_k - y_{k-1})
- * with y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which
+/* Stability (stability.c, relaxation.c). Does the recurrence of b_{k+1} = y_k, or with a predictor
+ * what that makes of it, and y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which
  * it does, with a virtual mass of w mu times what resists. Pure. */
 #define BW_COUPLER__MARGIN 0.5                /* of the limit, which is taken ... */
 double bw_coupler__most(const bw_coupler *c); /* ... up to this */
-bool bw_coupler__relaxation_holds(int n, const double lambda[], double w, double lead);
-double bw_coupler__relaxation_limit(int n, const double lambda[], double mu, double lead);
+bool bw_coupler__relaxation_holds(int n, const double lambda[], double w, bool predictor);
+double bw_coupler__relaxation_limit(int n, const double lambda[], double mu, bool predictor);
 /* Before an explicit step of dt: finds what holds where that is asked for and not known, and sets
  * what was left open. Collective. */
 bw_status bw_coupler__choose(bw_coupler *c, double dt) BW_MUST_CHECK;

@@ -7,9 +7,8 @@
  *   b_{n+1} = y_n,   y_n = (1 - W) y_{n-1} - W sum_k S_k b_{n-k},   W = w E,
  * where the virtual mass m_v = w mu m (bw_coupler.h) lets the share E = (1 - exp(-w mu))/(w mu) of
  * a load through in its own step, and owes the rest, so that it acts like a smaller w:
- * W = (1 - exp(-w mu))/mu. Told the mean velocity of the step the fluid sees
- * b_{n+1} = 3/2 y_n - 1/2 y_{n-1}, and there is no virtual mass (predictor.c). Held in one mode,
- * S_k = lambda_k: numbers. The trial b_n = z^n, of the first form, gives
+ * W = (1 - exp(-w mu))/mu. With a predictor there is none, and the fluid is told another b
+ * (predictor.c). Held in one mode, S_k = lambda_k: numbers. The trial b_n = z^n, without one, gives
  *   (z - 1 + W) + W sum_k lambda_k z^-k = 0,
  * whose roots have to stay inside the unit circle. All of it in the first step leaves it at z = -1,
  * W = 2/(1 + lambda_0); a late answer leaves it earlier, as a slow swing. An elastic mode of
@@ -226,7 +225,7 @@ static bw_status limit_of_shape(experiment *e, int steps, int tries, double *lim
   bw_comm_sum(bw_solid_comm(c->solid), 1, &area);
   const double virtual_mass = c->config.predictor ? 0.0 : c->config.virtual_mass;
   const double mu = virtual_mass * c->config.rho * c->h * area * l[0] / (-p[0] * e->dt);
-  *limit = bw_coupler__relaxation_limit(MEMORY, l, mu, c->config.predictor ? 0.5 : 0.0);
+  *limit = bw_coupler__relaxation_limit(MEMORY, l, mu, c->config.predictor);
   *sum = 0.0;
   for (int k = 0; k < LATE; k++)
     *sum += l[k];

@@ -13,7 +13,7 @@ static const char memory_name[] = "solid/memory_of_forcing", body_name[] = "soli
 static const char more_work_name[] = "solid/work_of_load";
 static const char film_name[] = "solid/film_edge", film_work_name[] = "solid/work_of_films";
 static const char brought_name[] = "solid/film_brought";
-static const char felt_name[] = "solid/load_felt";
+static const char felt_name[] = "solid/load_felt", lag_name[] = "solid/ahead_of_told";
 static const char choice_name[] = "solid/relaxation_chosen";
 static const char load_name[] = "solid/load_carried_over", old_load_name[] = "solid/load";
 static const char *const field_name[N_FIELDS] = {"fluid/u", "fluid/v", "fluid/w", "fluid/p"};
@@ -27,6 +27,7 @@ void bw_coupler__state_release(bw_coupler__state *s)
   bw_release(&s->V_before);
   bw_release(&s->F);
   bw_release(&s->felt);
+  bw_release(&s->lag);
   bw_release(&s->M);
   bw_release(&s->bodies);
   bw_release(&s->edge);
@@ -49,6 +50,7 @@ bw_status bw_coupler__state_create_solid(const bw_coupler *c, bw_coupler__state 
   BW_TRY(BW_ALLOCATE(&s->V_before, 3 * c->n));
   BW_TRY(BW_ALLOCATE(&s->F, 3 * c->n));
   if (c->felt != NULL) BW_TRY(BW_ALLOCATE(&s->felt, 3 * c->n));
+  if (c->lag != NULL) BW_TRY(BW_ALLOCATE(&s->lag, 3 * c->n));
   BW_TRY(bw_coupler__joined_room(c, &s->bodies));
   if (c->films != NULL) {
     BW_TRY(BW_ALLOCATE(&s->edge, c->n));
@@ -77,6 +79,7 @@ void bw_coupler__state_capture_solid(const bw_coupler *c, bw_coupler__state *s)
   memcpy(s->F, c->F, 3 * c->n * sizeof *s->F);
   memcpy(s->M, c->M, 3 * c->n * sizeof *s->M);
   if (c->felt != NULL) memcpy(s->felt, c->felt, 3 * c->n * sizeof *s->felt);
+  if (c->lag != NULL) memcpy(s->lag, c->lag, 3 * c->n * sizeof *s->lag);
   bw_coupler__joined_capture(c, s->bodies);
   if (c->films != NULL) {
     memcpy(s->edge, bw_coupler__solid_films_edge(c), c->n * sizeof *s->edge);
@@ -165,8 +168,10 @@ static bw_status write_state(const bw_coupler *c, const bw_coupler__state *s, bw
   BW_TRY(
       bw_checkpoint_put_table(ck, "solid/V_before", total, c->n, id, 3, BW_CK_DOUBLE, s->V_before));
   BW_TRY(bw_checkpoint_put_table(ck, load_name, total, c->n, id, 3, BW_CK_DOUBLE, s->F));
-  if (c->felt != NULL)
+  if (c->config.predictor) {
     BW_TRY(bw_checkpoint_put_table(ck, felt_name, total, c->n, id, 3, BW_CK_DOUBLE, s->felt));
+    BW_TRY(bw_checkpoint_put_table(ck, lag_name, total, c->n, id, 3, BW_CK_DOUBLE, s->lag));
+  }
   BW_TRY(bw_checkpoint_put_table(ck, memory_name, total, c->n, id, 3, BW_CK_DOUBLE, s->M));
   if (c->films != NULL) {
     BW_TRY(bw_checkpoint_put_table(ck, film_name, total, c->n, id, 1, BW_CK_DOUBLE, s->edge));
@@ -208,8 +213,11 @@ static bw_status read_state(const bw_coupler *c, bw_coupler__state *s, bw_checkp
     s->F[i] *= 1.0 - c->config.load_relaxation;
   /* Files of runs without a predictor tell the load but for what is new in a step. */
   if (c->felt != NULL) memcpy(s->felt, s->F, 3 * c->n * sizeof *s->felt);
-  if (c->felt != NULL && bw_checkpoint_has(ck, felt_name))
+  if (c->lag != NULL) memset(s->lag, 0, 3 * c->n * sizeof *s->lag);
+  if (c->config.predictor && bw_checkpoint_has(ck, felt_name)) {
     BW_TRY(bw_checkpoint_get_table(ck, felt_name, total, c->n, id, 3, BW_CK_DOUBLE, s->felt));
+    BW_TRY(bw_checkpoint_get_table(ck, lag_name, total, c->n, id, 3, BW_CK_DOUBLE, s->lag));
+  }
   /* Files from before the memory go on without: it fills within some steps. */
   memset(s->M, 0, 3 * c->n * sizeof *s->M);
   if (bw_checkpoint_has(ck, memory_name))
@@ -239,6 +247,7 @@ bw_status bw_coupler__state_restore_solid(bw_coupler *c, const bw_coupler__state
   memcpy(c->F, s->F, 3 * c->n * sizeof *s->F);
   memcpy(c->M, s->M, 3 * c->n * sizeof *s->M);
   if (c->felt != NULL) memcpy(c->felt, s->felt, 3 * c->n * sizeof *s->felt);
+  if (c->lag != NULL) memcpy(c->lag, s->lag, 3 * c->n * sizeof *s->lag);
   if (c->films != NULL) {
     memcpy(bw_coupler__solid_films_edge(c), s->edge, c->n * sizeof *s->edge);
     memcpy(bw_coupler__solid_films_carried(c), s->carried, c->n * sizeof *s->carried);

@@ -194,18 +194,19 @@ static void swing(double F, double omega2, int K, double *x, double *v)
 /* The recurrence: the oscillator with the load that the coupler would bring. */
 static double foresee(const double g[MEMORY], double omega2, int K, bool predictor)
 {
-  double x = 0.0, v = SPEED, F = 0.0, told = 0.0, jump[STEPS]; /* of what the fluid is told */
+  double x = 0.0, v = SPEED, F = 0.0, lag = 0.0, told = 0.0, jump[STEPS]; /* of what is told */
   windows w = {0.0, 0.0};
   for (int n = 0; n < STEPS; n++) {
     double sum = 0.0, X = x, V = v;
     swing(F, omega2, K, &X, &V);
-    const double now = predictor ? (X - x) / DT : v;
+    const double now = predictor ? (X - x + 0.2 * lag) / DT : v, before = x;
     jump[n] = now - told;
     told = now;
     for (int k = 0; k < MEMORY && k <= n; k++)
       sum += g[k] * jump[n - k];
     F = (1.0 - W) * F - W * sum / DT;
     swing(F, omega2, K, &x, &v);
+    lag += x - before - now * DT;
     look(&w, n, 0.5 * (v * v + omega2 * x * x));
   }
   return growth(&w);

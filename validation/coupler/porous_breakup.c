@@ -17,8 +17,10 @@
  *                solid, before it breaks: 1 %, the requirement. The load rises within
  *                dt/w = 1 ms, the medium's own time, so that given over received alone is 1.055
  *                (were the medium fast against it, it would be 2: F x against F x/2).
- *                While it breaks (work_breaking): reported. Undamped waves of the lattice are
- *                shorter than the step, and markers move at the velocity of its beginning.
+ * book_breaking  the same while it breaks, of the energy that the medium holds then: 2 %, the
+ *                requirement. Undamped waves of the lattice are shorter than the step; the fluid is
+ *                told the mean velocity of the step, which differs from the true one by what the
+ *                load's change does. (Told the velocity at its beginning it missed 7 to 9 %.)
  * broken_bond_fraction, fragments   no numbers in POROUS, where S1 stays whole: reported.
  * BUILD modules=coupler,shape,solid_tools case=porous_breakup
  * TEST  ranks=1 timeout=7200 */
@@ -99,7 +101,9 @@ static void rows(bw_validation *v, const char *run, const porous_config *q, cons
       "momentum of a box around the medium");
   row(v, run, "work", (rest[COL_GIVEN] - rest[COL_LATE]) / rest[COL_EXTERNAL], 1.0, 0.01,
       BW_CONSERVATION, "Newton's third law");
-  row(v, run, "work_breaking", (last[COL_GIVEN] - last[COL_LATE]) / last[COL_EXTERNAL], 1.0, none,
+  const double missed = last[COL_GIVEN] - last[COL_LATE] - last[COL_EXTERNAL] -
+                        (rest[COL_GIVEN] - rest[COL_LATE] - rest[COL_EXTERNAL]);
+  row(v, run, "book_breaking", missed / (last[COL_KINETIC] + last[COL_ELASTIC]), 0.0, 0.02,
       BW_CONSERVATION, "Newton's third law");
   row(v, run, "broken_bond_fraction", last[COL_BROKEN_FRACTION], 0.0, none, BW_PUBLISHED,
       "POROUS: S1 stays whole");

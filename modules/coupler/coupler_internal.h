@@ -285,8 +285,8 @@ bw_status bw_coupler__iteration_create(bw_coupler *c) BW_MUST_CHECK; /* Local */
 void bw_coupler__iteration_release(bw_coupler *c);
 
 /* Stability (stability.c, relaxation.c). Does the recurrence of b_{k+1} = y_k, or with a predictor
- * what that makes of it, and y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest relaxation below which
- * it does, with a virtual mass of w mu times what resists. Pure. */
+ * what that makes of it, and y_k = (1 - w) y_{k-1} - w sum_q lambda_q b_{k-q} decay? The largest
+ * relaxation below which it does, with a virtual mass of w mu times what resists. Pure. */
 #define BW_COUPLER__MARGIN 0.5                /* of the limit, which is taken ... */
 double bw_coupler__most(const bw_coupler *c); /* ... up to this */
 bool bw_coupler__relaxation_holds(int n, const double lambda[], double w, bool predictor);

@@ -2,25 +2,25 @@
  * "Motions faster than the step"): with a predictor the mean velocity that the solid would have
  * under the load that it felt last.
  *
- * The solid goes through its sub-steps without breaking, under F'_{n-1} and its weight, to X_p, and
- * is put back. The fluid is told U_n = (X_p - X_n + CATCH_UP lag)/dt, where lag is by how much the
- * surface is ahead of what the fluid was told until then: lag += X_{n+1} - X_n - U_n dt. So told
- * and true motion do not drift apart, which the response of what is stiff to each change of the
- * load would add up to. Within a step they differ by the load's change alone, F'_n - F'_{n-1} =
- * w (F_n - F'_{n-1}): the work that comes from nowhere, sum F'.(U dt - dX) (book.c), is of the order
- * of w dt^2, whatever waves the lattice has, while a sample of the velocity is off by dt/2 of the
- * acceleration.
+ * The solid goes through its sub-steps without breaking, under F'_{n-1} and its weight, to X_p,
+ * and is put back. The fluid is told U_n = (X_p - X_n + CATCH_UP lag)/dt, where lag is by how much
+ * the surface is ahead of what the fluid was told until then: lag += X_{n+1} - X_n - U_n dt. So
+ * told and true motion do not drift apart, as what is stiff answers to each change of the load
+ * within a step. Within one they differ by the load's change alone, F'_n - F'_{n-1} =
+ * w (F_n - F'_{n-1}): the work that comes from nowhere, sum F'.(U dt - dX) (book.c), is of the
+ * order of w dt^2, whatever waves the lattice has, while a sample of the velocity is off by dt/2
+ * of the acceleration.
  *
  * A mode of frequency omega, theta = omega dt, with mass m and added mass G, loses for small w
  * w G (1 - cos theta)/(theta^2 m) of its amplitude a step, at every theta: in bw_coupler.h's growth
  * the mean in place of the sample at the beginning turns the load by theta/2 and takes
- * sin(theta/2)/(theta/2) of it. No mode is fed, and the virtual mass has nothing to cure: it is left
- * out.
+ * sin(theta/2)/(theta/2) of it. No mode is fed, and the virtual mass has nothing to cure: it is
+ * left out.
  *
  * A body without waves changes its velocity by y_n in step n, and the fluid is told changes of
- * b_{n+1} = 3/2 y_n - 1/2 y_{n-1} + CATCH_UP (l_{n+1} - l_n), l_{n+1} = (1 - CATCH_UP) l_n
- * + 1/2 (y_n - y_{n-1}): what swings with the step meets 2 + 2 CATCH_UP/(2 - CATCH_UP) times the added
- * mass (relaxation.c), and light bodies hold less w. */
+ * b_{n+1} = 3/2 y_n - 1/2 y_{n-1} + CATCH_UP (l_{n+1} - l_n) with l_{n+1} = (1 - CATCH_UP) l_n
+ * + 1/2 (y_n - y_{n-1}): what swings with the step meets 2 + 2 CATCH_UP/(2 - CATCH_UP) times the
+ * added mass (relaxation.c), and light bodies hold less w. */
 #include "coupler_internal.h"
 #include "rigid_joined.h"
 

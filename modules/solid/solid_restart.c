@@ -29,7 +29,7 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
 {
   bw_pd_body *pd = s->body;
   const size_t bytes = bw_solid_bits_bytes(s);
-  bool changed = false;
+  int64_t changed = 0;
   for (size_t b = 0; b < pd->bonds.n_block; b++) {
     pd->bonds.block[b].broken = false;
     for (uint32_t q = pd->bonds.block[b].slot; q < pd->bonds.block[b + 1].slot; q++) {
@@ -43,12 +43,14 @@ bw_status bw_solid_set_bits(bw_solid *s, const uint8_t bits[])
         const int d = slot->direction;
         if (bits[h * bytes + (size_t)d / 8] >> d % 8 & 1) slot->mask |= (uint8_t)(1u << lane);
       }
-      changed = changed || slot->mask != before;
+      changed |= slot->mask != before;
       /* Contact looks for broken bonds in these blocks. */
       if (slot->mask != slot->family) pd->bonds.block[b].broken = true;
     }
   }
-  if (!changed) return BW_OK;
+  /* Whether forces are those of now is known to all ranks alike. */
+  bw_comm_max_int(pd->comm, 1, &changed);
+  if (changed == 0) return BW_OK;
   /* Whoever keeps lists of bonds makes them anew; forces given by a restart stay. */
   pd->bonds.events++;
   if (s->contact != NULL) bw_pd_contact_recheck(s->contact);

@@ -167,7 +167,8 @@ static void describe_cost(const porous_run *p, const porous_run *small, const po
   /* Sub-steps of the solid dominate. */
   for (int k = 0; k < PHASE_COUNT; k++) {
     const porous_phase *f = porous_phase_of(p->config, k);
-    const int substeps = k == PHASE_FLOW ? 0 : bw_coupler_substeps(small->coupler, f->time_step);
+    const int passes = k == PHASE_FLOW ? 0 : p->config->coupling.predictor ? 2 : 1;
+    const int substeps = passes * bw_coupler_substeps(small->coupler, f->time_step);
     seconds += 1e-9 * f->steps *
                (3.0 * cells_of(p->config) * fluid_ns + (double)substeps * e->bonds * bond_ns);
   }

@@ -7,13 +7,15 @@
 
 enum { STAGES = 3 }; /* of RK3 */
 
-/* Sub-steps of solids in a flow, as the coupler counts them; 1 without a flow. */
+/* Sub-steps of solids in a flow, as the coupler counts them, in a step; 1 without a flow. */
 static double substeps(const bw_scene *s, double dt)
 {
   const bw_scene__solid *q = &s->solid[0];
   if (s->grid == NULL || s->n_solids == 0 || !s->alive) return 1.0;
   const double limit = s->sketched ? q->sample.dt_max : bw_solid_dt_max(q->solid);
-  return fmax(1.0, ceil(dt / (s->config.numerics.solid_share * limit)));
+  /* A predictor goes through them twice. */
+  const double passes = s->config.numerics.predictor ? 2.0 : 1.0;
+  return passes * fmax(1.0, ceil(dt / (s->config.numerics.solid_share * limit)));
 }
 
 static double particles(const bw_scene *s)

@@ -24,6 +24,7 @@ typedef struct {
   int iterations;              /* of the coupling; 1: explicit */
   double tip, frequency;       /* goals of 164 cells */
   bw_coupler_load_kind load;
+  bool predictor; /* explicit steps: does the fluid know the motion to come? */
 } flap_case;
 
 /* A row of the history. */
@@ -160,6 +161,7 @@ static inline bw_status flap_make(const bw_comm *comm, flap *f)
   c.coupling_residual = 1e-3;
   c.coupling_iterations = f->of.iterations;
   c.load = f->of.load;
+  c.predictor = f->of.predictor;
   BW_TRY(bw_coupler_create(&c, f->fluid, f->solid, &f->coupler));
   bw_coupler_hold_solid(f->coupler, false);
   return BW_OK;

@@ -26,8 +26,8 @@
  * Forms      quick: FSI1 with 41 cells over the height of the channel, for 6 s. --full: all cases
  *            with 82 cells, for hours; it goes on where it was stopped (turek_hron-CASE-CELLS.h5
  *            beside the rows, removed when all is done). BW_TUREK_HRON=fsi3:123 in the environment:
- *            that alone; fsi3:123:reaction, :explicit: loaded by the reaction, not iterated
- *            (nothing claimed).
+ *            that alone; fsi3:123:reaction, :explicit, :predictor: loaded by the reaction, not
+ *            iterated, neither but with a predictor (nothing claimed).
  * BUILD modules=coupler,shape,checkpoint
  * TEST  ranks=1 timeout=36000 */
 #include "bw_validation.h"
@@ -38,9 +38,9 @@
 enum { PERIODS = 10 };
 
 static const flap_case CASES[] = {
-    {"fsi1", 0.2, 1e4, 1.4e6, 4e-3, 0.0, 15.0, 0.0, 1, 0.03, INFINITY, BW_LOAD_PROBES},
-    {"fsi2", 1.0, 1e4, 1.4e6, 1.6e-3, 2.0, 18.0, 12.0, 50, 0.05, 0.02, BW_LOAD_PROBES},
-    {"fsi3", 2.0, 1e3, 5.6e6, 8e-4, 2.0, 7.0, 5.5, 50, 0.03, 0.01, BW_LOAD_PROBES}};
+    {"fsi1", 0.2, 1e4, 1.4e6, 4e-3, 0.0, 15.0, 0.0, 1, 0.03, INFINITY, BW_LOAD_PROBES, false},
+    {"fsi2", 1.0, 1e4, 1.4e6, 1.6e-3, 2.0, 18.0, 12.0, 50, 0.05, 0.02, BW_LOAD_PROBES, false},
+    {"fsi3", 2.0, 1e3, 5.6e6, 8e-4, 2.0, 7.0, 5.5, 50, 0.03, 0.01, BW_LOAD_PROBES, false}};
 
 /* Mean and amplitude of one column, over whole periods of the tip; frequency of the tip. */
 typedef struct {
@@ -195,7 +195,8 @@ static bw_status one_run(bw_validation *v, int row, const char *how, int cells,
   name_state(v, &f.of, cells, f.path);
   if (how[0] != '\0') f.of.tip = f.of.frequency = INFINITY;
   if (strcmp(how, "reaction") == 0) f.of.load = BW_LOAD_REACTION;
-  if (strcmp(how, "explicit") == 0) f.of.iterations = 1;
+  f.of.predictor = strcmp(how, "predictor") == 0;
+  if (f.of.predictor || strcmp(how, "explicit") == 0) f.of.iterations = 1;
   bw_status st = flap_make(bw_validation_comm(v), &f);
   BW_THEN(st, flap_march(bw_validation_comm(v), &f, bw_validation_full(v)));
   /* Also of a run that was stopped on the way. */

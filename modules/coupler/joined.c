@@ -26,10 +26,12 @@ bw_status bw_coupler_join(bw_coupler *c, bw_coupler_rigid *bodies, bool contact)
     BW_TRY(bw_coupler__touch_create(c->solid, bw_coupler__rigid_set(bodies), period, &c->touch));
   c->floats = bodies;
   c->inside_known = false;
-  /* The state that iterated steps go back to was made without them. */
-  if (c->config.coupling_iterations == 1) return BW_OK;
-  return bw_comm_agree(bw_solid_comm(c->solid),
-                       bw_coupler__joined_room(c, &c->iteration.start.bodies));
+  /* The states that steps go back to were made without them. */
+  bw_status st = BW_OK;
+  if (c->config.coupling_iterations > 1)
+    st = bw_coupler__joined_room(c, &c->iteration.start.bodies);
+  if (c->config.predictor) BW_THEN(st, bw_coupler__joined_room(c, &c->predicted.bodies));
+  return bw_comm_agree(bw_solid_comm(c->solid), st);
 }
 
 /* ---- state ---- */

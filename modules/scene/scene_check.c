@@ -228,6 +228,10 @@ bw_status bw_scene_check(const bw_scene_config *c)
       "numerics.step_share = %g: with bodies in a flow at most 0.8, as velocities around them "
       "rise within a step when they begin to move",
       c->numerics.step_share);
+  BW_REQUIRE(!c->numerics.predictor || c->numerics.coupling_iterations == 1, BW_EINPUT,
+             "numerics.predictor: steps that are repeated (numerics.coupling_iterations = %d) find "
+             "the motion themselves; leave one of the two out",
+             c->numerics.coupling_iterations);
   BW_TRY(bw_scene__check_fluid(c));
   BW_TRY(bw_scene__check_materials(c));
   for (int b = 0; b < c->n_bodies; b++)

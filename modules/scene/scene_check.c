@@ -3,6 +3,7 @@
 
 #include "bw_ns_channel.h"
 #include "bw_solid.h"
+#include "bw_solid_words.h"
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -234,6 +235,12 @@ bw_status bw_scene_check(const bw_scene_config *c)
              c->numerics.coupling_iterations);
   BW_TRY(bw_scene__check_fluid(c));
   BW_TRY(bw_scene__check_materials(c));
+  BW_REQUIRE(
+      c->numerics.surface_correction == BW_PD_SURFACE_NONE || bw_scene__corrects_surfaces(c),
+      BW_EINPUT,
+      "numerics.surface_correction = %s: it is of bonds; families at faces are whole in laws "
+      "ordinary and correspondence, leave it out",
+      bw_scene__word(bw_solid_correction_words, c->numerics.surface_correction));
   for (int b = 0; b < c->n_bodies; b++)
     BW_TRY(check_name("bodies", c->bodies[b].name));
   for (int q = 0; q < c->n_gauges; q++)

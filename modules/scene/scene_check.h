@@ -18,6 +18,12 @@ bw_status bw_scene__check_gauges(const bw_scene_config *c) BW_MUST_CHECK; /* and
 bw_status bw_scene__check_failure(const bw_scene_config *c,
                                   const bw_scene_gauge_config *g) BW_MUST_CHECK;
 
+/* The material of body b, or the first of those of its parts; NULL: it has none. Laws of all of
+ * them are alike: bonds, or state-based. */
+const bw_scene_material *bw_scene__material_of(const bw_scene_config *c, int b);
+/* Does numerics.surface_correction act on something? Not where all that deforms is of state-based
+ * laws, whose families at faces are whole. */
+bool bw_scene__corrects_surfaces(const bw_scene_config *c);
 /* Do bonds of a material break by their stretch, of a fracture energy? */
 bool bw_scene__breaks_by_stretch(const bw_scene_material *m);
 /* Keys of state-based laws: those that the law of a material reads, and all that it needs. */

@@ -127,8 +127,8 @@ void bw_scene_config_default(bw_scene_config *c)
 }
 
 /* Who reads a knob: a fluid of particles, solids in one (both are set first, where there is one),
- * anybody, solids, bodies in a flow, those that move by it, solids in it. */
-enum { OF_PARTICLES, OF_WETTED, OF_ALL, OF_SOLIDS, OF_MARKERS, OF_MOVING, OF_COUPLING };
+ * anybody, solids, those of bonds, bodies in a flow, those that move by it, solids in it. */
+enum { OF_PARTICLES, OF_WETTED, OF_ALL, OF_SOLIDS, OF_BONDS, OF_MARKERS, OF_MOVING, OF_COUPLING };
 
 /* What `accuracy` sets where the file leaves it open. */
 typedef struct {
@@ -148,7 +148,7 @@ static const knob knobs[] = {
     {D(solid_share), OF_COUPLING, {0.9, 0.8, 0.5}},
     {D(horizon_ratio), OF_SOLIDS, {3.0, 3.0, 3.0}},
     {I(surface_correction),
-     OF_SOLIDS,
+     OF_BONDS,
      {BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR, BW_PD_SURFACE_TENSOR}},
     {I(forcing_iterations), OF_MARKERS, {1, 1, 2}},
     {D(memory), OF_MARKERS, {0.2, 0.2, 0.2}},
@@ -199,6 +199,8 @@ void bw_scene_resolve(bw_scene_config *c)
   /* The one in place of the other: who asks for a predictor does not repeat steps. */
   if (c->numerics.predictor && c->numerics.coupling_iterations == INT_MIN)
     c->numerics.coupling_iterations = 1;
+  int *surface = &c->numerics.surface_correction;
+  if (*surface == INT_MIN && !bw_scene__corrects_surfaces(c)) *surface = BW_PD_SURFACE_NONE;
   for (int q = 0; q < KNOBS; q++)
     if (knobs[q].of >= OF_ALL || bw_scene__has_particles(c))
       set_knob(&knobs[q], c->accuracy, &c->numerics, 1u << q);
@@ -222,6 +224,7 @@ static bool is_read(const bw_scene_config *c, const knob *k)
                        [OF_WETTED] = deforms,
                        [OF_ALL] = true,
                        [OF_SOLIDS] = deforms,
+                       [OF_BONDS] = deforms && bw_scene__corrects_surfaces(c),
                        [OF_MARKERS] = flow && c->n_bodies > 0,
                        [OF_MOVING] = flow && (deforms || bw_scene__any_rigid(c)),
                        [OF_COUPLING] = flow && deforms};

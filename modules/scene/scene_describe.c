@@ -157,6 +157,7 @@ static void warn_of_films(const bw_scene *s, bw_log *log)
 void bw_scene__warn(bw_scene *s, bw_log *log)
 {
   warn_of_films(s, log);
+  bw_scene__warn_solids(s, log);
   for (int b = 0; b < s->config.n_bodies; b++) {
     const bw_scene_body *body = &s->config.bodies[b];
     bw_scene__shapes shapes;
@@ -166,12 +167,7 @@ void bw_scene__warn(bw_scene *s, bw_log *log)
       least = fmin(least, shapes.upper[d] - shapes.lower[d]);
     bw_scene__shapes_release(&shapes);
     if (st != BW_OK) continue;
-    const double cells = least / body->spacing;
-    if (bw_scene__deforms(body) && cells < 3.5)
-      bw_log_warn(log,
-                  "bodies.%s is %.2g particles thick: bending and cracks need four or more; take a "
-                  "smaller spacing",
-                  body->name, cells);
+    if (bw_scene__deforms(body)) bw_scene__warn_layers(s, b, least / body->spacing, log);
     if (s->grid != NULL && least < 7.5 * bw_grid_look(s->grid)->spacing[1] &&
         !bw_scene__deforms(body))
       bw_log_warn(log,

@@ -338,6 +338,10 @@ void bw_scene__sample(bw_scene *s, bool pressure, size_t n, const double x[], do
 
 /* scene_describe.c: warnings of what will be poor. */
 void bw_scene__warn(bw_scene *s, bw_log *log);
+/* scene_warn_solids.c: of a body that is `layers` particles thick; of what its cracks cost beyond
+ * what was measured, and of gauges in which two supports cancel. Local. */
+void bw_scene__warn_layers(const bw_scene *s, int b, double layers, bw_log *log);
+void bw_scene__warn_solids(const bw_scene *s, bw_log *log);
 /* scene_promise.c: the error that this accuracy was measured to have on scenes of this kind.
  * Local. */
 void bw_scene__promise(const bw_scene *s, FILE *out);

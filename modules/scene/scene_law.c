@@ -60,7 +60,33 @@ static bw_status check_numbers(const bw_scene_material *m)
                "materials.%s.%s is missing: plastic: %s needs it", m->name, rows[q].key,
                rows[q].of);
   }
+  /* With NaN for what is left out: no dilation. */
+  BW_REQUIRE(!(m->dilation_angle > m->friction_angle), BW_EINPUT,
+             "materials.%s.dilation_angle = %g is above friction_angle = %g: such a material would "
+             "give energy; take at most the friction",
+             m->name, m->dilation_angle, m->friction_angle);
   return BW_OK;
+}
+
+const bw_scene_material *bw_scene__material_of(const bw_scene_config *c, int b)
+{
+  const bw_scene_body *body = &c->bodies[b];
+  int m = bw_scene__material_named(c, body->material);
+  for (int k = 0; k < body->n_shape && m < 0; k++)
+    m = bw_scene__material_named(c, body->shape[k].material);
+  return m >= 0 ? &c->materials[m] : NULL;
+}
+
+bool bw_scene__corrects_surfaces(const bw_scene_config *c)
+{
+  bool state = false;
+  for (int b = 0; b < c->n_bodies; b++) {
+    const bw_scene_material *m = bw_scene__material_of(c, b);
+    if (!bw_scene__deforms(&c->bodies[b]) || m == NULL) continue;
+    if (strcmp(m->law, "bond") == 0) return true;
+    state = true;
+  }
+  return !state;
 }
 
 bool bw_scene__breaks_by_stretch(const bw_scene_material *m)

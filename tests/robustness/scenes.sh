@@ -58,6 +58,9 @@ refused $beam bodies.beam.motion=breakable "materials.polymer has no fracture_en
 refused $beam materials.polymer.law=magic "law = magic: not in this build; this build has: bond"
 refused $beam materials.polymer.plastic=j2 "it belongs to law: correspondence, this is bond"
 refused $beam materials.polymer.law=correspondence "poisson_ratio is missing"
+refused cantilever numerics.surface_correction=energy "surface_correction = energy: it is of bonds"
+refused cantilever materials.beam.poisson_ratio=0.4999 "keeps its volume"
+refused soil_column materials.sand.dilation_angle=40 "is above friction_angle = 30"
 refused $beam loads.0.on=plate "loads.0.on = plate: there is no such body; there are: beam"
 refused $beam "loads.0={on: beam, kind: traction, where: crack, value: [0, 1]}" "a pressure alone fills cracks"
 refused $beam "loads.0={on: beam, kind: pressure, where: crack, value: 1}" "beam has none to begin with"
@@ -106,6 +109,21 @@ refused $flow "numerics.step=1" "the fluid and its sides at the start bear at mo
   --set "bodies.cylinder.shape={box: {from: [4, -1], to: [4.5, 3.9333]}}" >"$out/log" 2>&1 ||
   complain "a narrow opening: $(tail -1 "$out/log")"
 grep -q "upper wall in y is a gap of about 1.0 cells" "$out/log" || complain "no word of a narrow gap"
+# told SCENE KEY=VALUE PIECE: of a warning; without a piece: there is none.
+told() {
+  "$build/bin/breakwater" "$source/scenes/$1/$1.yaml" --check --set "$2" >"$out/log" 2>&1 ||
+    complain "$1 --set $2: $(tail -1 "$out/log")"
+  grep "warning: " "$out/log" >"$out/warned" || :
+  if [ -z "$3" ]; then [ ! -s "$out/warned" ]; else grep -qF -- "$3" "$out/warned"; fi ||
+    complain "$1 --set $2: not '$3' but: $(cat "$out/warned")"
+}
+told notched_plate_ordinary numerics.horizon_ratio=4 ""
+told notched_plate_ordinary numerics.horizon_ratio=6 "law ordinary cost was measured from 2 to 4"
+told notched_plate_ordinary materials.glass.poisson_ratio=-0.25 "poisson_ratio = -0.25: what cracks"
+told rubber_block bodies.block.spacing=5e-3 "bent 0.82, 0.96, 0.99 times"
+told rubber_block "gauges.2={name: load, body: block, of: force_on_support}" "are added up"
+told rubber_block \
+  "gauges.2={name: load, body: block, of: force_on_support, region: {from: [0, 0], to: [0.1, 2e-3]}}" ""
 [ ! -e "$out/refused/history.csv" ] || complain "a refused scene has written"
 
 # ---- what is watched, and a slice, once more from the rows that were written ---------------------

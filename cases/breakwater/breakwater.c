@@ -8,23 +8,46 @@
 
 #include <string.h>
 
-/* --help KEY: the lines of the help whose key begins so. */
+/* Is a key of the help the one asked for, or below it? N stands for any item of a list, by its
+ * number and, with `names`, by its name; it may be left out: bodies.flap.motion, bodies.0.motion
+ * and bodies.motion are one key. */
+static bool answers(const char *key, const char *asked, bool names)
+{
+  for (;;) {
+    const size_t n = strcspn(key, ". "), m = strcspn(asked, ".");
+    const bool list = n == 1 && key[0] == 'N', same = n == m && strncmp(key, asked, n) == 0;
+    const bool item = list && (names || strspn(asked, "0123456789") == m);
+    if (list && key[n] == '.' && answers(key + n + 1, asked, names)) return true;
+    if (!item && !same) return false;
+    if (asked[m] == '\0') return true;
+    if (key[n] != '.') return false;
+    key += n + 1, asked += m + 1;
+  }
+}
+
+static int print_answers(const char *help, const char *asked, bool names)
+{
+  int lines = 0;
+  for (const char *line = help; *line != '\0'; line += strcspn(line, "\n") + 1) {
+    if (!answers(line + strspn(line, " "), asked, names)) continue;
+    printf("%.*s\n", (int)strcspn(line, "\n"), line);
+    lines++;
+  }
+  return lines;
+}
+
+/* --help KEY: the lines of the help that answer it; what may be the name of an item is taken for
+ * one only where no key has it. */
 static int help_of(const char *key, const bw_scene_config *defaults)
 {
   char *text = NULL;
   size_t length = 0;
-  int lines = 0;
   FILE *out = open_memstream(&text, &length);
   if (out == NULL) return 1;
   bw_config_help(bw_scene_fields, defaults, out);
   fclose(out);
-  for (char *line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
-    const char *name = line + strspn(line, " ");
-    const size_t n = strlen(key);
-    if (strncmp(name, key, n) != 0 || strchr(". ", name[n]) == NULL) continue;
-    puts(line);
-    lines++;
-  }
+  int lines = print_answers(text, key, false);
+  if (lines == 0) lines = print_answers(text, key, true);
   bw_release(&text);
   if (lines == 0) fprintf(stderr, "there is no key %s; --help lists all\n", key);
   return lines > 0 ? 0 : 2;

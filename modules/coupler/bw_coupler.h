@@ -273,7 +273,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out) BW_MUST_CHEC
  * watched. BW_EMEM. Collective. */
 bw_status bw_coupler_force_on(bw_coupler *c, const bool on[], double force[3]) BW_MUST_CHECK;
 
-/* One warning on `log`, with the remedy, when slip or leak of five reports in a row are above 2 %;
+/* One warning on `log`, with the remedy, when slip or leak of five reports in a row are above 2 %
+ * of the largest speed that the run has had since its start or restart;
  * r is the report of bw_coupler_measure. Not in the first hundred steps, in which every flow slips.
  * The same on all ranks. Local. */
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log);

@@ -170,7 +170,9 @@ struct bw_coupler {
   int64_t steps;       /* since create; a restart begins behind the start */
   size_t handed;       /* markers that this rank has handed over */
   int slip_above;      /* reports in a row with much slip; -1: it was said */
-  double slip_last[2]; /* slip and leak of the last of them */
+  double slip_last[2]; /* slip and leak of the last of them, over the largest speed so far */
+  double speed;        /* by which the last measurement divides [L/T] */
+  double speed_most;   /* the largest of those since create */
   bool load_told;      /* bw_coupler_warn_load has looked */
   bw_coupler__choice choice;
 };

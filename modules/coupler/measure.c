@@ -117,7 +117,10 @@ static void tell_slip(bw_coupler *c, bw_log *log)
 
 void bw_coupler_warn_slip(bw_coupler *c, const bw_coupler_report *r, bw_log *log)
 {
-  c->slip_last[0] = r->slip, c->slip_last[1] = r->leak;
+  /* Where all has come to rest the speeds of the moment are next to nothing: those that the run has
+   * had say what slip is small. */
+  const double share = c->speed_most > 0.0 ? c->speed / c->speed_most : 1.0;
+  c->slip_last[0] = share * r->slip, c->slip_last[1] = share * r->leak;
   if (c->slip_above < 0 || c->steps < BW_COUPLER__START) return;
   c->slip_above = much_slip(c) ? c->slip_above + 1 : 0;
   if (c->slip_above == IN_A_ROW) tell_slip(c, log);
@@ -175,6 +178,8 @@ bw_status bw_coupler_measure(bw_coupler *c, bw_coupler_report *out)
   double box[3], mass[3];
   int64_t count[2];
   const double speed = bw_coupler__reference_speed(c);
+  c->speed = speed;
+  c->speed_most = fmax(c->speed_most, speed);
   r.slip = speed > 0.0 ? r.slip_rms / speed : 0.0;
   r.leak = measure_leak(c, speed);
   /* Probes that load the solid were read in the step; others are read now, if p is known. */

@@ -54,8 +54,9 @@ static bw_status fill(const bw_rigid_config *c, int q, const bw_rigid_body *ask,
   int64_t n = 0;
   BW_TRY(measure(c, ask, extent));
   BW_REQUIRE(c->spacing <= extent[1] / 3.0, BW_EINPUT,
-             "rigid body %d: spacing = %g of its surface points: a third of its size, %g, at most",
-             q, c->spacing, extent[1] / 3.0);
+             "rigid body %d: spacing = %g of its surface points is more than a third of its least "
+             "extent; take a smaller one",
+             q, c->spacing);
   BW_TRY(bw_shape_points(ask->count, ask->shape, c->planar,
                          fmin(extent[0] / ALONG, extent[1] / ACROSS), &n, &X, &N, &A));
   /* About a point of the body, lest small bodies far away lose digits. */

@@ -86,6 +86,10 @@ static bw_status check_held(const bw_scene_config *c, const bw_scene_body *b,
                             const bw_scene__shapes *s)
 {
   const int dims = bw_scene__planar(c) ? 2 : 3;
+  BW_REQUIRE(bw_scene__deforms(b) || b->n_held == 0, BW_EINPUT,
+             "bodies.%s.held: a fixed or prescribed body is told how to move altogether; leave it "
+             "out, or make the body elastic or breakable",
+             b->name);
   for (int q = 0; q < b->n_held; q++) {
     const bw_scene_held *h = &b->held[q];
     int d, end;

@@ -235,21 +235,38 @@ bw_status bw_scene_measure(bw_scene *s, double row[])
   return BW_OK;
 }
 
+int bw_scene__column_named(const bw_scene *s, const char *name)
+{
+  for (int k = 1; k < s->n_columns; k++) {
+    const size_t own = strcspn(s->names[k], "[");
+    if (own == strlen(name) && strncmp(s->names[k], name, own) == 0) return k;
+  }
+  return -1;
+}
+
+void bw_scene__column_names(const bw_scene *s, const char *name, size_t size, char list[])
+{
+  char own_name[BW_SCENE_NAME];
+  size_t used = 0;
+  snprintf(own_name, sizeof own_name, "%.*s", (int)strcspn(name, "."), name);
+  const int gauge = bw_scene__gauge_named(&s->config, own_name);
+  list[0] = '\0';
+  for (int k = 1; k < s->n_columns; k++) {
+    const size_t own = strcspn(s->names[k], "[");
+    if ((gauge >= 0 && s->column[k].gauge != gauge) || used + own + 3 > size) continue;
+    used += (size_t)snprintf(list + used, size - used, "%s%.*s", used > 0 ? ", " : "", (int)own,
+                             s->names[k]);
+  }
+}
+
 bw_status bw_scene_gauge(bw_scene *s, const char *name, double *value)
 {
-  char known[512] = "";
-  const size_t length = strlen(name);
-  for (int k = 1; k < s->n_columns; k++) {
-    const size_t used = strlen(known), own = strcspn(s->names[k], "[");
-    if (own == length && strncmp(s->names[k], name, length) == 0) {
-      double all[BW_SCENE__COMPONENTS];
-      BW_TRY(measure(s, s->column[k].gauge, s->column[k].what, all));
-      *value = all[s->column[k].component];
-      return BW_OK;
-    }
-    if (used + own + 3 < sizeof known)
-      snprintf(known + used, sizeof known - used, "%s%.*s", used > 0 ? ", " : "", (int)own,
-               s->names[k]);
-  }
-  return BW_FAIL(BW_EINPUT, "scene: there is no gauge %s; there are: %s", name, known);
+  char known[512];
+  double all[BW_SCENE__COMPONENTS];
+  const int k = bw_scene__column_named(s, name);
+  bw_scene__column_names(s, name, sizeof known, known);
+  BW_REQUIRE(k > 0, BW_EINPUT, "scene: there is no gauge %s; there are: %s", name, known);
+  BW_TRY(measure(s, s->column[k].gauge, s->column[k].what, all));
+  *value = all[s->column[k].component];
+  return BW_OK;
 }

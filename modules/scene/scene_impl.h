@@ -360,4 +360,7 @@ bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge) BW_MUST
  * watch.csv. */
 bw_status bw_scene__watch_report(bw_scene *s, const bw_case *run, bw_log *log) BW_MUST_CHECK;
 /* Number of the column of a watched name; -1: none. */
-int bw_scene__watched_column(const bw_scene *s, const char *name);
+int bw_scene__column_named(const bw_scene *s, const char *name);
+/* list (size) <- the names of the columns of the gauge that NAME or NAME.COMPONENT begins with,
+ * with commas; of all gauges where there is no such gauge. Local. */
+void bw_scene__column_names(const bw_scene *s, const char *name, size_t size, char list[]);

@@ -35,5 +35,8 @@ bool bw_scene__next_name(const char **rest, char name[BW_SCENE_NAME]);
 /* Is this name among them? */
 bool bw_scene__listed(const char *names, const char *name);
 
+/* st; where it is BW_EINPUT of a message that names no body, that of this one is put before it. */
+bw_status bw_scene__of_body(const bw_scene_config *c, int b, bw_status st);
+
 /* "NAME, NAME": what there is, for messages. */
 void bw_scene__body_names(const bw_scene_config *c, size_t size, char *text);

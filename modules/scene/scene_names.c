@@ -25,6 +25,12 @@ int bw_scene__gauge_named(const bw_scene_config *c, const char *name)
   return -1;
 }
 
+bw_status bw_scene__of_body(const bw_scene_config *c, int b, bw_status st)
+{
+  if (st != BW_EINPUT || strncmp(bw_last_message(), "bodies.", strlen("bodies.")) == 0) return st;
+  return BW_FAIL(st, "bodies.%s: %s", c->bodies[b].name, bw_last_message());
+}
+
 bool bw_scene__next_name(const char **rest, char name[BW_SCENE_NAME])
 {
   const char *start = *rest + strspn(*rest, " ,\t");

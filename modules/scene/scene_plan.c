@@ -40,7 +40,7 @@ bw_status bw_scene__count_body(bw_scene *s, int b, const bw_shape_lattice *latti
     }
   }
   bw_scene__shapes_release(&shapes);
-  return st;
+  return bw_scene__of_body(&s->config, b, st);
 }
 
 bw_status bw_scene__count_sites(bw_scene *s, const bw_scene__solid *q,

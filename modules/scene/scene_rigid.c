@@ -111,10 +111,7 @@ static bw_status ask_for(const bw_scene *s, const bw_rigid_config *config, maker
     BW_TRY(find_shapes(s, b, shapes));
     *ask = (bw_rigid_body){.count = shapes->n, .shape = shapes->shape};
     set_freedom(body, ask);
-    bw_status st = set_mass(s, config, body, ask);
-    if (st == BW_EINPUT && strncmp(bw_last_message(), "bodies.", 7) != 0)
-      st = BW_FAIL(BW_EINPUT, "bodies.%s: %s", body->name, bw_last_message());
-    BW_TRY(st);
+    BW_TRY(bw_scene__of_body(&s->config, b, set_mass(s, config, body, ask)));
   }
   return BW_OK;
 }

@@ -36,11 +36,11 @@ static bool due(double every, double now)
 
 /* Steps end where something is written: an interval far below the step that the scene bears would
  * never come to an end. 0 and NaN: never, or chosen. */
-static bw_status check_interval(const driver *r, const char *key, double every)
+static bw_status check_interval(const driver *r, const char *key, double every, double most)
 {
   static const double least = 1e-6; /* of the longest stable step */
   const double end = bw_scene__end(r->scene), limit = bw_scene__limit(r->scene);
-  BW_REQUIRE(!(every > 0.0) || isnan(end) || end / every < 1e9, BW_EINPUT,
+  BW_REQUIRE(!(every > 0.0) || isnan(end) || end / every < most, BW_EINPUT,
              "%s = %g: %.3g times to the end at %g; take a longer one", key, every, end / every,
              end);
   BW_REQUIRE(!(every > 0.0) || every > least * limit, BW_EINPUT,
@@ -51,14 +51,16 @@ static bw_status check_interval(const driver *r, const char *key, double every)
 
 static bw_status check_intervals(const driver *r)
 {
+  /* Rows that a table still holds; files that a folder does. */
+  static const double rows = 1e9, files = 1e6;
   const bw_scene_config *c = &r->scene->config;
-  BW_TRY(check_interval(r, "output.sample_every", c->output.sample_every));
-  BW_TRY(check_interval(r, "output.picture_every", c->output.picture_every));
-  BW_TRY(check_interval(r, "output.checkpoint_every", r->checkpoint));
+  BW_TRY(check_interval(r, "output.sample_every", c->output.sample_every, rows));
+  BW_TRY(check_interval(r, "output.picture_every", c->output.picture_every, files));
+  BW_TRY(check_interval(r, "output.checkpoint_every", r->checkpoint, files));
   for (int g = 0; g < c->n_gauges; g++) {
     char key[128];
     snprintf(key, sizeof key, "gauges.%s.every", c->gauges[g].name);
-    BW_TRY(check_interval(r, key, c->gauges[g].every));
+    BW_TRY(check_interval(r, key, c->gauges[g].every, files));
   }
   return BW_OK;
 }
@@ -138,7 +140,7 @@ static bw_status sample(driver *r)
   bw_history_append(r->history, r->row);
   for (int k = 0; k < s->config.n_watch && !r->limited; k++) {
     const bw_scene_watch *w = &s->config.watch[k];
-    const double x = r->row[bw_scene__watched_column(s, w->name)];
+    const double x = r->row[bw_scene__column_named(s, w->name)];
     if (!(x > w->above || x < w->below)) continue;
     r->limited = true;
     bw_log_info(s->log, "watch.%s: %g is %s %g at t = %g: the run ends here", w->name, x,
@@ -210,16 +212,26 @@ static bw_status advance(driver *r)
   return st;
 }
 
+static bw_status check_watch(const bw_scene *s)
+{
+  char known[512];
+  for (int k = 0; k < s->config.n_watch; k++) {
+    const char *name = s->config.watch[k].name;
+    bw_scene__column_names(s, name, sizeof known, known);
+    BW_REQUIRE(bw_scene__column_named(s, name) > 0, BW_EINPUT,
+               "watch.%s: there is no such component; %s%s", name,
+               known[0] != '\0' ? "there are: " : "a line or a slice has files of its own", known);
+  }
+  return BW_OK;
+}
+
 static bw_status run_scene(driver *r, const bw_scene_config *config)
 {
   const bw_case_args *args = bw_case_args_of(r->run);
   bw_log *log = bw_case_log(r->run);
   BW_TRY(bw_scene__create(args->comm, config, log, args->check, &r->scene));
   bw_scene *s = r->scene;
-  for (int k = 0; k < s->config.n_watch; k++)
-    BW_REQUIRE(bw_scene__watched_column(s, s->config.watch[k].name) > 0, BW_EINPUT,
-               "watch.%s: there is no such component; the columns of history.csv have the names",
-               s->config.watch[k].name);
+  BW_TRY(check_watch(s));
   BW_TRY(bw_scene__check_sizes(s));
   BW_TRY(set_intervals(r));
   BW_TRY(bw_scene_describe(s, log));

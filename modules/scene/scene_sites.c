@@ -249,7 +249,7 @@ static bw_status fill_body(bw_scene *s, bw_scene__solid *q, int b, const bw_soli
   BW_THEN(st, bw_shape_fill_shared(s->comm, shapes.n, shapes.shape, &lattice, &one->n, &one->site,
                                    &one->kind, &one->group));
   bw_scene__shapes_release(&shapes);
-  return st;
+  return bw_scene__of_body(&s->config, b, st);
 }
 
 bw_status bw_scene__sites_groups(bw_scene *s, bw_scene__solid *q)

@@ -14,15 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-int bw_scene__watched_column(const bw_scene *s, const char *name)
-{
-  for (int k = 1; k < s->n_columns; k++) {
-    const size_t own = strcspn(s->names[k], "[");
-    if (own == strlen(name) && strncmp(s->names[k], name, own) == 0) return k;
-  }
-  return -1;
-}
-
 /* Times and values of one column; rows without a number are left out. */
 typedef struct {
   size_t n;
@@ -133,7 +124,7 @@ static bw_status report(const bw_scene *s, const char *history, FILE *out, bw_lo
   fprintf(out, "gauge,mean,amplitude,frequency[1/T],periods\n");
   for (int k = 0; k < s->config.n_watch; k++) {
     const bw_scene_watch *w = &s->config.watch[k];
-    const int column = bw_scene__watched_column(s, w->name);
+    const int column = bw_scene__column_named(s, w->name);
     series q = {0};
     found f = {NAN, NAN, NAN, 0};
     bw_status st = parse(history, column, w->from, &q);

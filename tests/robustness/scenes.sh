@@ -41,6 +41,10 @@ refused $flow "bodies.cylinder.shape={cylinder: {centre: [4, 2], radius: 60}}" "
 refused $flow output.picture_every=1e-20 "output.picture_every = 1e-20: 2e+21 times to the end"
 refused $flow output.checkpoint_every=inf "output.checkpoint_every = inf: must be a time"
 refused $flow gauges.wake.every=1e-9 "gauges.wake.every = 1e-09: 2e+10 times to the end"
+refused $beam output.picture_every=1e-9 "output.picture_every = 1e-09"
+refused $beam bodies.beam.spacing=1 "bodies.beam: "
+refused three_point_bending "bodies.left.held={side: y_lower}" "bodies.left.held: a fixed or presc"
+refused $beam "watch={load: {mean: time}}" "watch.load: there is no such component; there are: load.x, "
 refused $beam bodies.beam.motion=rigid "a rigid one has rigid.held"
 refused falling_sphere fluid.film_roughness=0.1 "fluid.film_roughness = 0.1: must be at most a cell"
 refused falling_sphere fluid.film_limit=0.01 "films have a fluid.film_roughness"
@@ -179,6 +183,11 @@ END
 "$build/bin/breakwater" "$source/scenes/flap_behind_cylinder/flap_behind_cylinder.yaml" --check |
   grep -q "^coupling  *about [0-9]* sub-steps of the solid" || complain "--check: no sub-steps"
 "$build/bin/breakwater" --help bodies.N.motion | grep -q breakable || complain "--help KEY"
+[ "$("$build/bin/breakwater" --help bodies.flap.motion)" = \
+  "$("$build/bin/breakwater" --help bodies.motion)" ] || complain "--help by name, without item"
+"$build/bin/breakwater" --help bodies.flap.held.layers | grep -q "held.N.layers" ||
+  complain "--help of an item of a named item"
+"$build/bin/breakwater" --help bodiez.motion 2>/dev/null && complain "--help of a slip"
 "$build/bin/breakwater" --schema >"$out/schema.json"
 /usr/bin/python3 - "$out/schema.json" "$source"/scenes/*/*.yaml <<'END' || bad=1
 import json, re, sys

@@ -229,6 +229,34 @@ START_TEST(much_slip_is_said_once)
 }
 END_TEST
 
+/* What slips by little of the largest speed that the run has had says nothing, however little moves
+ * by then; where the speeds of the moment are the largest it is told. */
+START_TEST(slip_at_rest_is_not_said)
+{
+  const bw_coupler_report r = {.slip = 7.98, .leak = 0.03};
+  for (int rests = 0; rests < 2; rests++) {
+    scene s = build(0.3, 1.0);
+    bw_log_config config = bw_log_config_default();
+    config.err = tmpfile();
+    ck_assert_ptr_nonnull(config.err);
+    bw_log *log = NULL;
+    bw_check_ok(bw_log_create(bw_check_world(), &config, &log));
+    bw_coupler_report seen;
+    bw_check_ok(bw_coupler_measure(s.coupler, &seen));
+    ck_assert_double_gt(s.coupler->speed, 0.0);
+    ck_assert_double_eq(s.coupler->speed, s.coupler->speed_most);
+    if (rests) s.coupler->speed = 1e-3 * s.coupler->speed_most;
+    s.coupler->steps = 100;
+    bw_coupler_warn_slip(s.coupler, &r, log);
+    bw_coupler_warn_end(s.coupler, log);
+    ck_assert((ftell(config.err) > 0) == (!rests && bw_comm_rank(bw_check_world()) == 0));
+    bw_log_destroy(&log);
+    fclose(config.err);
+    destroy(&s);
+  }
+}
+END_TEST
+
 /* At the end of a short run, too, of the last report; a run that ends well says nothing. */
 START_TEST(much_slip_at_the_end_is_said)
 {
@@ -266,5 +294,6 @@ static const bw_check_test tests[] = {
     BW_TEST(it_is_kept_per_particle),        BW_TEST(blocks_share_it),
     BW_TEST(tries_of_a_step_leave_it_alone), BW_TEST(a_held_solid_has_one_too),
     BW_TEST(broken_particles_have_none),     BW_TEST(slip_and_leak_are_told),
-    BW_TEST(much_slip_is_said_once),         BW_TEST(much_slip_at_the_end_is_said)};
+    BW_TEST(much_slip_is_said_once),         BW_TEST(slip_at_rest_is_not_said),
+    BW_TEST(much_slip_at_the_end_is_said)};
 BW_CHECK_MAIN("coupler.memory", tests)

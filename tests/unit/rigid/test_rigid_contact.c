@@ -142,7 +142,7 @@ START_TEST(bad_input_is_refused)
     bw_rigid_body body;
   } cases[] = {
       {"spacing", bw_rigid_config_default(), good},
-      {"third of its size", spaced(0.5), good},
+      {"third of its least", spaced(0.5), good},
       {"no shape", spaced(0.1), {.density = 1.0}},
       {"mass", spaced(0.1), {.count = 1, .shape = &ball}},
       {"inertia", spaced(0.1), {.count = 1, .shape = &ball, .mass = 1.0}},

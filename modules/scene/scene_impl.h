@@ -319,6 +319,11 @@ double bw_scene__solid_limit(const bw_scene *s); /* of solids and rigid bodies, 
 double bw_scene__end(const bw_scene *s);         /* of the scene [T]; NaN: not known */
 
 /* scene_gauges.c, scene_gauges_solid.c, scene_gauges_fluid.c */
+/* Number of the column of a name of history.csv without its unit; -1: none. */
+int bw_scene__column_named(const bw_scene *s, const char *name);
+/* list (size) <- the names of the columns of the gauge that NAME or NAME.COMPONENT begins with,
+ * with commas; of all gauges where there is no such gauge. Local. */
+void bw_scene__column_names(const bw_scene *s, const char *name, size_t size, char list[]);
 bw_status bw_scene__gauges_create(bw_scene *s) BW_MUST_CHECK;
 bw_status bw_scene__gauges_aim(bw_scene *s) BW_MUST_CHECK; /* which particles each looks at, anew */
 void bw_scene__gauges_destroy(bw_scene *s);
@@ -359,8 +364,3 @@ bw_status bw_scene__profiles(bw_scene *s, const bw_case *run, int gauge) BW_MUST
 /* scene_watch.c: what the rows of history.csv say of the gauges that are watched, to the log and
  * watch.csv. */
 bw_status bw_scene__watch_report(bw_scene *s, const bw_case *run, bw_log *log) BW_MUST_CHECK;
-/* Number of the column of a watched name; -1: none. */
-int bw_scene__column_named(const bw_scene *s, const char *name);
-/* list (size) <- the names of the columns of the gauge that NAME or NAME.COMPONENT begins with,
- * with commas; of all gauges where there is no such gauge. Local. */
-void bw_scene__column_names(const bw_scene *s, const char *name, size_t size, char list[]);

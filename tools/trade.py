@@ -37,6 +37,8 @@ SCENES = {
               "flow through a square array of cylinders, a fifth solid, series (data/cylinder_array)"),
     "plate": ("bench/trade/plate.yaml", [], "tip.x", 1.0, 0.1737,
               "tip in a stream, finite elements (data/bending_plate)"),
+    "raft": ("bench/trade/raft.yaml", [], "body.x - bulk", 1.0, 1 / 6 / 51.527,
+             "free cylinders ahead of the fluid between them, series (data/cylinder_array)"),
     "cantilever": ("bench/trade/cantilever.yaml", [], "tip.y", -1.0, 0.02300,
                    "tip under a load, finite elements (data/clamped_beams)"),
     "swing": ("bench/trade/swing.yaml", [], "tip.y frequency", 1.0, 3.588,
@@ -44,7 +46,12 @@ SCENES = {
     "dam break": ("scenes/dam_break/dam_break.yaml",
                   ["phases.0.until.time=0.4249", "gauges={water: {of: front}}", "watch=[]"],
                   "water", 1.0, 1.6,
-                  "place of the front when it met the wall in the experiment (data/particle_fluid)")}
+                  "place of the front when it met the wall in the experiment (data/particle_fluid)"),
+    "slosh": ("scenes/sloshing_tank/sloshing_tank.yaml",
+              ["phases.0.until.time=3.16", "gauges={left: {of: depth, point: [0.05], width: 0.05}}", "watch=[]",
+               "output.sample_every=0.04"],
+              "left - 0.5", 1.0, 0.1914,
+              "crest near the wall of a shaken tank, potential flow (data/particle_fluid)")}
 
 
 # Scenes with answers from elsewhere that no preset and no promise was set by: what --check promises has to hold
@@ -83,30 +90,44 @@ def each(key, values):
     return [(str(v), [f"{key}={v}"]) for v in values]
 
 
-FLOWS, COUPLED, SOLIDS = ["cylinder", "plate"], ["plate"], ["cantilever", "swing"]
-PARTICLES = ["dam break"]
-# Knob: scenes, and (name of the value, its --set arguments); a number alone scales the spacing.
+FLOWS, COUPLED, SOLIDS = ["cylinder", "plate", "raft"], ["plate", "raft"], ["cantilever", "swing"]
+PARTICLES = ["dam break", "slosh"]
+ALL = ["cylinder", "array", "plate", "raft", "cantilever", "swing", "dam break", "slosh"]
+# Half of the spacing over the first third of a beam, at its clamp; from where to where.
+CLAMP = {"cantilever": ("beam", [-0.04, 0], [0.34, 0.2]), "swing": ("plate", [-0.008, 0], [0.066, 0.02])}
+# Knob: scenes, and (name of the value, its --set arguments); a number alone scales the spacing, SINGLE takes
+# the program in single precision, FINE_CLAMP refines at the clamp.
+SINGLE, FINE_CLAMP = "single precision", "fine clamp"
 KNOBS = {
-    "accuracy": (["cylinder", "array", "plate", "cantilever", "swing", "dam break"],
-                 each("accuracy", ["quick", "standard", "careful"])),
-    "grid": (["cylinder", "array", "plate", "cantilever", "swing"],
+    "accuracy": (ALL, each("accuracy", ["quick", "standard", "careful"])),
+    "grid": (["cylinder", "array", "plate", "raft", "cantilever", "swing"],
              [("2 h", 2.0), ("h", 1.0), ("h/2", 0.5)]),
-    "forcing_iterations": (FLOWS, each("numerics.forcing_iterations", [1, 2, 4])),
+    "precision": (ALL, [("double", []), ("single", [SINGLE])]),
+    "kernel": (["cylinder", "array", "plate", "raft"], each("numerics.kernel", ["hat2", "roma3", "peskin4"])),
+    "forcing_iterations": (FLOWS, each("numerics.forcing_iterations", [1, 2, 3, 4])),
     "memory": (FLOWS, each("numerics.memory", [0, 0.1, 0.2, 0.4])),
     "retraction": (FLOWS, [("best", [])] + each("numerics.retraction", [0, 0.25, 0.5])),
-    "step_share": (["cylinder", "plate", "swing"], each("numerics.step_share", [0.8, 0.6, 0.3])),
+    "step_share": (["cylinder", "plate", "raft", "swing", "cantilever"],
+                   each("numerics.step_share", [0.8, 0.6, 0.4, 0.2])),
+    "step_share of particles": (PARTICLES, each("numerics.step_share", [0.95, 0.8, 0.6, 0.3])),
     "viscous": (FLOWS, each("numerics.viscous", ["explicit", "implicit_y", "implicit"])),
-    "probe_length": (["cylinder, probes", "plate"], each("numerics.probe_length", [1, 1.5, 2, 3])),
+    "probe_length": (["cylinder, probes", "plate", "raft"], each("numerics.probe_length", [1, 1.5, 2, 3])),
+    "probe_profile": (["cylinder, probes", "plate", "raft"], each("numerics.probe_profile", ["linear", "quadratic"])),
     "marker_spacing": (COUPLED, each("numerics.marker_spacing", [0, 0.5, 1, 2])),
     "load": (COUPLED, each("numerics.load", ["probes", "reaction"])),
-    "load_relaxation": (COUPLED, each("numerics.load_relaxation", [0.03, 0.1, 0.3])),
+    "load_relaxation": (COUPLED, [("measured", [])] + each("numerics.load_relaxation", [0.003, 0.01, 0.03, 0.1, 0.3])),
     "virtual_mass": (COUPLED, each("numerics.virtual_mass", [0, 0.5, 1, 2])),
     "coupling_iterations": (COUPLED, each("numerics.coupling_iterations", [1, 5, 20])),
-    "solid_share": (COUPLED, each("numerics.solid_share", [0.9, 0.8, 0.5])),
-    "horizon_ratio": (SOLIDS + ["plate"], each("numerics.horizon_ratio", [2, 3, 4, 5])),
-    "surface_correction": (SOLIDS + ["plate"],
+    "coupling_residual": (COUPLED, [(f"{r:g}", ["numerics.coupling_iterations=20", f"numerics.coupling_residual={r:g}"])
+                                    for r in (1e-2, 1e-3, 1e-4, 1e-5)]),
+    "solid_share": (COUPLED, each("numerics.solid_share", [0.9, 0.8, 0.5, 0.25])),
+    "horizon_ratio": (SOLIDS + COUPLED, each("numerics.horizon_ratio", [2, 3, 4, 5])),
+    "surface_correction": (SOLIDS + COUPLED,
                            each("numerics.surface_correction", ["none", "volume", "energy", "tensor"])),
     "volume_fraction": (SOLIDS, each("numerics.volume_fraction", ["none", "linear", "exact"])),
+    "calibration": (SOLIDS, [(f"{c}, {s}", [f"numerics.calibration={c}", f"numerics.surface_correction={s}"])
+                             for c in ("none", "lattice") for s in ("volume", "tensor")]),
+    "levels": (SOLIDS, [("h", []), ("h, half at the clamp", [FINE_CLAMP]), ("h/2", 0.5)]),
     "family_reach": (SOLIDS, each("numerics.family_reach", ["half_cell", "horizon"])),
     "disorder": (SOLIDS, [("lattice", []),
                           ("cloud of 0.3", ["numerics.disorder=0.3",
@@ -114,16 +135,19 @@ KNOBS = {
     "integrator": (["swing", "cantilever"], each("numerics.integrator", ["verlet", "rk3"])),
     "law": (SOLIDS, [(law, [f"materials.{m}.law={law}" for m in ("@",)])
                      for law in ("bond", "ordinary", "correspondence")]),
-    "particle spacing": (PARTICLES, [
+    "particle spacing": (["dam break"], [
         (f"{h:g} mm", ["domain.length=[1.6,0.9,1]", f"domain.cells=[{1600 / h:.0f},{900 / h:.0f},1]"])
         for h in (20.0, 12.5, 10.0)]),
-    "sound_speed": (PARTICLES, each("numerics.sound_speed", [35, 50, 70])),
+    "particle spacing, slosh": (["slosh"], [
+        (f"{h:g} mm", [f"domain.cells=[{1725 / h:.0f},{1000 / h:.0f},1]"]) for h in (50.0, 25.0, 12.5)]),
+    "sound_speed": (["dam break"], each("numerics.sound_speed", [35, 50, 70])),
     "artificial_viscosity": (PARTICLES, each("numerics.artificial_viscosity", [0, 0.01, 0.02, 0.05])),
+    "wall_viscosity": (PARTICLES, each("numerics.wall_viscosity", [0, 0.05, 0.1, 0.2])),
     "density_diffusion": (PARTICLES, each("numerics.density_diffusion", [0.05, 0.1, 0.2])),
     "shifting": (PARTICLES, [("default", [])] + each("numerics.shifting", [0])),
     "iterations x relaxation": (COUPLED, [
         (f"{n}, {w}", [f"numerics.coupling_iterations={n}", f"numerics.load_relaxation={w}"])
-        for n in (1, 5) for w in (0.03, 0.1, 0.3)]),
+        for n in (1, 5, 20) for w in (0.003, 0.03, 0.1, 0.3)]),
     "grid x horizon": (SOLIDS, [(f"{h} h, {m}", [h, f"numerics.horizon_ratio={m}"])
                                 for h in (2.0, 1.0) for m in (2, 3, 4)])}
 
@@ -131,8 +155,11 @@ KNOBS = {
 def settings(scene, value):
     """--set arguments of a value on a scene, and the factor of its spacing."""
     path, base, *_ = SCENES[scene]
-    words = [value] if isinstance(value, float) else list(value)
+    words = [value] if isinstance(value, float) else [w for w in value if w != SINGLE]
     factor = math.prod(w for w in words if isinstance(w, float))
+    if FINE_CLAMP in words:
+        body, lower, upper = CLAMP[scene]
+        words[words.index(FINE_CLAMP)] = f"bodies.{body}.levels=[{{level: 1, from: {lower}, to: {upper}}}]"
     parsed = yaml.safe_load(Path(path).read_text())
     material = next(iter(parsed.get("materials") or {"": None}))
     sets = base + [w.replace("@", material) for w in words if not isinstance(w, float)]
@@ -144,10 +171,31 @@ def settings(scene, value):
     return sets, factor, estimate.one_cell_deep(parsed)
 
 
+def single_precision():
+    """The program in single precision, built where it is not yet."""
+    for command in (["cmake", "--preset", "single"],
+                    ["cmake", "--build", "build-single", "-j", "2", "--target", "breakwater"]):
+        if subprocess.run(command, capture_output=True).returncode != 0:
+            sys.exit(f"trade.py: precision: {' '.join(command)} failed; run it by hand to see why")
+    return "build-single/bin/breakwater"
+
+
+def number(values, quantity):
+    """A quantity, or a difference of two, one of which may be a number: body.x - bulk, left - 0.5."""
+    def one(name):
+        return next((x for full, x in values.items() if full.partition("[")[0] == name), None)
+
+    terms = [one(name) for name in quantity.split(" - ")]
+    terms = [float(name) if x is None else x for name, x in zip(quantity.split(" - "), terms)]
+    return terms[0] - sum(terms[1:])
+
+
 def measure(scene, value, folder, program):
     """{error, cost, ...} of one run; one that fails is a point without an error."""
     path, _, quantity, scale, reference, _ = SCENES[scene]
     sets, factor, flat = settings(scene, value)
+    if not isinstance(value, float) and SINGLE in value:
+        program = single_precision()
     command = [program, path, "--out", str(folder), "--quiet"]
     for word in sets:
         command += ["--set", word]
@@ -160,8 +208,7 @@ def measure(scene, value, folder, program):
         point["failed"] = (done.stderr or done.stdout).strip().splitlines()[-1]
         return point
     values = estimate.values_of(folder, factor if flat else 1.0)
-    found = next(x for name, x in values.items() if name.partition("[")[0] == quantity)
-    point["found"] = scale * found
+    point["found"] = scale * number(values, quantity)
     point["error"] = point["found"] / reference - 1
     return point
 

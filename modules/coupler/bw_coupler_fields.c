@@ -2,11 +2,11 @@
 #include "bw_coupler_fields.h"
 #include "bw_coupler.h"
 
-static const bw_config_word kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
+const bw_config_word bw_coupler_kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
                                               {"peskin4", BW_KERNEL_PESKIN4, NULL},
                                               {"hat2", BW_KERNEL_HAT2, NULL},
                                               {NULL, 0, NULL}};
-static const bw_config_word profile_words[] = {
+const bw_config_word bw_coupler_profile_words[] = {
     {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
     {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},
     {NULL, 0, NULL}};
@@ -20,7 +20,7 @@ static const bw_config_word load_words[] = {
 #define OURS bw_coupler_config
 /* What a run that was stopped for its coupling is told to change may change with --restart. */
 const bw_config_field bw_coupler_fields[] = {
-    WORD(OURS, kernel, BW_OPTIONAL, kernel_words, "delta kernel of the forcing"),
+    WORD(OURS, kernel, BW_OPTIONAL, bw_coupler_kernel_words, "delta kernel of the forcing"),
     V(OURS, iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
       "forcing iterations in each sub-step of the fluid"),
     V(OURS, memory, BW_OPTIONAL, BW_FROM_TO(0, 0.5), "",
@@ -31,7 +31,7 @@ const bw_config_field bw_coupler_fields[] = {
     V(OURS, marker_spacing, BW_OPTIONAL, BW_FROM_TO(0, 4), "cells",
       "largest distance of markers along the surface; 0: every surface particle is one"),
     V(OURS, probe_length, BW_OPTIONAL, BW_FROM_TO(1, 4), "cells", "length of the normal probes"),
-    WORD(OURS, probe_profile, BW_OPTIONAL, profile_words,
+    WORD(OURS, probe_profile, BW_OPTIONAL, bw_coupler_profile_words,
          "how the velocity is taken to vary along a probe"),
     WORD(OURS, load, BW_OPTIONAL, load_words, "what loads the solid"),
     V(OURS, load_relaxation, BW_OPTIONAL | BW_MAY_CHANGE, BW_ABOVE_TO(0, 1), "",

@@ -234,6 +234,7 @@ typedef struct {
   int integrator;       /* bw_solid_integrator */
   double horizon_ratio; /* m */
   int surface_correction, volume_fraction, family_reach; /* of bw_solid.h */
+  int calibration;          /* of the bond law, bw_pd_calibration */
   double damping_mean;      /* against the mean motion of a family [M/(L^3 T)] */
   double damping_pair;      /* between the ends of bonds [M/(L^6 T)] */
   double damping_absolute;  /* against rest [M/(L^3 T)] */
@@ -241,6 +242,8 @@ typedef struct {
   int disorder_seed;        /* of the random numbers for it */
   int viscous;              /* bw_ns_viscous */
   int load;                 /* bw_coupler_load_kind */
+  int kernel;               /* of the forcing, bw_kernel_delta_id */
+  int probe_profile;        /* bw_probe_profile */
   int forcing_iterations;   /* of the immersed boundary */
   double memory;            /* of the forcing, beta [-] */
   double retraction;        /* of markers, over the grid spacing [-] */

@@ -33,11 +33,13 @@ bw_status bw_scene__coupled_create(bw_scene *s)
   bw_coupler_config c = bw_coupler_config_default();
   c.rho = s->config.fluid.density;
   c.nu = s->config.fluid.viscosity;
+  c.kernel = (bw_kernel_delta_id)n->kernel;
   c.iterations = n->forcing_iterations;
   c.memory = n->memory;
   c.retraction = n->retraction;
   c.marker_spacing = n->marker_spacing;
   c.probe_length = n->probe_length;
+  c.probe_profile = (bw_probe_profile)n->probe_profile;
   c.solid_safety = n->solid_share;
   c.load = (bw_coupler_load_kind)n->load;
   c.load_relaxation = n->load_relaxation;

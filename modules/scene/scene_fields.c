@@ -1,5 +1,6 @@
 /* The keys of a scene file: the top level, the domain, output and numerics. */
 #include "bw_coupler.h"
+#include "bw_coupler_fields.h"
 #include "bw_ns_words.h"
 #include "bw_solid.h"
 #include "bw_solid_words.h"
@@ -79,6 +80,8 @@ const bw_config_field bw_scene__numerics_fields[] = {
       "how bonds near surfaces are made as stiff as inside"),
     W(volume_fraction, bw_solid_fraction_words, "how much of a neighbour's cell counts"),
     W(family_reach, bw_solid_reach_words, "who is within the horizon"),
+    W(calibration, bw_solid_calibration_words,
+      "of bonds: where their stiffness and limit come from"),
     V(OURS, damping_mean, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L3 T)",
       "damping against the mean of the neighbours"),
     V(OURS, damping_pair, BW_OPTIONAL, BW_AT_LEAST(0), "M/(L6 T)", "damping along bonds"),
@@ -88,6 +91,9 @@ const bw_config_field bw_scene__numerics_fields[] = {
     V(OURS, disorder_seed, BW_OPTIONAL, BW_ANY, "", "another number, another disorder"),
     W(viscous, bw_ns_viscous_words, "how the viscous term of the fluid advances in time"),
     W(load, load_words, "what of the fluid loads the solids"),
+    W(kernel, bw_coupler_kernel_words, "of the markers' forcing"),
+    W(probe_profile, bw_coupler_profile_words,
+      "how the velocity is taken to vary along a probe"),
     V(OURS, forcing_iterations, BW_OPTIONAL, BW_FROM_TO(1, 50), "",
       "forcing iterations in each sub-step"),
     V(OURS, memory, BW_OPTIONAL, BW_FROM_TO(0, 0.5), "",

@@ -228,6 +228,7 @@ static bw_status join(bw_scene *s)
   bw_coupler_rigid_config c = bw_coupler_rigid_config_default();
   c.rho = s->config.fluid.density, c.nu = s->config.fluid.viscosity;
   c.virtual_mass = n->virtual_mass;
+  c.body.kernel = (bw_kernel_delta_id)n->kernel;
   c.body.n_iter = n->forcing_iterations;
   c.body.memory = n->memory;
   c.films.on = !isnan(s->config.fluid.film_roughness);

@@ -200,6 +200,7 @@ static void settings_of(const bw_scene *s, const bw_scene__solid *q, bw_solid_co
   c->horizon_ratio = n->horizon_ratio;
   c->volume_fraction = (bw_pd_volume_fraction)n->volume_fraction;
   c->surface_correction = (bw_pd_surface_correction)n->surface_correction;
+  c->calibration = (bw_pd_calibration)n->calibration;
   c->family_reach = (bw_pd_family_reach)n->family_reach;
   c->integrator = (bw_solid_integrator)n->integrator;
   c->damping.mean = n->damping_mean;

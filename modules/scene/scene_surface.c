@@ -158,6 +158,7 @@ bw_status bw_scene__surfaces_create(bw_scene *s)
   const bw_scene_numerics *n = &s->config.numerics;
   const double h = bw_grid_look(s->grid)->spacing[0];
   bw_ibm_mdf_config config = bw_ibm_mdf_config_default();
+  config.kernel = (bw_kernel_delta_id)n->kernel;
   config.n_iter = n->forcing_iterations;
   config.memory = n->memory;
   const double retraction = isnan(n->retraction) ? bw_ibm_mdf_retraction(&config) : n->retraction;
@@ -176,7 +177,7 @@ bw_status bw_scene__surfaces_create(bw_scene *s)
   probe.rho = s->config.fluid.density;
   probe.nu = s->config.fluid.viscosity;
   probe.length = n->probe_length;
-  probe.profile = BW_PROBE_QUADRATIC;
+  probe.profile = (bw_probe_profile)n->probe_profile;
   BW_TRY(make_points(s, 0.0, &s->wall));
   BW_TRY(bw_probe_create(s->grid, &probe, &s->probe));
   place(s, &s->wall, 0.0);

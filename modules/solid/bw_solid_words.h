@@ -11,6 +11,7 @@ extern "C" {
 extern const bw_config_word bw_solid_correction_words[]; /* bw_pd_surface_correction */
 extern const bw_config_word bw_solid_fraction_words[];   /* bw_pd_volume_fraction */
 extern const bw_config_word bw_solid_reach_words[];      /* bw_pd_family_reach */
+extern const bw_config_word bw_solid_calibration_words[]; /* bw_pd_calibration */
 extern const bw_config_word bw_solid_integrator_words[]; /* bw_solid_integrator */
 extern const bw_config_word bw_solid_law_words[];        /* bw_solid_law_row */
 extern const bw_config_word bw_solid_influence_words[];  /* bw_pd_state_influence */

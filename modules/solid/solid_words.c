@@ -17,6 +17,10 @@ const bw_config_word bw_solid_reach_words[] = {
     {"half_cell", BW_PD_REACH_HALF_CELL, "horizon + ds/2"},
     {"horizon", BW_PD_REACH_HORIZON, NULL},
     {NULL, 0, NULL}};
+const bw_config_word bw_solid_calibration_words[] = {
+    {"none", BW_PD_CALIBRATION_NONE, "integrals over the horizon"},
+    {"lattice", BW_PD_CALIBRATION_LATTICE, "sums over a lattice's family"},
+    {NULL, 0, NULL}};
 const bw_config_word bw_solid_integrator_words[] = {
     {"verlet", BW_SOLID_VERLET, NULL}, {"rk3", BW_SOLID_RK3, NULL}, {NULL, 0, NULL}};
 const bw_config_word bw_solid_law_words[] = {

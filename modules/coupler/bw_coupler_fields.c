@@ -3,9 +3,9 @@
 #include "bw_coupler.h"
 
 const bw_config_word bw_coupler_kernel_words[] = {{"roma3", BW_KERNEL_ROMA3, NULL},
-                                              {"peskin4", BW_KERNEL_PESKIN4, NULL},
-                                              {"hat2", BW_KERNEL_HAT2, NULL},
-                                              {NULL, 0, NULL}};
+                                                  {"peskin4", BW_KERNEL_PESKIN4, NULL},
+                                                  {"hat2", BW_KERNEL_HAT2, NULL},
+                                                  {NULL, 0, NULL}};
 const bw_config_word bw_coupler_profile_words[] = {
     {"linear", BW_PROBE_LINEAR, "gradient at the tip, as in POROUS"},
     {"quadratic", BW_PROBE_QUADRATIC, "gradient at the wall from a parabola"},

@@ -234,7 +234,7 @@ typedef struct {
   int integrator;       /* bw_solid_integrator */
   double horizon_ratio; /* m */
   int surface_correction, volume_fraction, family_reach; /* of bw_solid.h */
-  int calibration;          /* of the bond law, bw_pd_calibration */
+  int calibration;                                       /* of the bond law, bw_pd_calibration */
   double damping_mean;      /* against the mean motion of a family [M/(L^3 T)] */
   double damping_pair;      /* between the ends of bonds [M/(L^6 T)] */
   double damping_absolute;  /* against rest [M/(L^3 T)] */

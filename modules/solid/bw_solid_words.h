@@ -8,18 +8,18 @@
 extern "C" {
 #endif
 
-extern const bw_config_word bw_solid_correction_words[]; /* bw_pd_surface_correction */
-extern const bw_config_word bw_solid_fraction_words[];   /* bw_pd_volume_fraction */
-extern const bw_config_word bw_solid_reach_words[];      /* bw_pd_family_reach */
+extern const bw_config_word bw_solid_correction_words[];  /* bw_pd_surface_correction */
+extern const bw_config_word bw_solid_fraction_words[];    /* bw_pd_volume_fraction */
+extern const bw_config_word bw_solid_reach_words[];       /* bw_pd_family_reach */
 extern const bw_config_word bw_solid_calibration_words[]; /* bw_pd_calibration */
-extern const bw_config_word bw_solid_integrator_words[]; /* bw_solid_integrator */
-extern const bw_config_word bw_solid_law_words[];        /* bw_solid_law_row */
-extern const bw_config_word bw_solid_influence_words[];  /* bw_pd_state_influence */
-extern const bw_config_word bw_solid_weight_words[];     /* bw_pd_state_weight */
-extern const bw_config_word bw_solid_elastic_words[];    /* bw_pd_material_elastic */
-extern const bw_config_word bw_solid_breaks_words[];     /* bw_pd_state_breaks */
-extern const bw_config_word bw_solid_plastic_words[];    /* bw_solid_plastic */
-extern const bw_config_word bw_solid_cone_words[];       /* bw_pd_material_cone */
+extern const bw_config_word bw_solid_integrator_words[];  /* bw_solid_integrator */
+extern const bw_config_word bw_solid_law_words[];         /* bw_solid_law_row */
+extern const bw_config_word bw_solid_influence_words[];   /* bw_pd_state_influence */
+extern const bw_config_word bw_solid_weight_words[];      /* bw_pd_state_weight */
+extern const bw_config_word bw_solid_elastic_words[];     /* bw_pd_material_elastic */
+extern const bw_config_word bw_solid_breaks_words[];      /* bw_pd_state_breaks */
+extern const bw_config_word bw_solid_plastic_words[];     /* bw_solid_plastic */
+extern const bw_config_word bw_solid_cone_words[];        /* bw_pd_material_cone */
 
 /* Rows of a table of configuration for a struct T that has a bw_solid_law_choice as its member
  * `choice`: keys law, poisson_ratio and so on, side by side with the struct's own. */

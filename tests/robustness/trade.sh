@@ -1,6 +1,7 @@
 #!/bin/sh
 # tools/trade.py knows what is dominated and what is not, and every file it names; the error that
 # --check prints for an accuracy is not below what was measured (docs/verification/trade).
+# What `accuracy` sets is what the rule of tools/presets.py gives, or a reason is named.
 # usage: trade.sh SOURCE BUILD
 set -eu
 cd "$1"
@@ -45,3 +46,4 @@ for path, scenes in alike.items():
         # two digits are printed
         assert said >= 0.95 * most, f"{path}, {accuracy}: {said} is printed, {most} was measured"
 END
+PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 tools/presets.py --check --program "$build/bin/breakwater" > /dev/null

@@ -26,12 +26,17 @@ static void shake(double t, void *context, double x[3], double v[3], double a[3]
   }
 }
 
-/* 2 sqrt(g H): what a dam break reaches, with the height H of the fluid along gravity. */
+/* 2 sqrt(g H): what a dam break reaches, with the height H of the fluid along gravity; no less than
+ * the speed that the fluid begins with. */
 static bw_status expected_speed(const bw_scene *s, double *speed)
 {
   bw_scene__shapes *fluid = NULL;
   double fall = 0.0;
+  const double *v = s->config.fluid.start.velocity, first = hypot(hypot(v[0], v[1]), v[2]);
   *speed = s->config.fluid.speed;
+  BW_REQUIRE(!(*speed < first), BW_EINPUT,
+             "fluid.speed = %g: fluid.start.velocity is %g already; give at least that", *speed,
+             first);
   if (!isnan(*speed)) return BW_OK;
   bw_status st = BW_ALLOCATE(&fluid, 1);
   BW_THEN(st, bw_scene__shapes_make(&s->config, BW_SCENE__FLUID, fluid));
@@ -41,7 +46,7 @@ static bw_status expected_speed(const bw_scene *s, double *speed)
   if (fluid != NULL) bw_scene__shapes_release(fluid);
   bw_release(&fluid);
   BW_TRY(st);
-  *speed = 2.0 * sqrt(fall);
+  *speed = fmax(2.0 * sqrt(fall), first);
   BW_REQUIRE(*speed > 0.0, BW_EINPUT,
              "fluid.speed is missing: without gravity nothing says how fast the fluid will be");
   return BW_OK;

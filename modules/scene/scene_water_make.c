@@ -280,7 +280,7 @@ bw_status bw_scene__water_make(bw_scene *s)
   double depth = 0.0;
   for (int d = 0; st == BW_OK && d < 3; d++)
     if (s->config.gravity[d] != 0.0) depth = fmax(depth, fluid->upper[d] - fluid->lower[d]);
-  if (large) BW_THEN(st, set_sound(s, depth));
+  if (large || !isnan(w->config.c0)) BW_THEN(st, set_sound(s, depth));
   st = bw_comm_agree(s->comm, st);
   if (st == BW_OK) st = large ? make_sample(s) : make(s, &b, fluid);
   if (fluid != NULL) bw_scene__shapes_release(fluid);

@@ -190,7 +190,9 @@ END_TEST
 typedef struct {
   const char *text, *piece;
 } refusal;
-#define END "phases: {until: 1}\n"
+#define END  "phases: {until: 1}\n"
+#define POST "  post: {shape: {box: {from: [0.6, 0], to: [0.8, 0.8]}}, motion: fixed}\n"
+#define RAM  "shape: {box: {from: [0.1, 0.05], to: [0.25, 0.3]}}, motion: prescribed"
 static const refusal refusals[] = {
     {WATER("") END, "fluid.shape is missing"},
     {WATER("  shape: {box: {from: [0, 0], to: [2, 0.5]}}\n") END, "it goes from 0 to 2 along x"},
@@ -208,6 +210,21 @@ static const refusal refusals[] = {
     {WATER(POOL) CLAY END "bodies: {a: {shape: {box: {from: [0.4, 0], to: [0.6, 0.2]}}, motion: "
                           "rigid, material: clay}}\n",
      "bodies.a.motion = rigid: in a fluid of particles"},
+    /* A ram runs into a post, or into the end of the tank; or swings into its beginning. */
+    {WATER(POOL) END "bodies:\n" POST "  ram: {" RAM ", velocity: [0.5, 0]}\n",
+     "brings it into bodies.post by more than a spacing, 0.05"},
+    {WATER(POOL) END "bodies:\n  ram: {" RAM ", velocity: [0.9, 0]}\n",
+     "brings it into the closed side x_upper by"},
+    {WATER(POOL) END "bodies:\n" POST "  ram: {" RAM
+                     ", swing: {amplitude: [0.2, 0, 0], frequency: 2}}\n",
+     "brings it into the closed side x_lower by"},
+    {WATER(POOL) END "bodies:\n  ram: {" RAM
+                     ", rotation: {rate: 3, axis: [0, 0, 1], centre: [0.15, 0.1]}}\n",
+     "brings it into the closed side x_lower by"},
+    {WATER("  shape: {box: {from: [0, 0], to: [1, 0.04]}}\n") END,
+     "fluid.shape: it is 0.04 thick along y, thinner than a particle"},
+    {WATER(POOL "  speed: 1\n  start: {velocity: [3, 4]}\n") END,
+     "fluid.speed = 1: fluid.start.velocity is 5 already"},
     {WATER(POOL) END
      "bodies: {a: {shape: {box: {from: [0.4, 0], to: [0.6, 0.2]}}, motion: fixed}}\n"
      "gauges: {f: {body: a, of: force}}\n",
@@ -226,6 +243,25 @@ static const refusal refusals[] = {
      "wall}}, y: {lower: {kind: wall}, upper: {kind: wall}}}\n" END,
      "domain.shake: it belongs to fluid.model: particles"}};
 
+/* Ways that end in time, begin in the wall as a rod in its hole, or lead through an open side, and
+ * a start faster than water that falls. */
+static const char *const taken[] = {
+    WATER(POOL) END "bodies:\n" POST "  ram: {" RAM ", velocity: [0.3, 0]}\n",
+    WATER(POOL) END "bodies:\n  rod: {shape: {box: {from: [-0.1, 0.2], to: [0.2, 0.4]}}, motion: "
+                    "prescribed, velocity: [-0.2, 0]}\n",
+    WATER(POOL) END "bodies:\n  ram: {" RAM ", velocity: [0, 2]}\n",
+    WATER(POOL "  start: {velocity: [30, 40]}\n") END};
+
+START_TEST(accepted)
+{
+  for (size_t q = 0; q < sizeof taken / sizeof *taken; q++) {
+    bw_scene *s = scene_of(taken[q]);
+    ck_assert_msg(s != NULL, "%zu: %s", q, bw_last_message());
+    bw_scene_destroy(&s);
+  }
+}
+END_TEST
+
 START_TEST(refused)
 {
   for (size_t q = 0; q < sizeof refusals / sizeof *refusals; q++) {
@@ -236,7 +272,7 @@ START_TEST(refused)
 }
 END_TEST
 
-static const bw_check_test tests[] = {BW_TEST(rest),   BW_TEST(is_the_module), BW_TEST(borne),
-                                      BW_TEST(piston), BW_TEST(settles),       BW_TEST(walls),
-                                      BW_TEST(refused)};
+static const bw_check_test tests[] = {BW_TEST(rest),     BW_TEST(is_the_module), BW_TEST(borne),
+                                      BW_TEST(piston),   BW_TEST(settles),       BW_TEST(walls),
+                                      BW_TEST(accepted), BW_TEST(refused)};
 BW_CHECK_MAIN("scene.water", tests)

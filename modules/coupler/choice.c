@@ -9,6 +9,8 @@
 
 static const double CHANGED = 0.02; /* of the bonds broken since: the body is another */
 
+static const double SLUGGISH = 0.01; /* of a load in a step: a hundred steps are a motion */
+
 double bw_coupler__most(const bw_coupler *c)
 {
   /* Loads of ten steps, without the noise of one; told the motion of each step, the fluid answers
@@ -91,7 +93,12 @@ void bw_coupler_tell_limit(bw_coupler *c, bw_log *log)
            "explicit coupling holds below load_relaxation = %.3g (measured: in 12 steps the fluid "
            "adds %.3g times the mass that resists)",
            limit, o->limit.added);
-  if (o->open && w < bw_coupler__most(c))
+  if (o->open && w < SLUGGISH)
+    bw_log_warn(log,
+                "%s: %.2g is taken, so that loads come in over %.0f steps, and motions of fewer "
+                "feel but a part of them; take coupling_iterations of 50, or shorter steps",
+                found, w, 1.0 / w);
+  else if (o->open && w < bw_coupler__most(c))
     bw_log_info(log, "%s: %.2g is taken, so that loads come in over %.0f steps", found, w, 1.0 / w);
   else if (o->open)
     bw_log_info(log, "%s: %g is taken", found, w);

@@ -177,6 +177,25 @@ START_TEST(what_is_given_is_kept)
 }
 END_TEST
 
+/* A choice so small that loads take hundreds of steps is warned of, with the way out. */
+START_TEST(loads_that_take_for_ever_are_told)
+{
+  static const double w[2] = {0.02, 0.005};
+  for (int q = 0; q < 2; q++) {
+    const block_set_up b = plate(1.0);
+    block_scene s = make(&b);
+    char text[512];
+    s.coupler->config.load_relaxation = w[q];
+    s.coupler->choice = (bw_coupler__choice){
+        .open = true, .made = true, .dt = DT, .limit = {.relaxation = 2.0 * w[q], .added = 9.0}};
+    listen(s.coupler, sizeof text, text);
+    const bool warned = strstr(text, "coupling_iterations of 50") != NULL;
+    ck_assert(warned == (q == 1 && bw_comm_rank(bw_check_world()) == 0));
+    block_destroy(&s);
+  }
+}
+END_TEST
+
 /* A restart takes the choice over, whatever it would find itself, and goes on to the same bits. */
 START_TEST(a_restart_keeps_the_choice)
 {
@@ -236,7 +255,8 @@ START_TEST(another_body_is_measured_anew)
 END_TEST
 
 static const bw_check_test tests[] = {
-    BW_TEST(limits_of_the_recurrence),    BW_TEST(a_measurement_disturbs_nothing),
-    BW_TEST(what_is_left_open_is_chosen), BW_TEST(what_is_given_is_kept),
-    BW_TEST(a_restart_keeps_the_choice),  BW_TEST(another_body_is_measured_anew)};
+    BW_TEST(limits_of_the_recurrence),          BW_TEST(a_measurement_disturbs_nothing),
+    BW_TEST(what_is_left_open_is_chosen),       BW_TEST(what_is_given_is_kept),
+    BW_TEST(loads_that_take_for_ever_are_told), BW_TEST(a_restart_keeps_the_choice),
+    BW_TEST(another_body_is_measured_anew)};
 BW_CHECK_MAIN("coupler.stability", tests)

@@ -107,7 +107,8 @@ static void set_solid(const dam_config *c, const bw_scene_body *blank, bw_scene_
   const double ratio = isnan(from->horizon_ratio) ? (nearest ? 1.5 : 2.0) : from->horizon_ratio;
   s->numerics.horizon_ratio = ratio;
   s->numerics.family_reach = ratio < 2.0 ? BW_PD_REACH_HORIZON : BW_PD_REACH_HALF_CELL;
-  s->numerics.surface_correction = bw_solid_config_default().surface_correction;
+  if (from->choice.law == BW_SOLID_BOND)
+    s->numerics.surface_correction = bw_solid_config_default().surface_correction;
   s->numerics.damping_pair = from->damping_pair;
 }
 

@@ -17,7 +17,7 @@ with() {
   refused "$name" "$pattern" "$program" "$case" --quiet --check --out "$out/$name" "$@"
 }
 
-with slow_sound "c0 is 20, a Mach number of 0.172; it must be at least 34.3" \
+with slow_sound "sound_speed = 20: it must be at least 34.3" \
   --set fluid.sound_speed=20
 with slow_for_weight "it must be at least 17.15" --set fluid.speed=0.1 --set fluid.sound_speed=15
 with negative_spacing "fluid.spacing.*-1" --set fluid.spacing=-1
@@ -28,7 +28,7 @@ with outside "water.0: from 0 to 2 in direction 0, but the tank is from 0 to 1.6
 with turned "water.0: lower.1. is 0.3 and upper.1. is 0" \
   --set 'water=[{lower: [0, 0.3, 0], upper: [0.6, 0, 0]}]'
 with no_water "water" --set 'water=[]'
-with too_little "no site of spacing 0.015" --set 'water=[{lower: [0, 0, 0], upper: [0.001, 0.001, 0]}]'
+with too_little "thinner than a particle: they are 0.015 apart" --set 'water=[{lower: [0, 0, 0], upper: [0.001, 0.001, 0]}]'
 with huge_tank "is 3e.09 spacings of 0.015, more than 2" --set tank.size='[45000000, 0.6, 0]' \
   --set 'gauges=[{name: a, kind: depth, at: [1, 0, 0]}]'
 with thin_wall "obstacles.0 is 0.03 thick in direction 0, thinner than 3 spacings" \

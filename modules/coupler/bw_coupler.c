@@ -151,8 +151,6 @@ static bw_status particle_arrays(bw_coupler *c)
   list_vectors(c, vector);
   for (int q = 0; q < N_VECTORS; q++)
     BW_TRY(BW_ALLOCATE(vector[q], 3 * n));
-  if (c->config.predictor) BW_TRY(BW_ALLOCATE(&c->felt, 3 * n));
-  if (c->config.predictor) BW_TRY(BW_ALLOCATE(&c->lag, 3 * n));
   BW_TRY(bw_coupler__predictor_create(c));
   BW_TRY(BW_ALLOCATE(&c->particle, n));
   BW_TRY(BW_ALLOCATE(&c->particle_inside, n));

@@ -21,6 +21,7 @@
  * b_{n+1} = 3/2 y_n - 1/2 y_{n-1} + CATCH_UP (l_{n+1} - l_n) with l_{n+1} = (1 - CATCH_UP) l_n
  * + 1/2 (y_n - y_{n-1}): what swings with the step meets 2 + 2 CATCH_UP/(2 - CATCH_UP) times the
  * added mass (relaxation.c), and light bodies hold less w. */
+#include "bw_memory.h"
 #include "coupler_internal.h"
 #include "rigid_joined.h"
 
@@ -29,6 +30,8 @@
 bw_status bw_coupler__predictor_create(bw_coupler *c)
 {
   if (!c->config.predictor) return BW_OK;
+  BW_TRY(BW_ALLOCATE(&c->felt, 3 * c->n));
+  BW_TRY(BW_ALLOCATE(&c->lag, 3 * c->n));
   return bw_coupler__state_create_solid(c, &c->predicted);
 }
 

@@ -6,6 +6,9 @@
 #include "bw_shape.h"
 #include "coupler_internal.h"
 
+#include <math.h>
+#include <stdio.h>
+
 /* Positions and forces pass through bw_real. */
 static const double ROUND_OFF = 1.0e3 * BW_REAL_EPSILON;
 enum { N = 24, BLOCK = 8, FIRST = 8 };
@@ -82,4 +85,37 @@ static inline void destroy(scene *s)
   bw_solid_destroy(&s->solid);
   bw_ns_channel_destroy(&s->fluid);
   bw_grid_destroy(&s->grid);
+}
+
+/* Saved, n steps gone on, loaded, gone on again: the same velocities, to round-off. */
+static inline void check_restart(scene *s, const char *name, double step, int n)
+{
+  const size_t size = 3 * bw_solid_count(s->solid);
+  char path[64]; /* of this number of ranks: tests run side by side */
+  snprintf(path, sizeof path, "%s_np%d.h5", name, bw_comm_size(bw_check_world()));
+  double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
+  bw_checkpoint *ck = NULL;
+  bw_check_ok(bw_checkpoint_create(bw_check_world(), path, &ck));
+  bw_check_ok(bw_coupler_save(s->coupler, ck));
+  bw_check_ok(bw_checkpoint_close(&ck));
+  for (int round = 0; round < 2; round++) {
+    for (int q = 0; q < n; q++)
+      bw_check_ok(bw_coupler_step(s->coupler, step));
+    bw_check_ok(BW_ALLOCATE(&V[round], size));
+    bw_solid_get_velocity(s->solid, V[round]);
+    if (round > 0) break;
+    bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
+    bw_check_ok(bw_coupler_load(s->coupler, ck));
+    bw_check_ok(bw_checkpoint_close(&ck));
+  }
+  for (size_t i = 0; i < size; i++) {
+    most[0] = fmax(most[0], fabs(V[0][i]));
+    most[1] = fmax(most[1], fabs(V[1][i] - V[0][i]));
+  }
+  bw_comm_max(bw_check_world(), 2, most);
+  ck_assert_double_gt(most[0], 0.0);
+  ck_assert_double_lt(most[1], ROUND_OFF * most[0]);
+  bw_release(&V[0]);
+  bw_release(&V[1]);
+  if (bw_comm_rank(bw_check_world()) == 0) remove(path);
 }

@@ -139,38 +139,10 @@ END_TEST
 START_TEST(a_restart_iterates_the_same_way)
 {
   scene s = build(0.3, 0.1);
-  const double c = make_light(&s);
-  const size_t n = 3 * bw_solid_count(s.solid);
-  char path[32]; /* of this number of ranks: tests run side by side */
-  snprintf(path, sizeof path, "test_iterate_np%d.h5", bw_comm_size(bw_check_world()));
-  double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
-  bw_checkpoint *ck = NULL;
-  iterate(&s, c, 60);
+  iterate(&s, make_light(&s), 60);
   bw_check_ok(bw_coupler_step(s.coupler, STEP));
-  bw_check_ok(bw_checkpoint_create(bw_check_world(), path, &ck));
-  bw_check_ok(bw_coupler_save(s.coupler, ck));
-  bw_check_ok(bw_checkpoint_close(&ck));
-  for (int round = 0; round < 2; round++) {
-    for (int q = 0; q < 2; q++)
-      bw_check_ok(bw_coupler_step(s.coupler, STEP));
-    bw_check_ok(BW_ALLOCATE(&V[round], n));
-    bw_solid_get_velocity(s.solid, V[round]);
-    if (round > 0) break;
-    bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
-    bw_check_ok(bw_coupler_load(s.coupler, ck));
-    bw_check_ok(bw_checkpoint_close(&ck));
-  }
-  for (size_t i = 0; i < n; i++) {
-    most[0] = fmax(most[0], fabs(V[0][i]));
-    most[1] = fmax(most[1], fabs(V[1][i] - V[0][i]));
-  }
-  bw_comm_max(bw_check_world(), 2, most);
-  ck_assert_double_gt(most[0], 0.0);
-  ck_assert_double_lt(most[1], ROUND_OFF * most[0]);
-  bw_release(&V[0]);
-  bw_release(&V[1]);
+  check_restart(&s, "test_iterate", STEP, 2);
   destroy(&s);
-  if (bw_comm_rank(bw_check_world()) == 0) remove(path);
 }
 END_TEST
 

@@ -5,7 +5,6 @@
 #include "cube_scene.h"
 #include "ledger.h"
 
-#include <stdio.h>
 #include <string.h>
 
 static const double STEP = 4.0e-3;
@@ -116,35 +115,9 @@ END_TEST
 START_TEST(a_restart_looks_ahead_the_same_way)
 {
   scene s = make(true, 0.01);
-  const size_t n = 3 * bw_solid_count(s.solid);
-  char path[32]; /* of this number of ranks: tests run side by side */
-  snprintf(path, sizeof path, "test_predictor_np%d.h5", bw_comm_size(bw_check_world()));
-  double *V[2] = {NULL, NULL}, most[2] = {0.0, 0.0};
-  bw_checkpoint *ck = NULL;
   steps(&s, 2);
-  bw_check_ok(bw_checkpoint_create(bw_check_world(), path, &ck));
-  bw_check_ok(bw_coupler_save(s.coupler, ck));
-  bw_check_ok(bw_checkpoint_close(&ck));
-  for (int round = 0; round < 2; round++) {
-    steps(&s, 3);
-    bw_check_ok(BW_ALLOCATE(&V[round], n));
-    bw_solid_get_velocity(s.solid, V[round]);
-    if (round > 0) break;
-    bw_check_ok(bw_checkpoint_open(bw_check_world(), path, &ck));
-    bw_check_ok(bw_coupler_load(s.coupler, ck));
-    bw_check_ok(bw_checkpoint_close(&ck));
-  }
-  for (size_t i = 0; i < n; i++) {
-    most[0] = fmax(most[0], fabs(V[0][i]));
-    most[1] = fmax(most[1], fabs(V[1][i] - V[0][i]));
-  }
-  bw_comm_max(bw_check_world(), 2, most);
-  ck_assert_double_gt(most[0], 0.0);
-  ck_assert_double_lt(most[1], ROUND_OFF * most[0]);
-  bw_release(&V[0]);
-  bw_release(&V[1]);
+  check_restart(&s, "test_predictor", STEP, 3);
   destroy(&s);
-  if (bw_comm_rank(bw_check_world()) == 0) remove(path);
 }
 END_TEST
 
